@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/base/fields.h"
+
+#include <sstream>
+
+namespace volcontact {
+
+std::string out_of_range_message(std::string_view component, std::string_view field,
+                                 std::string_view unit, double value, const Range& range) {
+  std::ostringstream message;
+  message << component << ": " << field << " = " << value << " [" << unit
+          << "] is out of range: must be " << range.text;
+  return message.str();
+}
+
+std::string wrong_size_message(std::string_view component, std::string_view field, int wanted,
+                               std::size_t got) {
+  std::ostringstream message;
+  message << component << ": " << field << " takes " << wanted
+          << (wanted == 1 ? " number, got " : " numbers, got ") << got;
+  return message.str();
+}
+
+}  // namespace volcontact

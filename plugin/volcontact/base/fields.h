@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "volcontact/base/check.h"
+#include "volcontact/base/spelling.h"
+#include "volcontact/base/types.h"
+
+namespace volcontact {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Allowed values of a field: an interval, open or closed at each end. Infinite values and NaN are
+/// never allowed.
+struct Range {
+  double low;
+  double high;
+  bool low_open;
+  bool high_open;
+  const char* text;  ///< how a message spells it, e.g. "> 0"
+
+  constexpr bool contains(double x) const {
+    if (!(x - x == 0.0)) return false;  // not finite
+    return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high);
+  }
+};
+
+inline constexpr Range kPositive{0.0, kInfinity, true, true, "> 0"};
+inline constexpr Range kNonNegative{0.0, kInfinity, false, true, ">= 0"};
+inline constexpr Range kAnyNumber{-kInfinity, kInfinity, true, true, "any finite number"};
+inline constexpr Range kZeroToOne{0.0, 1.0, false, false, "0 to 1"};
+
+/// One row of a component's table: the parameter's name, unit, member, range and meaning. From this
+/// table come validation, MJCF keys, Python keywords and the reference page. A field is one number
+/// or a 3-vector.
+template <typename Params>
+struct Field {
+  const char* name;
+  const char* unit;  ///< SI, "-" for none
+  double Params::* scalar = nullptr;
+  Vec3 Params::* vector = nullptr;
+  Range range;
+  const char* meaning;
+
+  constexpr Field(const char* field_name, const char* field_unit, double Params::* member,
+                  Range allowed, const char* text)
+      : name(field_name), unit(field_unit), scalar(member), range(allowed), meaning(text) {}
+  constexpr Field(const char* field_name, const char* field_unit, Vec3 Params::* member,
+                  Range allowed, const char* text)
+      : name(field_name), unit(field_unit), vector(member), range(allowed), meaning(text) {}
+
+  constexpr int size() const { return scalar ? 1 : 3; }
+  double get(const Params& params, int i = 0) const {
+    return scalar ? params.*scalar : (params.*vector)[i];
+  }
+  void set(Params& params, int i, double value) const {
+    if (scalar) {
+      params.*scalar = value;
+    } else {
+      (params.*vector)[i] = value;
+    }
+  }
+};
+
+/// Parameter values by name, as a file or a keyword call gives them.
+using FieldValues = std::map<std::string, std::vector<double>, std::less<>>;
+
+/// "hunt_crossley: stiffness = -1 [N/m^3] is out of range: must be > 0".
+std::string out_of_range_message(std::string_view component, std::string_view field,
+                                 std::string_view unit, double value, const Range& range);
+/// "box: half_sizes takes 3 numbers, got 2".
+std::string wrong_size_message(std::string_view component, std::string_view field, int wanted,
+                               std::size_t got);
+
+// A component is any class with `kName`, `Params` and `kFields` (a std::array of Field<Params>).
+
+template <typename Component>
+std::vector<std::string> field_names() {
+  std::vector<std::string> names;
+  for (const auto& field : Component::kFields) names.emplace_back(field.name);
+  return names;
+}
+
+/// Pointer to the field called `name`, or null.
+template <typename Component>
+const Field<typename Component::Params>* find_field(std::string_view name) {
+  for (const auto& field : Component::kFields) {
+    if (name == field.name) return &field;
+  }
+  return nullptr;
+}
+
+/// Returns `params` unchanged, or throws std::invalid_argument naming component, field, unit, value
+/// and allowed range.
+template <typename Component>
+typename Component::Params validated(const typename Component::Params& params) {
+  for (const auto& field : Component::kFields) {
+    for (int i = 0; i < field.size(); ++i) {
+      const double value = field.get(params, i);
+      require(field.range.contains(value),
+              out_of_range_message(Component::kName, field.name, field.unit, value, field.range));
+    }
+  }
+  return params;
+}
+
+/// Parameters by name; what is not named keeps its default. Throws std::invalid_argument on an
+/// unknown name (with the nearest valid spelling), a wrong count and a value out of range.
+template <typename Component>
+typename Component::Params params_from(const FieldValues& values) {
+  typename Component::Params params{};
+  for (const auto& [name, numbers] : values) {
+    const auto* field = find_field<Component>(name);
+    require(field != nullptr, std::string(Component::kName) + " has no field '" + name + "'" +
+                                  did_you_mean(name, field_names<Component>()));
+    require(static_cast<int>(numbers.size()) == field->size(),
+            wrong_size_message(Component::kName, name, field->size(), numbers.size()));
+    for (int i = 0; i < field->size(); ++i) field->set(params, i, numbers[i]);
+  }
+  return validated<Component>(params);
+}
+
+/// The inverse of params_from: every field by name.
+template <typename Component>
+FieldValues values_of(const typename Component::Params& params) {
+  FieldValues values;
+  for (const auto& field : Component::kFields) {
+    auto& numbers = values[field.name];
+    for (int i = 0; i < field.size(); ++i) numbers.push_back(field.get(params, i));
+  }
+  return values;
+}
+
+}  // namespace volcontact

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace volcontact {
+
+// Frame notation, used in every name of the project:
+//   X_AB    pose of frame B measured in frame A; inner letters meet: X_WB = X_WA * X_AB
+//   R_AB    its rotation matrix: v_A = R_AB v_B
+//   p_AB_W  position from A to B, expressed in W (the last letter may be left out when it is A)
+//   v_AB, w_AB   linear and angular velocity of B in A
+// Letters: W world, A and B the two bodies of a pair, C the centroid of a contact site.
+// Units are SI throughout: m, kg, s, N, rad.
+
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+
+inline constexpr double kPi = 3.14159265358979323846;
+
+/// Rigid transform X_AB: `rotation` R_AB is orthonormal, `translation` p_AB is in metres.
+struct Pose {
+  Mat3 rotation = Mat3::Identity();
+  Vec3 translation = Vec3::Zero();
+
+  /// Maps a point given in B to A.
+  Vec3 operator*(const Vec3& p_B) const { return rotation * p_B + translation; }
+  Pose operator*(const Pose& X_BC) const {
+    return {rotation * X_BC.rotation, rotation * X_BC.translation + translation};
+  }
+  Pose inverse() const {
+    const Mat3 transposed = rotation.transpose();
+    return {transposed, -(transposed * translation)};
+  }
+  bool is_finite() const { return rotation.allFinite() && translation.allFinite(); }
+};
+
+/// Motion of a body frame: angular velocity [rad/s] and velocity of the frame origin [m/s].
+struct Twist {
+  Vec3 angular = Vec3::Zero();
+  Vec3 linear = Vec3::Zero();
+
+  /// Velocity of the body-fixed point at offset `p` from the frame origin [m/s].
+  Vec3 at(const Vec3& p) const { return linear + angular.cross(p); }
+};
+
+/// Force [N] and torque [N m] about the point that the holder names.
+struct Wrench {
+  Vec3 torque = Vec3::Zero();
+  Vec3 force = Vec3::Zero();
+
+  /// The same load with its torque taken about a point at offset `p` from the present one.
+  Wrench about(const Vec3& p) const { return {torque - p.cross(force), force}; }
+  Wrench& operator+=(const Wrench& other) {
+    torque += other.torque;
+    force += other.force;
+    return *this;
+  }
+};
+
+/// Cross-product matrix: skew(a) b = a x b.
+inline Mat3 skew(const Vec3& a) {
+  Mat3 s;
+  s << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+  return s;
+}
+
+/// Orthonormal basis whose third column is the unit vector `n`; continuous except at n.z = 0.
+/// Duff et al., "Building an orthonormal basis, revisited", JCGT 6(1), 2017.
+inline Mat3 basis_with_z(const Vec3& n) {
+  const double sign = std::copysign(1.0, n.z());
+  const double a = -1.0 / (sign + n.z());
+  const double b = n.x() * n.y() * a;
+  Mat3 r;
+  r.col(0) = Vec3(1.0 + sign * n.x() * n.x() * a, sign * b, -sign * n.x());
+  r.col(1) = Vec3(b, sign + n.y() * n.y() * a, -n.y());
+  r.col(2) = n;
+  return r;
+}
+
+}  // namespace volcontact

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+namespace volcontact {
+
+/// How an overlap is integrated. docs/theory.md, "Engines".
+enum class Engine : int {
+  kAuto = 0,        ///< the fastest that serves the pair to its tolerance
+  kClosedForm = 1,  ///< formulas: half-space with sphere and ellipsoid, sphere-sphere
+  kClip = 2,        ///< exact clipping of half-space, box and convex polytope
+  kOctree = 3,      ///< recursive cells with certified bounds; serves every pair
+};
+
+inline constexpr Engine kEngines[] = {Engine::kAuto, Engine::kClosedForm, Engine::kClip,
+                                      Engine::kOctree};
+
+const char* to_string(Engine engine);
+
+/// Throws std::invalid_argument naming the valid words and the nearest of them.
+Engine engine_from(std::string_view name);
+
+}  // namespace volcontact

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <limits>
+
+#include "volcontact/base/types.h"
+#include "volcontact/metrics/volume_metrics.h"
+
+namespace volcontact {
+
+/// Axis-aligned box in the solid's frame [m]. Unbounded solids have infinite corners.
+struct Aabb {
+  Vec3 min;
+  Vec3 max;
+
+  bool bounded() const { return min.allFinite() && max.allFinite(); }
+  Vec3 center() const { return 0.5 * (min + max); }
+  Vec3 half_sizes() const { return 0.5 * (max - min); }
+};
+
+/// Part of the line o + t d inside a convex solid: t from `enter` to `leave`; empty when
+/// enter >= leave. Ends may be infinite.
+struct RayInterval {
+  double enter = 0.0;
+  double leave = 0.0;
+  bool empty() const { return !(enter < leave); }
+};
+
+/// What a convex solid must supply, all in its own frame. One header per shape; a shape knows no
+/// other shape.
+///  bounds()            smallest axis-aligned box that holds the solid
+///  support(e)          a point of the solid farthest along the direction e (any length but zero);
+///                      for unbounded solids in an unbounded direction: a point at infinity
+///  support_height(e)   max over the solid of e . x, +infinity where unbounded
+///  signed_distance(p)  negative inside; its magnitude never exceeds the distance to the surface
+///                      (so a ball of that radius holds no surface), zero on the surface only
+///  gradient(p)         unit outward direction in which signed_distance grows at p
+///  ray(o, d)           the interval of the line o + t d inside the solid
+///  own_metrics()       volume, centroid and inertia of the whole solid (unbounded: infinite volume)
+template <typename S>
+concept ConvexSolid = requires(const S& solid, const Vec3& x) {
+  { S::kName } -> std::convertible_to<const char*>;
+  { solid.bounds() } -> std::same_as<Aabb>;
+  { solid.support(x) } -> std::same_as<Vec3>;
+  { solid.support_height(x) } -> std::same_as<double>;
+  { solid.signed_distance(x) } -> std::same_as<double>;
+  { solid.gradient(x) } -> std::same_as<Vec3>;
+  { solid.ray(x, x) } -> std::same_as<RayInterval>;
+  { solid.own_metrics() } -> std::same_as<VolumeMetrics>;
+};
+
+}  // namespace volcontact
