@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "volcontact/base/fields.h"
+#include "volcontact/shape/solid.h"
+
+namespace volcontact {
+
+/// Ellipsoid about the origin: the image of the unit ball under diag(semi_axes). A zero semi-axis
+/// makes a flat, empty solid.
+class Ellipsoid {
+ public:
+  static constexpr const char* kName = "ellipsoid";
+  struct Params {
+    Vec3 semi_axes = Vec3::Ones();
+  };
+  static constexpr std::array kFields{
+      Field<Params>{"semi_axes", "m", &Params::semi_axes, kNonNegative, "half the axis lengths"}};
+
+  explicit Ellipsoid(const Params& params) : p_(validated<Ellipsoid>(params)) {
+    for (int i = 0; i < 3; ++i) inverse_[i] = is_flat(i) ? 0.0 : 1.0 / p_.semi_axes[i];
+    smallest_ = p_.semi_axes.minCoeff();
+  }
+  const Params& params() const { return p_; }
+  const Vec3& semi_axes() const { return p_.semi_axes; }
+
+  Aabb bounds() const { return {-p_.semi_axes, p_.semi_axes}; }
+  Vec3 support(const Vec3& e) const {
+    const Vec3 scaled = p_.semi_axes.cwiseProduct(e);
+    const double length = scaled.norm();
+    return length > 0.0 ? Vec3(p_.semi_axes.cwiseProduct(scaled) / length) : Vec3::Zero();
+  }
+  double support_height(const Vec3& e) const { return p_.semi_axes.cwiseProduct(e).norm(); }
+
+  /// A bound, exact to first order at the surface. With f = |p/a| - 1, outside: f is convex, so
+  /// f / |grad f| cannot exceed the distance. Inside: the quadric |p/a|^2 - 1 has second derivatives
+  /// of at most 2 / min(a)^2, so it cannot reach zero nearer than the root of that parabola.
+  double signed_distance(const Vec3& p) const {
+    const Vec3 scaled = p.cwiseProduct(inverse_);
+    const double f = scaled.norm();
+    const double slope = scaled.cwiseProduct(inverse_).norm();
+    const double outside = f > 1.0 ? f * (f - 1.0) / slope : 0.0;
+    if (is_flat()) return std::hypot(outside, off_flat(p));
+    if (f > 1.0) return outside;
+    const double deficit = (1.0 - f) * (1.0 + f);
+    return -deficit / (slope + std::sqrt(slope * slope + deficit / (smallest_ * smallest_)));
+  }
+  Vec3 gradient(const Vec3& p) const {
+    const Vec3 normal = p.cwiseProduct(inverse_).cwiseProduct(inverse_);
+    const double length = normal.norm();
+    if (length > 0.0 && !is_flat()) return normal / length;
+    Eigen::Index thinnest;
+    p_.semi_axes.minCoeff(&thinnest);
+    return std::copysign(1.0, p[thinnest]) * Vec3::Unit(thinnest);
+  }
+  RayInterval ray(const Vec3& o, const Vec3& d) const {
+    if (is_flat()) return {};
+    // In the space of the unit ball, from the point of the line nearest the centre.
+    const Vec3 o_unit = o.cwiseProduct(inverse_), d_unit = d.cwiseProduct(inverse_);
+    const double t_mid = -o_unit.dot(d_unit) / d_unit.squaredNorm();
+    const double reach = 1.0 - (o_unit + t_mid * d_unit).squaredNorm();
+    if (!(reach > 0.0)) return {};
+    const double half = std::sqrt(reach / d_unit.squaredNorm());
+    return {t_mid - half, t_mid + half};
+  }
+  VolumeMetrics own_metrics() const {
+    const Vec3 squares = p_.semi_axes.cwiseAbs2();
+    VolumeMetrics m;
+    m.volume = 4.0 / 3.0 * kPi * p_.semi_axes.prod();
+    m.inertia = (0.2 * m.volume * (Vec3::Constant(squares.sum()) - squares)).asDiagonal();
+    return m;
+  }
+
+ private:
+  // Below this length the inverse square overflows: such an axis counts as zero.
+  static constexpr double kFlat = 1e-100;
+
+  bool is_flat(int i) const { return p_.semi_axes[i] < kFlat; }
+  bool is_flat() const { return smallest_ < kFlat; }
+  // Distance from the linear space a flat ellipsoid lies in.
+  double off_flat(const Vec3& p) const {
+    Vec3 off = Vec3::Zero();
+    for (int i = 0; i < 3; ++i) {
+      if (is_flat(i)) off[i] = p[i];
+    }
+    return off.norm();
+  }
+
+  Params p_;
+  Vec3 inverse_;
+  double smallest_;
+};
+
+static_assert(ConvexSolid<Ellipsoid>);
+
+}  // namespace volcontact
