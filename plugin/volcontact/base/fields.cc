@@ -21,4 +21,13 @@ std::string wrong_size_message(std::string_view component, std::string_view fiel
   return message.str();
 }
 
+std::string unknown_word_message(std::string_view what, std::string_view word,
+                                 const std::vector<std::string>& words) {
+  std::ostringstream message;
+  message << "unknown " << what << " '" << word << "': one of ";
+  for (std::size_t i = 0; i < words.size(); ++i) message << (i ? ", " : "") << words[i];
+  message << did_you_mean(word, words);
+  return message.str();
+}
+
 }  // namespace volcontact

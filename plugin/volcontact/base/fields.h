@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "volcontact/base/check.h"
@@ -67,8 +70,19 @@ struct Field {
   }
 };
 
+/// A parameter that is a choice among words, held in an enum whose values count from 0 in the order
+/// of `words`. A component with choices lists them in `kChoices`.
+template <typename Params, typename Enum, std::size_t kCount>
+struct Choice {
+  const char* name;
+  Enum Params::* member;
+  std::array<const char*, kCount> words;
+  const char* meaning;
+};
+
 /// Parameter values by name, as a file or a keyword call gives them.
 using FieldValues = std::map<std::string, std::vector<double>, std::less<>>;
+using ChoiceValues = std::map<std::string, std::string, std::less<>>;
 
 /// "hunt_crossley: stiffness = -1 [N/m^3] is out of range: must be > 0".
 std::string out_of_range_message(std::string_view component, std::string_view field,
@@ -78,6 +92,9 @@ std::string wrong_size_message(std::string_view component, std::string_view fiel
                                std::size_t got);
 
 // A component is any class with `kName`, `Params` and `kFields` (a std::array of Field<Params>).
+
+template <typename Component>
+inline constexpr bool kHasChoices = requires { Component::kChoices; };
 
 template <typename Component>
 std::vector<std::string> field_names() {
@@ -123,6 +140,31 @@ typename Component::Params params_from(const FieldValues& values) {
     for (int i = 0; i < field->size(); ++i) field->set(params, i, numbers[i]);
   }
   return validated<Component>(params);
+}
+
+/// "unknown coupling 'elipsoid': one of ellipsoid, none (did you mean 'ellipsoid'?)".
+std::string unknown_word_message(std::string_view what, std::string_view word,
+                                 const std::vector<std::string>& words);
+
+/// Sets the component's choices by name. Throws std::invalid_argument on an unknown choice or word.
+template <typename Component>
+void set_choices(typename Component::Params& params, const ChoiceValues& values) {
+  for (const auto& [name, word] : values) {
+    bool known_name = false;
+    if constexpr (kHasChoices<Component>) {
+      for (const auto& choice : Component::kChoices) {
+        if (name != choice.name) continue;
+        known_name = true;
+        std::vector<std::string> words(choice.words.begin(), choice.words.end());
+        const auto found = std::find(words.begin(), words.end(), word);
+        require(found != words.end(),
+                std::string(Component::kName) + ": " + unknown_word_message(name, word, words));
+        using Enum = std::remove_reference_t<decltype(params.*(choice.member))>;
+        params.*(choice.member) = static_cast<Enum>(found - words.begin());
+      }
+    }
+    require(known_name, std::string(Component::kName) + " has no choice '" + name + "'");
+  }
 }
 
 /// The inverse of params_from: every field by name.

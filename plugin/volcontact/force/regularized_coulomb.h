@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "volcontact/base/fields.h"
+#include "volcontact/force/coupling.h"
+#include "volcontact/force/friction.h"
+
+namespace volcontact {
+
+/// Coulomb friction whose corner at rest is rounded: full strength mu f_n from `slip_speed` on, a
+/// cubic through zero below it. It creeps under load, by construction; use it for comparison.
+/// docs/theory.md, "Friction". Throws std::invalid_argument on values out of range.
+class RegularizedCoulomb final : public Friction {
+ public:
+  static constexpr const char* kName = "regularized_coulomb";
+  struct Params {
+    double friction = 0.2;
+    double slip_speed = 1e-3;
+    Coupling coupling = Coupling::kEllipsoid;
+  };
+  static constexpr std::array kFields{
+      Field<Params>{"friction", "-", &Params::friction, kNonNegative, "mu, kinetic"},
+      Field<Params>{"slip_speed", "m/s", &Params::slip_speed, kPositive,
+                    "speed from which friction has its full strength"}};
+  static constexpr std::array kChoices{
+      Choice<Params, Coupling, 2>{"coupling",
+                                  &Params::coupling,
+                                  {"ellipsoid", "none"},
+                                  "how sliding and spinning share the friction"}};
+
+  explicit RegularizedCoulomb(const Params& params)
+      : p_(validated<RegularizedCoulomb>(params)) {}
+  const Params& params() const { return p_; }
+  const char* name() const noexcept override { return kName; }
+
+  FrictionOutput evaluate(const FrictionInput& in, const LawState&) const noexcept override {
+    const GeneralizedSlip slip =
+        generalized_slip(p_.coupling, in.slip, in.spin, in.gyration_radius);
+    const double strength = p_.friction * in.normal_force * rounded(slip.speed / p_.slip_speed);
+    FrictionOutput out;
+    out.force = strength * slip.force_direction;
+    out.torque = strength * slip.torque_arm;
+    out.slide_power = -out.force.dot(in.slip);
+    out.spin_power = -out.torque * in.spin;
+    return out;
+  }
+
+ private:
+  // 0 at 0, 1 with zero slope from 1 on (Gonthier et al. 2004, direction regularisation).
+  static double rounded(double x) { return x >= 1.0 ? 1.0 : x * (1.5 - 0.5 * x * x); }
+
+  Params p_;
+};
+
+}  // namespace volcontact

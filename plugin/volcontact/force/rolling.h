@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+
+#include "volcontact/base/types.h"
+
+namespace volcontact {
+
+/// Rolling resistance of a damped Winkler foundation: the local pressure k_v h a v_n(x) of a patch
+/// that turns with w about an axis in its plane has the torque -k_v a K w, where
+/// K = int (r x n)(r x n)^T dV are the second moments of the volume projected on the contact plane.
+/// docs/theory.md, "Rolling resistance".
+struct RollingInput {
+  double rolling_damping = 0.0;       ///< k_v a [N s/m^4]
+  double normal_force = 0.0;          ///< f_n [N]
+  double volume = 0.0;                ///< V [m^3]
+  Vec3 normal = Vec3::UnitZ();        ///< unit
+  Mat3 second_moment = Mat3::Zero();  ///< int r r^T dV about the centroid [m^5]
+  Vec3 angular_velocity = Vec3::Zero();  ///< of A against B [rad/s]
+};
+
+/// Torque on A [N m], in the contact plane. Its lever arm |torque| / f_n is limited so that the
+/// centre of pressure stays inside the patch: to sqrt(2) standard deviations of the volume in the
+/// direction of the arm, the distance from the centroid to the loaded edge of a wedge-shaped patch.
+inline Vec3 rolling_torque(const RollingInput& in) {
+  if (!(in.rolling_damping > 0.0) || !(in.volume > 0.0)) return Vec3::Zero();
+  const Mat3 cross = skew(in.normal);
+  const Mat3 projected = cross * in.second_moment * cross.transpose();
+  Vec3 torque = -in.rolling_damping * (projected * in.angular_velocity);
+  const double size = torque.norm();
+  if (!(size > 0.0)) return Vec3::Zero();
+  // Variance of the patch along the arm, which is perpendicular to the torque.
+  const Vec3 direction = torque / size;
+  const double variance = direction.dot(projected * direction) / in.volume;
+  const double limit = in.normal_force * std::sqrt(2.0 * variance);
+  return size > limit ? Vec3(limit * direction) : torque;
+}
+
+}  // namespace volcontact

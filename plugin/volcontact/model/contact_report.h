@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "volcontact/base/types.h"
+#include "volcontact/metrics/volume_metrics.h"
+
+namespace volcontact {
+
+/// One number for each way in which a contact dissipates.
+struct ByChannel {
+  double normal = 0.0;
+  double roll = 0.0;
+  double slide = 0.0;
+  double spin = 0.0;
+
+  double sum() const { return normal + roll + slide + spin; }
+  ByChannel& operator+=(const ByChannel& other) {
+    normal += other.normal;
+    roll += other.roll;
+    slide += other.slide;
+    spin += other.spin;
+    return *this;
+  }
+};
+
+/// One contact site: what was measured and what follows. World frame.
+struct SiteReport {
+  int pair = 0;                 ///< index of the geometric pair in its contact model
+  VolumeMetrics metrics;        ///< about the world origin
+  Vec3 normal = Vec3::Zero();   ///< on A, from B to A
+  double normal_force = 0.0;    ///< f_n [N]
+  Vec3 force_on_A = Vec3::Zero();   ///< normal force and friction, at the centroid [N]
+  Vec3 torque_on_A = Vec3::Zero();  ///< rolling and spin torque, about the centroid [N m]
+  double approach_speed = 0.0;  ///< > 0 while approaching [m/s]
+  Vec3 slip = Vec3::Zero();     ///< tangential velocity of A against B at the centroid [m/s]
+  double spin = 0.0;            ///< of A against B about the normal [rad/s]
+  double elastic_energy = 0.0;  ///< [J]
+  ByChannel power;              ///< dissipated [W]
+};
+
+/// What an evaluation of a contact model returns.
+struct ContactReport {
+  std::vector<SiteReport> sites;  ///< empty when apart
+  Wrench wrench_on_A;             ///< world frame, about A's origin
+  Wrench wrench_on_B;             ///< world frame, about B's origin
+  double elastic_energy = 0.0;    ///< [J]
+  ByChannel power;                ///< dissipated [W]
+
+  bool touching() const { return !sites.empty(); }
+};
+
+}  // namespace volcontact

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/geometric_pair.h"
+
+namespace volcontact {
+
+void interference_W(const GeometricPair& pair, const Pose& X_WA, const Pose& X_WB,
+                    const InterferenceOptions& options, InterferenceWorkspace& workspace,
+                    Interference& out) noexcept {
+  const Pose X_Wa = X_WA * pair.X_Aa;
+  const Pose X_Wb = X_WB * pair.X_Bb;
+  interference(pair.a, pair.b, X_Wa.inverse() * X_Wb, options, workspace, out);
+  if (!out.total.touching()) return;
+  out.total = transformed(out.total, X_Wa);
+  for (VolumeMetrics& site : out.sites) site = transformed(site, X_Wa);
+}
+
+}  // namespace volcontact
