@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
+
+#include "arrays.h"
+#include "bindings.h"
+#include "volcontact/model/contact_model.h"
+
+namespace volcontact::python {
+namespace {
+
+namespace nb = nanobind;
+
+using NormalPtr = std::shared_ptr<const NormalForce>;
+using FrictionPtr = std::shared_ptr<const Friction>;
+
+struct PyReport : ContactReport {
+  Eigen::VectorXd state;
+
+  VolumeMetrics metrics() const {
+    VolumeMetrics sum;
+    for (const SiteReport& site : sites) sum = sum + site.metrics;
+    return sum;
+  }
+};
+
+PyReport evaluate(const ContactModel& model, const std::optional<Matrix4>& X_WA,
+                  const std::optional<Matrix4>& X_WB, const std::optional<Vector6>& V_WA,
+                  const std::optional<Vector6>& V_WB, const std::optional<Eigen::VectorXd>& state,
+                  double elapsed) {
+  const Eigen::Index size = model.state_size();
+  require(!state || state->size() == size,
+          "evaluate: state has " + std::to_string(state ? state->size() : 0) +
+              " numbers, the model needs " + std::to_string(size));
+  require(elapsed >= 0.0, "evaluate: elapsed must be >= 0 s");
+  const BodyMotion motion{pose_from(X_WA, "X_WA"), pose_from(X_WB, "X_WB"),
+                          twist_from(V_WA, "V_WA"), twist_from(V_WB, "V_WB")};
+  const Eigen::VectorXd committed = state ? *state : Eigen::VectorXd::Zero(size);
+  PyReport report;
+  report.state = committed;
+  thread_local ContactModel::Workspace workspace;
+  nb::gil_scoped_release release;
+  model.evaluate(motion, {committed.data(), report.state.data(), elapsed}, workspace, report);
+  return report;
+}
+
+ContactModel make_model(const std::vector<GeometricPair>& pairs, const NormalPtr& normal,
+                        const FrictionPtr& friction, bool rolling, double tolerance,
+                        const std::string& engine, int threads) {
+  require(tolerance > 0.0 && tolerance < 1.0,
+          "contact_model: tolerance = " + std::to_string(tolerance) + " must be > 0 and < 1");
+  return ContactModel(pairs, {normal, friction, rolling},
+                      {tolerance, engine_from(engine), threads});
+}
+
+void bind_report(nb::module_& m) {
+  nb::class_<ByChannel>(m, "ByChannel", "One number for each way in which a contact dissipates.")
+      .def_ro("normal", &ByChannel::normal)
+      .def_ro("roll", &ByChannel::roll)
+      .def_ro("slide", &ByChannel::slide)
+      .def_ro("spin", &ByChannel::spin)
+      .def_prop_ro("sum", &ByChannel::sum);
+  nb::class_<SiteReport>(m, "SiteReport", "One contact site, in the world frame.")
+      .def_ro("pair", &SiteReport::pair, "Index of the geometric pair")
+      .def_ro("metrics", &SiteReport::metrics, nb::rv_policy::copy, "About the world origin")
+      .def_ro("normal", &SiteReport::normal, nb::rv_policy::copy, "On A, from B to A, shape (3,)")
+      .def_ro("normal_force", &SiteReport::normal_force, "[N]")
+      .def_ro("force_on_A", &SiteReport::force_on_A, nb::rv_policy::copy,
+              "Normal force and friction, at the centroid [N], shape (3,)")
+      .def_ro("torque_on_A", &SiteReport::torque_on_A, nb::rv_policy::copy,
+              "Rolling and spin torque, about the centroid [N m], shape (3,)")
+      .def_ro("approach_speed", &SiteReport::approach_speed, "> 0 while approaching [m/s]")
+      .def_ro("slip", &SiteReport::slip, nb::rv_policy::copy,
+              "Tangential velocity of A against B at the centroid [m/s], shape (3,)")
+      .def_ro("spin", &SiteReport::spin, "Of A against B about the normal [rad/s]")
+      .def_ro("elastic_energy", &SiteReport::elastic_energy, "[J]")
+      .def_ro("power", &SiteReport::power, nb::rv_policy::copy, "Dissipated [W]");
+  nb::class_<PyReport>(m, "ContactReport", "What an evaluation of a contact model returns.")
+      .def_prop_ro("metrics", &PyReport::metrics, "Sum over all sites, in the world frame")
+      .def_ro("sites", &PyReport::sites)
+      .def_prop_ro(
+          "force_on_A", [](const PyReport& r) { return r.wrench_on_A.force; },
+          "[N], shape (3,), world frame")
+      .def_prop_ro(
+          "torque_on_A", [](const PyReport& r) { return r.wrench_on_A.torque; },
+          "About A's origin [N m], shape (3,), world frame")
+      .def_prop_ro(
+          "force_on_B", [](const PyReport& r) { return r.wrench_on_B.force; },
+          "[N], shape (3,), world frame")
+      .def_prop_ro(
+          "torque_on_B", [](const PyReport& r) { return r.wrench_on_B.torque; },
+          "About B's origin [N m], shape (3,), world frame")
+      .def_prop_ro("touching", &PyReport::touching)
+      .def_ro("elastic_energy", &PyReport::elastic_energy, "[J]")
+      .def_ro("power", &PyReport::power, nb::rv_policy::copy, "Dissipated [W]")
+      .def_ro("state", &PyReport::state, nb::rv_policy::copy,
+              "Law states after `elapsed`, shape (state_size,)");
+}
+
+}  // namespace
+
+void bind_model(nb::module_& m) {
+  nb::class_<GeometricPair>(m, "Pair", "A solid fixed on body A and a solid fixed on body B.")
+      .def(
+          "__init__",
+          [](GeometricPair* self, const Shape& a, const Shape& b,
+             const std::optional<Matrix4>& X_Aa, const std::optional<Matrix4>& X_Bb) {
+            new (self) GeometricPair{a, b, pose_from(X_Aa, "X_Aa"), pose_from(X_Bb, "X_Bb")};
+          },
+          nb::arg("a"), nb::arg("b"), nb::kw_only(), nb::arg("X_Aa") = nb::none(),
+          nb::arg("X_Bb") = nb::none(),
+          "X_Aa, X_Bb: poses of the solids in their bodies, shape (4, 4)");
+  bind_report(m);
+  nb::class_<ContactModel>(
+      m, "ContactModel",
+      "Geometric pairs x normal law x friction law: the CSA paper's contact model container.")
+      .def(
+          "__init__",
+          [](ContactModel* self, const std::vector<GeometricPair>& pairs, const NormalPtr& normal,
+             const FrictionPtr& friction, bool rolling, double tolerance,
+             const std::string& engine, int threads) {
+            new (self) ContactModel(
+                make_model(pairs, normal, friction, rolling, tolerance, engine, threads));
+          },
+          nb::kw_only(), nb::arg("pairs"), nb::arg("normal"), nb::arg("friction") = nb::none(),
+          nb::arg("rolling") = true, nb::arg("tolerance") = 1e-3, nb::arg("engine") = "auto",
+          nb::arg("threads") = 1)
+      .def_prop_ro("state_size", &ContactModel::state_size, "Doubles of law state")
+      .def("evaluate", &evaluate, nb::kw_only(), nb::arg("X_WA") = nb::none(),
+           nb::arg("X_WB") = nb::none(), nb::arg("V_WA") = nb::none(),
+           nb::arg("V_WB") = nb::none(), nb::arg("state") = nb::none(), nb::arg("elapsed") = 0.0,
+           R"(Wrenches on both bodies from their poses and twists.
+
+Args:
+    X_WA, X_WB: poses of the bodies in the world, shape (4, 4); identity when left out
+    V_WA, V_WB: twists, angular [rad/s] then linear [m/s] of the frame origin, world frame,
+        shape (6,); zero when left out
+    state: law states at the last accepted time, shape (state_size,); zeros when left out
+    elapsed [s]: time since then
+
+Returns:
+    ContactReport: wrenches, sites, energy, dissipated power and the new law states
+
+Raises:
+    ValueError: a pose, twist or state is not what it should be)");
+}
+
+}  // namespace volcontact::python

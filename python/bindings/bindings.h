@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace volcontact::python {
+
+// One function a floor of the core, in floor order.
+void bind_metrics(nanobind::module_& m);
+void bind_shapes(nanobind::module_& m);
+void bind_interference(nanobind::module_& m);
+void bind_laws(nanobind::module_& m);
+void bind_model(nanobind::module_& m);
+
+}  // namespace volcontact::python

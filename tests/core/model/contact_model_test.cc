@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/model/contact_model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "volcontact/force/laws.h"
+
+namespace volcontact {
+namespace {
+
+constexpr double kRounding = 1e-12;
+
+Pose pose(const Vec3& axis_angle, const Vec3& translation) {
+  const double angle = axis_angle.norm();
+  const Vec3 axis = angle > 0.0 ? Vec3(axis_angle / angle) : Vec3::UnitX();
+  return {Eigen::AngleAxisd(angle, axis).toRotationMatrix(), translation};
+}
+
+ContactModel sphere_on_plane(double stiffness, double damping, double friction = 0.3) {
+  return ContactModel({{Sphere({.radius = 0.05}), HalfSpace(), {}, {}}},
+                      {make_normal("hunt_crossley",
+                                   {{"stiffness", {stiffness}}, {"damping", {damping}}}),
+                       make_friction("regularized_coulomb", {{"friction", {friction}}}), true});
+}
+
+ContactModel two_boxes() {
+  return ContactModel(
+      {{Box({.half_sizes = {0.1, 0.2, 0.15}}), Box({.half_sizes = {0.3, 0.1, 0.2}}),
+        pose({0.1, 0.0, 0.3}, {0.01, 0.02, 0.0}), pose({0.0, 0.2, 0.0}, {0.0, 0.0, 0.05})},
+       {Sphere({.radius = 0.12}), Box({.half_sizes = {0.3, 0.1, 0.2}}),
+        pose({0.0, 0.0, 0.0}, {0.0, 0.15, 0.1}), {}}},
+      {make_normal("hunt_crossley", {{"stiffness", {1e7}}, {"damping", {0.2}}}),
+       make_friction("regularized_coulomb", {{"friction", {0.4}}}), true},
+      {.tolerance = 1e-2});
+}
+
+BodyMotion moving() {
+  BodyMotion motion;
+  motion.X_WA = pose({0.2, -0.1, 0.4}, {0.3, 0.1, 0.6});
+  motion.X_WB = pose({-0.1, 0.3, 0.1}, {0.35, 0.3, 0.7});
+  motion.V_WA = {{0.3, -0.7, 1.1}, {0.2, 0.1, -0.4}};
+  motion.V_WB = {{-0.2, 0.4, 0.1}, {0.0, 0.3, 0.2}};
+  return motion;
+}
+
+TEST(ContactModel, ActionEqualsReactionAndMomentsBalance) {
+  ContactModel::Workspace workspace;
+  ContactReport report;
+  const BodyMotion motion = moving();
+  two_boxes().evaluate(motion, {}, workspace, report);
+  ASSERT_TRUE(report.touching());
+  const Wrench& a = report.wrench_on_A;
+  const Wrench& b = report.wrench_on_B;
+  const double scale = a.force.norm();
+  ASSERT_GT(scale, 1.0);
+  EXPECT_NEAR((a.force + b.force).norm(), 0.0, kRounding * scale);
+  const Vec3 moment_W = a.torque + motion.X_WA.translation.cross(a.force) + b.torque +
+                        motion.X_WB.translation.cross(b.force);
+  EXPECT_NEAR(moment_W.norm(), 0.0, kRounding * scale);
+}
+
+TEST(ContactModel, MovingTheWorldTurnsTheWrenches) {
+  ContactModel::Workspace workspace;
+  ContactReport report, moved_report;
+  const BodyMotion motion = moving();
+  const Pose X_VW = pose({1.0, 0.4, -0.7}, {0.4, -0.2, 0.3});
+  const BodyMotion moved{X_VW * motion.X_WA,
+                         X_VW * motion.X_WB,
+                         {X_VW.rotation * motion.V_WA.angular, X_VW.rotation * motion.V_WA.linear},
+                         {X_VW.rotation * motion.V_WB.angular, X_VW.rotation * motion.V_WB.linear}};
+  const ContactModel model = two_boxes();
+  model.evaluate(motion, {}, workspace, report);
+  model.evaluate(moved, {}, workspace, moved_report);
+  // The octree pair may cut other cells after rounding, within its own tolerance.
+  const double allowed = 1e-9 * report.wrench_on_A.force.norm();
+  EXPECT_NEAR((X_VW.rotation * report.wrench_on_A.force - moved_report.wrench_on_A.force).norm(),
+              0.0, allowed);
+  EXPECT_NEAR((X_VW.rotation * report.wrench_on_B.torque - moved_report.wrench_on_B.torque).norm(),
+              0.0, allowed);
+}
+
+TEST(ContactModel, SumsItsPairs) {
+  ContactModel::Workspace workspace;
+  ContactReport both, one;
+  const BodyMotion motion = moving();
+  const ContactModel model = two_boxes();
+  model.evaluate(motion, {}, workspace, both);
+  Vec3 sum = Vec3::Zero();
+  for (const GeometricPair& pair : model.pairs()) {
+    ContactModel({pair}, model.laws(), model.options()).evaluate(motion, {}, workspace, one);
+    sum += one.wrench_on_A.force;
+  }
+  EXPECT_EQ(both.sites.size(), 2u);
+  EXPECT_NEAR((sum - both.wrench_on_A.force).norm(), 0.0, kRounding * sum.norm());
+}
+
+// m = 1 kg, R = 0.05 m, k = 1e8 N/m^3: k pi h^2 (3R - h)/3 = m g has the root h = 0.792364 mm.
+TEST(ContactModel, HoldsAKilogramAtTheClosedFormDepth) {
+  const double depth = 0.792364e-3;
+  BodyMotion motion;
+  motion.X_WA.translation = {0.0, 0.0, 0.05 - depth};
+  ContactModel::Workspace workspace;
+  ContactReport report;
+  sphere_on_plane(1e8, 0.5).evaluate(motion, {}, workspace, report);
+  EXPECT_NEAR(report.wrench_on_A.force.z(), 9.81, 9.81 * 2e-6);  // six digits of depth
+}
+
+// docs/theory.md, "Rolling resistance": -k a X2 w with X2 = int x^2 dV of the cap.
+TEST(ContactModel, RollingSphereFeelsTheSecondMomentOfItsCap) {
+  const double h = 0.792364e-3, R = 0.05, a = 0.5, k = 1e8;
+  BodyMotion motion;
+  motion.X_WA.translation = {0.0, 0.0, R - h};
+  motion.V_WA.angular = {0.0, 20.0, 0.0};
+  ContactModel::Workspace workspace;
+  ContactReport report;
+  const ContactModel frictionless(
+      {{Sphere({.radius = R}), HalfSpace(), {}, {}}},
+      {make_normal("hunt_crossley", {{"stiffness", {k}}, {"damping", {a}}}), nullptr, true});
+  frictionless.evaluate(motion, {}, workspace, report);
+  ASSERT_EQ(report.sites.size(), 1u);
+  const double X2 = kPi * h * h * h * (20 * R * R - 15 * R * h + 3 * h * h) / 60.0;
+  EXPECT_NEAR(report.sites[0].torque_on_A.y() / (-k * a * X2 * 20.0), 1.0, 1e-9);
+  EXPECT_NEAR(report.power.roll / (k * a * X2 * 400.0), 1.0, 1e-9);
+}
+
+// The law of a user with one state per site: an odometer of the elapsed time in contact.
+class ContactClock final : public NormalForce {
+ public:
+  const char* name() const noexcept override { return "contact_clock"; }
+  int state_size() const noexcept override { return 1; }
+  NormalOutput evaluate(const NormalInput& in, const LawState& state) const noexcept override {
+    state.pending[0] = state.committed[0] + state.elapsed;
+    const double force = in.volume * (1.0 + state.committed[0]);
+    return {force, force, 0.0, 0.0};
+  }
+};
+
+TEST(ContactModel, CarriesStateInTheCallersArrayAndClearsItApart) {
+  const ContactModel model({{Sphere({.radius = 1.0}), HalfSpace(), {}, {}}},
+                           {std::make_shared<ContactClock>(), nullptr, true});
+  ASSERT_EQ(model.state_size(), 1);
+  ContactModel::Workspace workspace;
+  ContactReport report;
+  double committed = 2.0, pending = -1.0;
+  model.evaluate({}, {&committed, &pending, 0.5}, workspace, report);
+  EXPECT_DOUBLE_EQ(pending, 2.5);
+  EXPECT_DOUBLE_EQ(report.wrench_on_A.force.z(), 3.0 * report.sites[0].metrics.volume);
+  BodyMotion apart;
+  apart.X_WA.translation.z() = 5.0;
+  model.evaluate(apart, {&committed, &pending, 0.5}, workspace, report);
+  EXPECT_EQ(pending, 0.0);
+  EXPECT_FALSE(report.touching());
+}
+
+// Sphere dropped obliquely with spin: kinetic + potential + elastic + dissipated stays put.
+TEST(ContactModel, BooksEveryJoule) {
+  const double mass = 1.0, radius = 0.05, g = 9.81, inertia = 0.4 * mass * radius * radius;
+  const ContactModel model = sphere_on_plane(1e8, 0.3);
+  ContactModel::Workspace workspace;
+  ContactReport report;
+  BodyMotion motion;
+  motion.X_WA.translation = {0.0, 0.0, 0.08};
+  motion.V_WA = {{5.0, -8.0, 30.0}, {0.6, 0.2, -1.0}};
+  const auto mechanical = [&] {
+    return 0.5 * mass * motion.V_WA.linear.squaredNorm() +
+           0.5 * inertia * motion.V_WA.angular.squaredNorm() +
+           mass * g * motion.X_WA.translation.z();
+  };
+  const double start = mechanical();
+  double dissipated = 0.0;
+  const double dt = 1e-6;
+  for (int i = 0; i < 100000; ++i) {  // leapfrog, 0.1 s: falls, slides, bounces, leaves
+    motion.X_WA.translation += 0.5 * dt * motion.V_WA.linear;
+    model.evaluate(motion, {}, workspace, report);
+    dissipated += dt * report.power.sum();
+    motion.V_WA.linear += dt * (report.wrench_on_A.force / mass - Vec3(0.0, 0.0, g));
+    motion.V_WA.angular += dt / inertia * report.wrench_on_A.torque;
+    motion.X_WA.translation += 0.5 * dt * motion.V_WA.linear;
+  }
+  model.evaluate(motion, {}, workspace, report);
+  EXPECT_GT(dissipated, 0.05 * start);
+  EXPECT_NEAR((mechanical() + report.elastic_energy + dissipated) / start, 1.0, 1e-5);
+}
+
+TEST(ContactModel, RefusesNoPairsNoLawAndAnEngineThatDoesNotServe) {
+  EXPECT_THROW(ContactModel({}, {make_normal("hunt_crossley", {}), nullptr, true}),
+               std::invalid_argument);
+  EXPECT_THROW(ContactModel({{Sphere({.radius = 1.0}), HalfSpace(), {}, {}}}, {}),
+               std::invalid_argument);
+  EXPECT_THROW(ContactModel({{Sphere({.radius = 1.0}), HalfSpace(), {}, {}}},
+                            {make_normal("hunt_crossley", {}), nullptr, true},
+                            {.engine = Engine::kClip}),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace volcontact
