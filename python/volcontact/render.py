@@ -1,0 +1,311 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Off-screen pictures of a scene with its contact sites, on every MuJoCo release.
+
+MuJoCo 2.2 has no `mujoco.Renderer`, so this draws through the calls all releases share. EGL gives
+the OpenGL context: no window, no display and no GPU are needed.
+"""
+
+from __future__ import annotations
+
+import atexit
+import copy
+import functools
+import os
+import weakref
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from volcontact._mujoco_views import dense
+
+_PACKAGES = "libegl1 libgl1 libgl1-mesa-dri"
+_MAX_GEOMS = 10_000
+_SHADOW_SIZE = 2048
+_BODY_OPACITY = 0.35  # moving bodies while sites are drawn, so that the sites inside are seen
+_ARROW_FULL = 0.45  # length of the arrow of the reference force, in scene extents
+_ARROW_MAX = 1.0  # longest arrow, in scene extents
+_POINT_RADIUS = 0.012  # disc of a contact that has no area, in scene extents
+_DISC_THICKNESS = 0.003  # in scene extents; more than the usual penetration
+_ARROW_RADIUS = 0.007  # in scene extents
+_HORIZON = (236, 240, 244)  # background of a scene without sky, RGB
+_ZENITH = (202, 212, 222)
+_SITE_EMISSION = 0.5  # sites keep their colour in the shade
+_SMALLEST_ARROW = 0.02  # shorter ones are not drawn, in scene extents
+
+
+class RenderError(RuntimeError):
+    """No picture can be drawn on this machine: the message says what to install."""
+
+
+@dataclass(frozen=True)
+class View:
+    """A free camera: where it looks at, from how far and from which side.
+
+    Attributes:
+        lookat: [m], world.
+        distance: [m].
+        azimuth: [degree].
+        elevation: [degree], negative looks down.
+    """
+
+    lookat: tuple[float, float, float]
+    distance: float
+    azimuth: float = 135.0
+    elevation: float = -22.0
+
+
+@dataclass(frozen=True)
+class SiteStyle:
+    """How contact sites are drawn.
+
+    Attributes:
+        color: (red, green, blue), each 0 to 1.
+        reference_force: the force whose arrow has the full length [N]; lengths grow with the square
+            root of the force, so that a resting load stays visible beside an impact.
+    """
+
+    color: tuple[float, float, float]
+    reference_force: float
+
+
+class Renderer:
+    """Draws states of one model into arrays. Use as a context manager, or call `close`.
+
+    Args:
+        model: the model to draw; a private copy is kept.
+        width: of the picture [pixel].
+        height: of the picture [pixel].
+
+    Raises:
+        RenderError: the machine has no headless OpenGL.
+    """
+
+    def __init__(self, model: mujoco.MjModel, *, width: int = 640, height: int = 480) -> None:
+        if width < 1 or height < 1:
+            raise ValueError(f"picture size {width} x {height} must be positive")
+        self._model = _drawable(model, width, height)
+        self._data = mujoco.MjData(self._model)
+        self._extent = float(self._model.stat.extent)
+        self._has_sky = int(mujoco.mjtTexture.mjTEXTURE_SKYBOX) in self._model.tex_type
+        self._viewport = mujoco.MjrRect(0, 0, width, height)
+        self._option = mujoco.MjvOption()
+        self._camera = mujoco.MjvCamera()
+        self._look_from(default_view(model))
+        self._gl: Any = _gl_context(width, height)
+        self._context: Any = None
+        try:
+            self._gl.make_current()
+            self._scene = mujoco.MjvScene(self._model, maxgeom=_MAX_GEOMS)
+            font = int(mujoco.mjtFontScale.mjFONTSCALE_100)
+            self._context = mujoco.MjrContext(self._model, font)
+            mujoco.mjr_setBuffer(int(mujoco.mjtFramebuffer.mjFB_OFFSCREEN), self._context)
+        except (mujoco.FatalError, RuntimeError) as error:
+            self.close()
+            raise _no_gl(error) from error
+        _open_renderers.add(self)
+        _close_all_at_exit()
+
+    def draw(
+        self,
+        qpos: np.ndarray,
+        *,
+        sites: np.ndarray | None = None,
+        style: SiteStyle | None = None,
+        view: View | None = None,
+    ) -> np.ndarray:
+        """Draws one state.
+
+        Args:
+            qpos: shape (nq,).
+            sites: structured array of `volcontact.simulation.SITE`; drawn as patch discs and force
+                arrows, with the moving bodies translucent. The arrow shows the force on the body
+                that moves.
+            style: of the sites; needed with `sites`.
+            view: camera; the last one, or the default, when None.
+
+        Returns:
+            Picture, shape (height, width, 3), uint8.
+        """
+        if self._context is None:
+            raise RenderError("the renderer is closed")
+        if view is not None:
+            self._look_from(view)
+        self._gl.make_current()
+        self._data.qpos[:] = qpos
+        mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_comPos(self._model, self._data)
+        mujoco.mj_camlight(self._model, self._data)
+        mujoco.mjv_updateScene(
+            self._model,
+            self._data,
+            self._option,
+            None,
+            self._camera,
+            int(mujoco.mjtCatBit.mjCAT_ALL),
+            self._scene,
+        )
+        # A solid shadow of a body that is seen through would hide the sites below it.
+        see_through = sites is not None and style is not None
+        dense(self._scene.flags)[int(mujoco.mjtRndFlag.mjRND_SHADOW)] = not see_through
+        if sites is not None and style is not None:
+            self._fade_moving_bodies()
+            for site in sites:
+                self._add_site(site, style)
+        mujoco.mjr_render(self._viewport, self._scene, self._context)
+        return self._pixels()
+
+    def close(self) -> None:
+        """Frees the OpenGL context. May be called twice."""
+        _open_renderers.discard(self)
+        context, self._context = self._context, None
+        gl, self._gl = self._gl, None
+        if context is not None:
+            gl.make_current()
+            context.free()
+        if gl is not None:
+            gl.free()
+
+    def __enter__(self) -> Renderer:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _look_from(self, view: View) -> None:
+        self._camera.type = int(mujoco.mjtCamera.mjCAMERA_FREE)
+        dense(self._camera.lookat)[:] = view.lookat
+        self._camera.distance = view.distance
+        self._camera.azimuth = view.azimuth
+        self._camera.elevation = view.elevation
+
+    def _pixels(self) -> np.ndarray:
+        shape = (self._viewport.height, self._viewport.width)
+        rgb = np.empty((*shape, 3), np.uint8)
+        depth = np.empty(shape, np.float32)
+        mujoco.mjr_readPixels(rgb, depth, self._viewport, self._context)
+        if not self._has_sky:
+            nothing = depth >= 1.0
+            rgb[nothing] = _background(shape)[nothing]
+        return np.flipud(rgb).copy()
+
+    def _fade_moving_bodies(self) -> None:
+        moving = int(mujoco.mjtCatBit.mjCAT_DYNAMIC)
+        for i in range(self._scene.ngeom):
+            geom = self._scene.geoms[i]
+            if geom.category == moving:
+                dense(geom.rgba)[3] *= _BODY_OPACITY
+
+    def _add_site(self, site: np.void, style: SiteStyle) -> None:
+        extent = self._extent
+        radius = np.sqrt(site["area"] / np.pi) or _POINT_RADIUS * extent
+        disc = np.array([radius, _DISC_THICKNESS * extent, 0.0])
+        frame = _frame_along(site["normal"])
+        kinds = mujoco.mjtGeom
+        self._add_geom(kinds.mjGEOM_CYLINDER, disc, site["position"], frame, (*style.color, 0.85))
+        force = site["force"] if self._moves(site["geom_a"]) else -site["force"]
+        magnitude = float(np.linalg.norm(force))
+        length = _ARROW_FULL * extent * np.sqrt(magnitude / style.reference_force)
+        if length < _SMALLEST_ARROW * extent:
+            return
+        length = min(length, _ARROW_MAX * extent)
+        thick = _ARROW_RADIUS * extent
+        arrow = np.array([thick, thick, length])
+        frame = _frame_along(force)
+        self._add_geom(kinds.mjGEOM_ARROW, arrow, site["position"], frame, (*style.color, 1.0))
+
+    def _moves(self, geom: int) -> bool:
+        return bool(self._model.body_weldid[self._model.geom_bodyid[geom]] != 0)
+
+    def _add_geom(
+        self,
+        kind: mujoco.mjtGeom,
+        size: np.ndarray,
+        position: np.ndarray,
+        frame: np.ndarray,
+        color: tuple[float, ...],
+    ) -> None:
+        if self._scene.ngeom >= self._scene.maxgeom:
+            return
+        geom = self._scene.geoms[self._scene.ngeom]
+        mujoco.mjv_initGeom(
+            geom,
+            int(kind),
+            np.asarray(size, np.float64),
+            np.asarray(position, np.float64),
+            np.asarray(frame, np.float64).reshape(9),
+            np.asarray(color, np.float32),
+        )
+        geom.emission = _SITE_EMISSION
+        self._scene.ngeom += 1
+
+
+def default_view(model: mujoco.MjModel) -> View:
+    """A view of the whole scene, the same on every MuJoCo release."""
+    x, y, z = (float(c) for c in dense(model.stat.center))
+    return View(lookat=(x, y, z), distance=1.5 * float(model.stat.extent))
+
+
+def _drawable(model: mujoco.MjModel, width: int, height: int) -> mujoco.MjModel:
+    """A copy with an off-screen buffer of the right size and shadows that a CPU draws quickly."""
+    model = copy.copy(model)
+    model.vis.global_.offwidth = max(width, model.vis.global_.offwidth)
+    model.vis.global_.offheight = max(height, model.vis.global_.offheight)
+    model.vis.quality.shadowsize = min(_SHADOW_SIZE, model.vis.quality.shadowsize)
+    return model
+
+
+def _background(shape: tuple[int, int]) -> np.ndarray:
+    """What is seen where there is nothing, bottom row first: a pale vertical gradient."""
+    bottom, top = np.array(_HORIZON), np.array(_ZENITH)
+    blend = np.linspace(0.0, 1.0, shape[0])[:, None, None]
+    rows = (1.0 - blend) * bottom + blend * top
+    return np.broadcast_to(rows.astype(np.uint8), (*shape, 3))
+
+
+def _frame_along(direction: np.ndarray) -> np.ndarray:
+    """A rotation matrix whose third column is along `direction`, shape (3, 3)."""
+    z = direction / np.linalg.norm(direction)
+    helper = np.eye(3)[np.argmin(np.abs(z))]
+    x = np.cross(helper, z)
+    x /= np.linalg.norm(x)
+    return np.column_stack([x, np.cross(z, x), z])
+
+
+def _gl_context(width: int, height: int) -> Any:
+    """An OpenGL context from EGL, or from what MUJOCO_GL asks for."""
+    try:
+        if os.environ.get("MUJOCO_GL", "").lower() in ("glfw", "osmesa"):
+            return mujoco.GLContext(width, height)
+        from mujoco.egl import GLContext
+
+        return GLContext(width, height)
+    except Exception as error:  # the bindings raise anything from OSError to AttributeError here
+        raise _no_gl(error) from error
+
+
+def _no_gl(error: BaseException) -> RenderError:
+    reason = (str(error).strip().splitlines() or [type(error).__name__])[0]
+    return RenderError(
+        f"no headless OpenGL on this machine ({reason}); "
+        f"install it with: apt-get install {_PACKAGES}"
+    )
+
+
+_open_renderers: weakref.WeakSet[Renderer] = weakref.WeakSet()
+
+
+@functools.cache
+def _close_all_at_exit() -> None:
+    """Frees forgotten contexts before EGL itself shuts down, which prints errors otherwise.
+
+    Exit functions run last in, first out, so this must be registered after EGL's own.
+    """
+    atexit.register(lambda: [renderer.close() for renderer in list(_open_renderers)])

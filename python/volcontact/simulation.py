@@ -1,0 +1,440 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs a scene under volumetric or native contact and records what happened.
+
+Row i of a recording belongs to one instant: the state, the energies and the contact sites are all
+those of `time[i]`, at the beginning of step i. The last row is the state after the last step.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import copy
+import os
+import time as clock
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, Protocol
+
+import mujoco
+import numpy as np
+
+from volcontact import scene as volumetric_scene
+from volcontact._mujoco_views import dense
+
+ContactKind = Literal["volumetric", "native"]
+Progress = Callable[[int, int], None]
+
+CHANNELS = ("normal", "roll", "slide", "spin")
+
+SITE = np.dtype(
+    [
+        ("geom_a", "i4"),
+        ("geom_b", "i4"),
+        ("position", "f8", (3,)),  # centroid of the patch, or MuJoCo's contact point [m], world
+        ("normal", "f8", (3,)),  # on a, from b to a [-]
+        ("force", "f8", (3,)),  # total force on a [N], world
+        ("area", "f8"),  # projected patch [m^2]; 0 for a native contact, which is a point
+        ("depth", "f8"),  # penetration along the normal [m]
+        ("volume", "f8"),  # interference volume [m^3]; 0 for a native contact
+    ]
+)
+
+# A state with one of these is worthless: MuJoCo resets the data and starts again at time 0.
+_FATAL_WARNINGS = tuple(
+    int(getattr(mujoco.mjtWarning, f"mjWARN_{name}")) for name in ("BADQPOS", "BADQVEL", "BADQACC")
+)
+_PROGRESS_CALLS = 200
+
+
+class SimulationError(ValueError):
+    """A scene that cannot be run: the message is one line and says what to change."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One instant to draw: the full position state and the contact sites.
+
+    Attributes:
+        row: index into the arrays of the recording.
+        time: [s].
+        sites: structured array of `SITE`, one row a contact site.
+    """
+
+    row: int
+    time: float
+    sites: np.ndarray
+
+
+@dataclass(frozen=True)
+class Recording:
+    """What one run left. Arrays have one row per instant, n = steps + 1.
+
+    Attributes:
+        contact: "volumetric" or "native".
+        timestep: [s].
+        bodies: names of the bodies followed: those with a free joint, else all that can move.
+        time: [s], shape (n,).
+        qpos: shape (n, nq).
+        qvel: shape (n, nv).
+        position: of the body frames [m], world, shape (n, bodies, 3).
+        quaternion: of the body frames (w, x, y, z), shape (n, bodies, 4).
+        speed: of the body frames' origins [m/s], shape (n, bodies).
+        spin: angular speed of the bodies [rad/s], shape (n, bodies).
+        kinetic: [J], shape (n,).
+        potential: gravity and springs of the model, as MuJoCo counts them [J], shape (n,).
+        elastic: stored in the contact [J], shape (n,); 0 under native contact, which has no such
+            quantity.
+        dissipated: by the contact since the start [J], shape (n, 4), columns `CHANNELS`.
+        contact_force: sum over the sites of the magnitude of their force [N], shape (n,).
+        largest_site_force: [N], shape (n,).
+        site_count: shape (n,).
+        penetration: deepest site [m], shape (n,).
+        step_microseconds: wall time of each mj_step alone [us], shape (n - 1,).
+        warnings: MuJoCo's warning counters that are not 0, by name.
+        stopped: why the run ended early, or None.
+        frames: the instants to draw.
+        description: what volcontact understood of the scene; {} under native contact.
+        weight: of all that moves [N]; 0 without gravity.
+    """
+
+    contact: ContactKind
+    timestep: float
+    bodies: tuple[str, ...]
+    time: np.ndarray
+    qpos: np.ndarray
+    qvel: np.ndarray
+    position: np.ndarray
+    quaternion: np.ndarray
+    speed: np.ndarray
+    spin: np.ndarray
+    kinetic: np.ndarray
+    potential: np.ndarray
+    elastic: np.ndarray
+    dissipated: np.ndarray
+    contact_force: np.ndarray
+    largest_site_force: np.ndarray
+    site_count: np.ndarray
+    penetration: np.ndarray
+    step_microseconds: np.ndarray
+    warnings: dict[str, int]
+    stopped: str | None
+    frames: tuple[Frame, ...]
+    description: dict[str, Any]
+    weight: float
+
+    @property
+    def steps(self) -> int:
+        """Number of steps done."""
+        return len(self.time) - 1
+
+    @property
+    def height(self) -> np.ndarray:
+        """World z of the body frames [m], shape (n, bodies)."""
+        return self.position[:, :, 2]
+
+    @property
+    def energy(self) -> np.ndarray:
+        """Mechanical energy: kinetic, potential and stored in the contact [J], shape (n,)."""
+        return self.kinetic + self.potential + self.elastic
+
+    @property
+    def microseconds_per_step(self) -> float:
+        """Median wall time of one mj_step [us]; the median ignores what else the machine did."""
+        return float(np.median(self.step_microseconds)) if self.steps else 0.0
+
+
+def simulate(
+    scene: str | os.PathLike[str] | mujoco.MjModel,
+    *,
+    contact: ContactKind = "volumetric",
+    duration: float,
+    timestep: float | None = None,
+    frame_interval: float | None = 0.2,
+    progress: Progress | None = None,
+) -> Recording:
+    """Steps a scene for a while and records it.
+
+    Args:
+        scene: path of an MJCF file, MJCF text, or a model (which is not changed).
+        contact: "volumetric" (volcontact) or "native" (MuJoCo's own).
+        duration: [s].
+        timestep: [s]; None takes the scene's.
+        frame_interval: time between two frames to draw [s]; None records no frames.
+        progress: called now and then with (steps done, steps in all).
+
+    Returns:
+        The recording; check `warnings` and `stopped`.
+
+    Raises:
+        SimulationError: duration, timestep, interval or kind of contact out of range.
+        ValueError: the scene cannot be read or understood.
+    """
+    model = _model_to_run(scene, contact, timestep)
+    step = float(model.opt.timestep)
+    if not (np.isfinite(duration) and duration >= step):
+        raise SimulationError(f"duration {duration:g} s must be at least one timestep ({step:g} s)")
+    if frame_interval is not None and not frame_interval > 0.0:
+        raise SimulationError(f"frame interval {frame_interval:g} s must be positive")
+    steps = round(duration / step)
+    data = mujoco.MjData(model)
+    with _probe(contact, model) as probe:
+        recorder = _Recorder(model, probe, steps, frame_interval)
+        every = max(1, steps // _PROGRESS_CALLS)
+        for i in range(steps):
+            recorder.step(data)
+            if progress is not None and (i + 1) % every == 0:
+                progress(i + 1, steps)
+            if recorder.stopped is not None:
+                break
+        recorder.finish(data)
+        if progress is not None:
+            progress(steps, steps)
+        return recorder.recording(contact, probe.description)
+
+
+def warnings_of(data: mujoco.MjData) -> dict[str, int]:
+    """MuJoCo's warning counters that are not 0, by name (without the mjWARN_ prefix)."""
+    kinds = {
+        int(getattr(mujoco.mjtWarning, name)): name[len("mjWARN_") :]
+        for name in dir(mujoco.mjtWarning)
+        if name.startswith("mjWARN_")
+    }
+    counts = {kinds.get(i, f"warning {i}"): int(w.number) for i, w in enumerate(data.warning)}
+    return {name: count for name, count in counts.items() if count}
+
+
+def _model_to_run(
+    scene: str | os.PathLike[str] | mujoco.MjModel, contact: ContactKind, timestep: float | None
+) -> mujoco.MjModel:
+    if contact not in ("volumetric", "native"):
+        raise SimulationError(f"contact {contact!r} must be 'volumetric' or 'native'")
+    if isinstance(scene, mujoco.MjModel):
+        model = copy.copy(scene)
+    elif contact == "volumetric":
+        model = volumetric_scene.load(scene)
+    else:
+        model = _native_model(os.fspath(scene))
+    if timestep is not None:
+        if not (np.isfinite(timestep) and timestep > 0.0):
+            raise SimulationError(f"timestep {timestep:g} s must be positive")
+        model.opt.timestep = timestep
+    # MuJoCo then evaluates both energies inside the step, at the state the step began with.
+    model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
+    return model
+
+
+def _native_model(scene: str) -> mujoco.MjModel:
+    if scene.lstrip().startswith("<"):
+        return mujoco.MjModel.from_xml_string(scene)
+    if not Path(scene).is_file():
+        raise SimulationError(f"no such scene: {scene}")
+    return mujoco.MjModel.from_xml_path(scene)
+
+
+class _Probe(Protocol):
+    """Reads contact sites and contact energy of the last evaluation."""
+
+    description: dict[str, Any]
+
+    def sites(self, data: mujoco.MjData) -> np.ndarray: ...
+
+    def energy(self, data: mujoco.MjData) -> tuple[float, tuple[float, ...]]: ...
+
+
+@contextlib.contextmanager
+def _probe(contact: ContactKind, model: mujoco.MjModel) -> Iterator[_Probe]:
+    if contact == "native":
+        yield _NativeProbe(model)
+        return
+    with volumetric_scene.attach(model) as attached:
+        yield _VolumetricProbe(attached)
+
+
+class _VolumetricProbe:
+    def __init__(self, contact: Any) -> None:
+        self._contact = contact
+        self.description: dict[str, Any] = dict(contact.description)
+
+    def sites(self, data: mujoco.MjData) -> np.ndarray:
+        found = self._contact.sites(data)
+        sites = np.zeros(len(found), SITE)
+        for name in ("geom_a", "geom_b", "normal", "force", "area", "depth", "volume"):
+            sites[name] = found[name]
+        sites["position"] = found["centroid"]
+        return sites
+
+    def energy(self, data: mujoco.MjData) -> tuple[float, tuple[float, ...]]:
+        energy = self._contact.energy(data)
+        return energy.elastic, tuple(energy.by_channel)
+
+
+class _NativeProbe:
+    def __init__(self, model: mujoco.MjModel) -> None:
+        self._model = model
+        self.description: dict[str, Any] = {}
+
+    def sites(self, data: mujoco.MjData) -> np.ndarray:
+        n = data.ncon
+        sites = np.zeros(n, SITE)
+        if n == 0:
+            return sites
+        contact = data.contact
+        frames = contact.frame[:n].reshape(n, 3, 3)  # rows are axes; the first is the normal
+        wrench = np.zeros(6)
+        in_frame = np.zeros((n, 3))
+        for i in range(n):
+            mujoco.mj_contactForce(self._model, data, i, wrench)
+            in_frame[i] = wrench[:3]
+        sites["geom_a"] = contact.geom1[:n]
+        sites["geom_b"] = contact.geom2[:n]
+        sites["position"] = contact.pos[:n]
+        # MuJoCo's normal points from geom 1 to geom 2 and its force is the one on geom 2.
+        sites["normal"] = -frames[:, 0]
+        sites["force"] = -np.einsum("nij,ni->nj", frames, in_frame)
+        sites["depth"] = np.maximum(-contact.dist[:n], 0.0)
+        # Inside its margin MuJoCo lists a contact that does not push yet: that is no contact.
+        return sites[(sites["depth"] > 0.0) | np.any(in_frame != 0.0, axis=1)]
+
+    def energy(self, data: mujoco.MjData) -> tuple[float, tuple[float, ...]]:
+        del data
+        return 0.0, (0.0,) * len(CHANNELS)
+
+
+class _Recorder:
+    """Arrays of one run, filled row by row."""
+
+    def __init__(
+        self, model: mujoco.MjModel, probe: _Probe, steps: int, frame_interval: float | None
+    ) -> None:
+        self._model = model
+        self._probe = probe
+        self._ids = _bodies_followed(model)
+        rows, bodies = steps + 1, len(self._ids)
+        self._rows = 0
+        self._time = np.zeros(rows)
+        self._qpos = np.zeros((rows, model.nq))
+        self._qvel = np.zeros((rows, model.nv))
+        self._position = np.zeros((rows, bodies, 3))
+        self._quaternion = np.zeros((rows, bodies, 4))
+        self._speed = np.zeros((rows, bodies))
+        self._spin = np.zeros((rows, bodies))
+        self._energies = np.zeros((rows, 3))  # kinetic, potential, elastic
+        self._dissipated = np.zeros((rows, len(CHANNELS)))
+        self._contact = np.zeros((rows, 4))  # sum and largest of forces, count, depth
+        self._microseconds = np.zeros(steps)
+        self._frames: list[Frame] = []
+        self._frame_rows = _frame_rows(steps, float(model.opt.timestep), frame_interval)
+        self._warnings: dict[str, int] = {}
+        # The last stage of Runge-Kutta is not the state the step began with, so ask for that one.
+        self._evaluate_first = model.opt.integrator == int(mujoco.mjtIntegrator.mjINT_RK4)
+        self.stopped: str | None = None
+
+    def step(self, data: mujoco.MjData) -> None:
+        """Takes one step, times it, and records the state it began with."""
+        row = self._rows
+        self._keep_state(row, data)
+        if self._evaluate_first:
+            mujoco.mj_forward(self._model, data)
+            self._keep_evaluation(row, data)
+        begin = clock.perf_counter_ns()
+        mujoco.mj_step(self._model, data)
+        self._microseconds[row] = 1e-3 * (clock.perf_counter_ns() - begin)
+        if any(data.warning[i].number for i in _FATAL_WARNINGS):
+            self._stop(data, row)
+            return
+        if not self._evaluate_first:
+            self._keep_evaluation(row, data)
+        self._rows += 1
+
+    def finish(self, data: mujoco.MjData) -> None:
+        """Records the state after the last step."""
+        self._warnings = warnings_of(data)
+        if self.stopped is None:
+            self._keep_state(self._rows, data)
+            mujoco.mj_forward(self._model, data)
+            self._keep_evaluation(self._rows, data)
+            self._rows += 1
+
+    def recording(self, contact: ContactKind, description: dict[str, Any]) -> Recording:
+        """Packs what was recorded."""
+        n = self._rows
+        kinetic, potential, elastic = self._energies[:n].T
+        total, largest, count, depth = self._contact[:n].T
+        gravity = np.linalg.norm(self._model.opt.gravity)
+        return Recording(
+            contact=contact,
+            timestep=float(self._model.opt.timestep),
+            bodies=tuple(_body_name(self._model, i) for i in self._ids),
+            time=self._time[:n],
+            qpos=self._qpos[:n],
+            qvel=self._qvel[:n],
+            position=self._position[:n],
+            quaternion=self._quaternion[:n],
+            speed=self._speed[:n],
+            spin=self._spin[:n],
+            kinetic=kinetic,
+            potential=potential,
+            elastic=elastic,
+            dissipated=self._dissipated[:n],
+            contact_force=total,
+            largest_site_force=largest,
+            site_count=count.astype(np.int64),
+            penetration=depth,
+            step_microseconds=self._microseconds[: max(n - 1, 0)],
+            warnings=self._warnings,
+            stopped=self.stopped,
+            frames=tuple(self._frames),
+            description=description,
+            weight=float(gravity * self._model.body_mass[self._model.body_weldid != 0].sum()),
+        )
+
+    def _stop(self, data: mujoco.MjData, row: int) -> None:
+        names = ", ".join(warnings_of(data))
+        self.stopped = f"the state became unusable at t = {self._time[row]:.4g} s ({names})"
+
+    def _keep_state(self, row: int, data: mujoco.MjData) -> None:
+        self._time[row] = data.time
+        self._qpos[row] = data.qpos
+        self._qvel[row] = data.qvel
+
+    def _keep_evaluation(self, row: int, data: mujoco.MjData) -> None:
+        self._position[row] = data.xpos[self._ids]
+        self._quaternion[row] = data.xquat[self._ids]
+        velocity = np.zeros(6)
+        for i, body in enumerate(self._ids):
+            kind = int(mujoco.mjtObj.mjOBJ_XBODY)
+            mujoco.mj_objectVelocity(self._model, data, kind, body, velocity, 0)
+            self._spin[row, i] = np.linalg.norm(velocity[:3])
+            self._speed[row, i] = np.linalg.norm(velocity[3:])
+        elastic, by_channel = self._probe.energy(data)
+        potential, kinetic = dense(data.energy)
+        self._energies[row] = kinetic, potential, elastic
+        self._dissipated[row] = by_channel
+        sites = self._probe.sites(data)
+        if len(sites):
+            forces = np.linalg.norm(sites["force"], axis=1)
+            depth = sites["depth"].max()
+            self._contact[row] = forces.sum(), forces.max(), len(sites), depth
+        if row in self._frame_rows:
+            self._frames.append(Frame(row=row, time=float(self._time[row]), sites=sites))
+
+
+def _bodies_followed(model: mujoco.MjModel) -> list[int]:
+    free = [
+        int(model.jnt_bodyid[j])
+        for j in range(model.njnt)
+        if model.jnt_type[j] == int(mujoco.mjtJoint.mjJNT_FREE)
+    ]
+    return free or [b for b in range(1, model.nbody) if model.body_dofnum[b] > 0]
+
+
+def _body_name(model: mujoco.MjModel, body: int) -> str:
+    return mujoco.mj_id2name(model, int(mujoco.mjtObj.mjOBJ_BODY), body) or f"body {body}"
+
+
+def _frame_rows(steps: int, timestep: float, interval: float | None) -> frozenset[int]:
+    if interval is None:
+        return frozenset()
+    count = int(np.floor(steps * timestep / interval + 1e-9)) + 1
+    return frozenset(min(steps, round(k * interval / timestep)) for k in range(count))
