@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: Apache-2.0
+
+# Warnings, visibility and language level of every target of ours; third-party targets keep theirs.
+function(volcontact_target name)
+  target_compile_features(${name} PUBLIC cxx_std_20)
+  target_compile_options(${name} PRIVATE -Wall -Wextra -Wshadow -Wpedantic)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # GCC's guess depends on what it inlined and is often wrong; -Wuninitialized, its sure form, stays.
+    target_compile_options(${name} PRIVATE -Wno-maybe-uninitialized)
+  endif()
+  set_target_properties(${name} PROPERTIES
+    CXX_EXTENSIONS OFF
+    CXX_VISIBILITY_PRESET hidden
+    VISIBILITY_INLINES_HIDDEN ON
+    POSITION_INDEPENDENT_CODE ON
+    COMPILE_WARNING_AS_ERROR ${VOLCONTACT_WARNINGS_AS_ERRORS})
+endfunction()
