@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every scene of mjcf_models runs without a MuJoCo warning and meets its expected.json."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+import pytest
+
+import volcontact as vc
+
+MODELS = Path(__file__).parents[2] / "mjcf_models"
+
+
+def scenes() -> list[Any]:
+    found = []
+    for file in sorted(MODELS.glob("*/expected.json")):
+        for name, expected in json.loads(file.read_text())["scenes"].items():
+            for timestep in expected["timesteps"]:
+                scene = file.parent / name
+                label = f"{file.parent.name}/{name}-{timestep}"
+                found.append(pytest.param(scene, expected, timestep, id=label))
+    return found
+
+
+@dataclass
+class Run:
+    """What the end of a run looks like."""
+
+    model: mujoco.MjModel
+    data: mujoco.MjData
+    sites: np.ndarray
+    peak_sites: int = 0
+    warnings: list[str] = field(default_factory=list)
+
+
+def run(scene: Path, duration: float, timestep: float) -> Run:
+    model = vc.load(str(scene))
+    model.opt.timestep = timestep
+    data = mujoco.MjData(model)
+    with vc.attach(model) as contact:
+        peak = 0
+        for step in range(round(duration / timestep)):
+            mujoco.mj_step(model, data)
+            if step % 5 == 0:
+                peak = max(peak, len(contact.sites(data)))
+        assert data.time == pytest.approx(duration)
+        mujoco.mj_forward(model, data)
+        result = Run(model, data, contact.sites(data).copy(), peak)
+    for kind in range(len(data.warning)):
+        if data.warning[kind].number:
+            result.warnings.append(str(mujoco.mjtWarning(kind)))
+    return result
+
+
+def tilt_degrees(quaternion: np.ndarray, design: list[float]) -> float:
+    return math.degrees(2 * math.acos(min(1.0, abs(float(np.dot(quaternion, design))))))
+
+
+@pytest.mark.parametrize(("scene", "expected", "timestep"), scenes())
+def test_scene_meets_its_numbers(scene: Path, expected: dict[str, Any], timestep: float) -> None:
+    result = run(scene, expected["duration"], timestep)
+    assert result.warnings == []
+    assert np.isfinite(result.data.qpos).all()
+    assert np.abs(result.data.cvel).max() < expected["speed_tolerance"]
+    if "minimum_peak_sites" in expected:
+        assert result.peak_sites >= expected["minimum_peak_sites"]
+    if "final_sites" in expected:
+        assert len(result.sites) == expected["final_sites"]
+    if "design_position" in expected:
+        check_design_pose(result, expected)
+    if "depth" in expected:
+        depth = expected["touching_height"] - result.data.body(expected["body"]).xpos[2]
+        assert depth == pytest.approx(expected["depth"], rel=expected["depth_relative_tolerance"])
+    if "layer_heights" in expected:
+        check_layers(result, expected)
+
+
+def check_design_pose(result: Run, expected: dict[str, Any]) -> None:
+    body = result.data.body(expected["body"])
+    offset = body.xpos - np.array(expected["design_position"])
+    assert np.linalg.norm(offset) < expected["position_tolerance"]
+    assert tilt_degrees(body.xquat, expected["design_quaternion"]) < (
+        expected["angle_tolerance_degrees"]
+    )
+    assert -offset[2] == pytest.approx(
+        expected["rest_drop"], abs=expected["rest_drop_tolerance"]
+    )
+    # Every run within half the spread of the one equilibrium: all agree within the spread, over
+    # time steps and MuJoCo releases.
+    equilibrium = np.array([0.0, 0.0, -expected["rest_drop"]])
+    assert np.linalg.norm(offset - equilibrium) < 0.5 * expected["final_pose_spread"]
+
+
+def check_layers(result: Run, expected: dict[str, Any]) -> None:
+    bodies = range(1, result.model.nbody)
+    free = [b for b in bodies if result.model.body_jntnum[b]]
+    assert len(free) == expected["bodies"]
+    for height in (result.data.xpos[b][2] for b in free):
+        nearest = min(abs(height - layer) for layer in expected["layer_heights"])
+        assert nearest < expected["layer_height_tolerance"]
+    support = result.model.geom(expected["support_geom"]).id
+    on_a = result.sites[result.sites["geom_a"] == support]["force"][:, 2].sum()
+    on_b = result.sites[result.sites["geom_b"] == support]["force"][:, 2].sum()
+    assert on_b - on_a == pytest.approx(
+        expected["support_force"], rel=expected["support_force_relative_tolerance"]
+    )
+
+
+def test_every_scene_loads_and_runs_in_plain_mujoco() -> None:
+    for scene in sorted(MODELS.glob("*/scene*.xml")):
+        model = mujoco.MjModel.from_xml_path(str(scene))
+        data = mujoco.MjData(model)
+        for _ in range(200):
+            mujoco.mj_step(model, data)
+        assert np.isfinite(data.qpos).all(), scene
+
+
+def test_every_model_folder_is_complete() -> None:
+    table = (MODELS / "README.md").read_text()
+    for folder in sorted(p for p in MODELS.iterdir() if p.is_dir()):
+        for name in ("scene.xml", "README.md", "expected.json"):
+            assert (folder / name).is_file(), f"{folder.name} lacks {name}"
+        assert f"[{folder.name}]" in table, f"mjcf_models/README.md does not list {folder.name}"
