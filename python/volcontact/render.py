@@ -25,8 +25,8 @@ _PACKAGES = "libegl1 libgl1 libgl1-mesa-dri"
 _MAX_GEOMS = 10_000
 _SHADOW_SIZE = 2048
 _BODY_OPACITY = 0.35  # moving bodies while sites are drawn, so that the sites inside are seen
-_ARROW_FULL = 0.45  # length of the arrow of the reference force, in scene extents
-_ARROW_MAX = 1.0  # longest arrow, in scene extents
+_ARROW_FULL = 0.3  # length of the arrow of the reference force, in scene extents
+_ARROW_MAX = 0.8  # longest arrow, in scene extents
 _POINT_RADIUS = 0.012  # disc of a contact that has no area, in scene extents
 _DISC_THICKNESS = 0.003  # in scene extents; more than the usual penetration
 _ARROW_RADIUS = 0.007  # in scene extents
@@ -93,7 +93,7 @@ class Renderer:
         self._viewport = mujoco.MjrRect(0, 0, width, height)
         self._option = mujoco.MjvOption()
         self._camera = mujoco.MjvCamera()
-        self._look_from(default_view(model))
+        self._look_from(None)
         self._gl: Any = _gl_context(width, height)
         self._context: Any = None
         try:
@@ -124,15 +124,14 @@ class Renderer:
                 arrows, with the moving bodies translucent. The arrow shows the force on the body
                 that moves.
             style: of the sites; needed with `sites`.
-            view: camera; the last one, or the default, when None.
+            view: camera; when None the scene's first camera, or one that sees the whole scene.
 
         Returns:
             Picture, shape (height, width, 3), uint8.
         """
         if self._context is None:
             raise RenderError("the renderer is closed")
-        if view is not None:
-            self._look_from(view)
+        self._look_from(view)
         self._gl.make_current()
         self._data.qpos[:] = qpos
         mujoco.mj_kinematics(self._model, self._data)
@@ -179,7 +178,12 @@ class Renderer:
     ) -> None:
         self.close()
 
-    def _look_from(self, view: View) -> None:
+    def _look_from(self, view: View | None) -> None:
+        if view is None and self._model.ncam > 0:
+            self._camera.type = int(mujoco.mjtCamera.mjCAMERA_FIXED)
+            self._camera.fixedcamid = 0
+            return
+        view = view or default_view(self._model)
         self._camera.type = int(mujoco.mjtCamera.mjCAMERA_FREE)
         dense(self._camera.lookat)[:] = view.lookat
         self._camera.distance = view.distance
@@ -217,7 +221,7 @@ class Renderer:
             return
         length = min(length, _ARROW_MAX * extent)
         thick = _ARROW_RADIUS * extent
-        arrow = np.array([thick, thick, length])
+        arrow = np.array([thick, thick, 2.0 * length])  # MuJoCo draws half of this size
         frame = _frame_along(force)
         self._add_geom(kinds.mjGEOM_ARROW, arrow, site["position"], frame, (*style.color, 1.0))
 
@@ -279,7 +283,7 @@ def _frame_along(direction: np.ndarray) -> np.ndarray:
     return np.column_stack([x, np.cross(z, x), z])
 
 
-def _gl_context(width: int, height: int) -> Any:
+def _gl_context(width: int, height: int) -> mujoco.GLContext:
     """An OpenGL context from EGL, or from what MUJOCO_GL asks for."""
     try:
         if os.environ.get("MUJOCO_GL", "").lower() in ("glfw", "osmesa"):
@@ -308,4 +312,9 @@ def _close_all_at_exit() -> None:
 
     Exit functions run last in, first out, so this must be registered after EGL's own.
     """
-    atexit.register(lambda: [renderer.close() for renderer in list(_open_renderers)])
+
+    def close_all() -> None:
+        for renderer in list(_open_renderers):
+            renderer.close()
+
+    atexit.register(close_all)

@@ -131,12 +131,14 @@ class Recording:
     @property
     def height(self) -> np.ndarray:
         """World z of the body frames [m], shape (n, bodies)."""
-        return self.position[:, :, 2]
+        heights: np.ndarray = self.position[:, :, 2]
+        return heights
 
     @property
     def energy(self) -> np.ndarray:
         """Mechanical energy: kinetic, potential and stored in the contact [J], shape (n,)."""
-        return self.kinetic + self.potential + self.elastic
+        energy: np.ndarray = self.kinetic + self.potential + self.elastic
+        return energy
 
     @property
     def microseconds_per_step(self) -> float:
@@ -252,7 +254,7 @@ def _probe(contact: ContactKind, model: mujoco.MjModel) -> Iterator[_Probe]:
 
 
 class _VolumetricProbe:
-    def __init__(self, contact: Any) -> None:
+    def __init__(self, contact: volumetric_scene.Contact) -> None:
         self._contact = contact
         self.description: dict[str, Any] = dict(contact.description)
 
@@ -390,6 +392,9 @@ class _Recorder:
         )
 
     def _stop(self, data: mujoco.MjData, row: int) -> None:
+        if row == 0:  # MuJoCo has gone back to the start, which is the state of this row
+            self._keep_evaluation(row, data)
+            self._rows = 1
         names = ", ".join(warnings_of(data))
         self.stopped = f"the state became unusable at t = {self._time[row]:.4g} s ({names})"
 

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The `volcontact` program: one module per command.
+
+Exit status: 0 all went well, 1 the scene or the request is at fault, 2 wrong usage, 3 it ran and
+MuJoCo warned, 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+
+import mujoco
+
+import volcontact
+from volcontact.cli import check, compare, run
+from volcontact.cli.terminal import Terminal
+
+__all__ = ["main"]
+
+_COMMANDS = (run, compare, check)
+_ERROR, _INTERRUPTED = 1, 130
+
+_EXAMPLES = """\
+examples:
+  volcontact check scene.xml                       what volcontact understands of a scene
+  volcontact run scene.xml --duration 2            step it and say how it ended
+  volcontact compare scene.xml --out report        volumetric beside native contact, with pictures
+"""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Runs the program and returns its exit status."""
+    arguments = _parser().parse_args(argv)
+    terminal = Terminal(json=arguments.json)
+    try:
+        status: int = arguments.execute(arguments, terminal)
+        return status
+    except KeyboardInterrupt:
+        terminal.error("interrupted")
+        return _INTERRUPTED
+    except (ValueError, OSError, RuntimeError, mujoco.FatalError) as error:
+        terminal.error(str(error) or type(error).__name__)
+        return _ERROR
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="volcontact",
+        description="Volumetric contact for MuJoCo scenes.",
+        epilog=_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "--version",
+        action="version",
+        version=f"volcontact {volcontact.__version__} (MuJoCo {mujoco.mj_versionString()})",
+    )
+    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+    for command in _COMMANDS:
+        command.add_to(commands)
+    return parser

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arguments that several commands share, and how their values are read."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Subparsers: TypeAlias = argparse._SubParsersAction[argparse.ArgumentParser]
+
+
+def add_command(
+    commands: Subparsers, name: str, purpose: str, examples: str
+) -> argparse.ArgumentParser:
+    """Adds a command with its help text and examples, the scene and --json."""
+    parser = commands.add_parser(
+        name,
+        help=purpose,
+        description=purpose[0].upper() + purpose[1:] + ".",
+        epilog=f"examples:\n{examples}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("scene", metavar="SCENE", type=scene, help="MJCF file")
+    parser.add_argument("--json", action="store_true", help="print the result as JSON")
+    return parser
+
+
+def add_time(parser: argparse.ArgumentParser, duration: float) -> None:
+    """Adds --duration and --timestep."""
+    parser.add_argument(
+        "--duration",
+        type=positive,
+        default=duration,
+        metavar="S",
+        help="simulated time [s] (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--timestep", type=positive, metavar="S", help="timestep [s] (default: the scene's)"
+    )
+
+
+def scene(text: str) -> str:
+    """Reads the path of a scene."""
+    if not Path(text).is_file():
+        raise argparse.ArgumentTypeError(f"no such file: {text}")
+    return text
+
+
+def positive(text: str) -> float:
+    """Reads a number above 0."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not (math.isfinite(value) and value > 0.0):
+        raise argparse.ArgumentTypeError(f"{text!r} must be a number above 0")
+    return value
+
+
+def pixels(text: str) -> int:
+    """Reads the width or height of a picture."""
+    if not (text.isdecimal() and 16 <= int(text) <= 4096):
+        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number from 16 to 4096")
+    return int(text)

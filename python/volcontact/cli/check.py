@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`volcontact check`: what volcontact understands of a scene, without stepping it."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from rich.table import Table
+
+import volcontact
+from volcontact.cli.arguments import add_command
+from volcontact.cli.terminal import Terminal
+
+if TYPE_CHECKING:
+    from volcontact.cli.arguments import Subparsers
+
+_EXAMPLES = """\
+  volcontact check scene.xml
+  volcontact check scene.xml --json
+"""
+
+
+def add_to(commands: Subparsers) -> None:
+    """Adds the command to the program."""
+    parser = add_command(
+        commands,
+        "check",
+        "print the solids, pairs, materials and options that a scene has under volcontact",
+        _EXAMPLES,
+    )
+    parser.set_defaults(execute=execute)
+
+
+def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
+    """Runs the command and returns the exit status."""
+    from volcontact.report.description import tables
+
+    model = volcontact.load(arguments.scene)
+    with volcontact.attach(model) as contact:
+        description = dict(contact.description)
+    if terminal.json:
+        terminal.result(description)
+        return 0
+    for part in tables(description):
+        table = Table(*part.columns, title=part.title, title_justify="left", title_style="bold")
+        for row in part.rows:
+            table.add_row(*row)
+        terminal.out.print(table, markup=False)
+    for warning in description.get("warnings", ()):
+        terminal.warning(str(warning))
+    return 0

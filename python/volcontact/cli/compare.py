@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`volcontact compare`: volumetric beside native contact, and the report."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import mujoco
+from rich.markup import escape
+from rich.padding import Padding
+from rich.table import Table
+
+import volcontact
+from volcontact.cli.arguments import add_command, add_time, pixels, positive
+from volcontact.cli.status import report_warnings
+from volcontact.cli.terminal import Terminal
+
+if TYPE_CHECKING:
+    from volcontact.cli.arguments import Subparsers
+    from volcontact.render import Renderer
+    from volcontact.report import Comparison
+
+_EXAMPLES = """\
+  volcontact compare scene.xml
+  volcontact compare scene.xml --duration 3 --out report
+  volcontact compare scene.xml --frame-interval 0.1 --width 960 --height 720
+  volcontact compare scene.xml --no-frames --json
+"""
+
+
+def add_to(commands: Subparsers) -> None:
+    """Adds the command to the program."""
+    parser = add_command(
+        commands,
+        "compare",
+        "run a scene under volumetric and under native contact and write a report",
+        _EXAMPLES,
+    )
+    add_time(parser, duration=3.0)
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("volcontact-report"),
+        metavar="DIR",
+        help="folder of the report (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--frame-interval",
+        type=positive,
+        default=0.2,
+        metavar="S",
+        help="simulated time between two pictures [s] (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--width", type=pixels, default=800, metavar="PX", help="of a picture (default: 800)"
+    )
+    parser.add_argument(
+        "--height", type=pixels, default=600, metavar="PX", help="of a picture (default: 600)"
+    )
+    parser.add_argument(
+        "--no-frames", action="store_true", help="leave the pictures out (needs no OpenGL)"
+    )
+    parser.set_defaults(execute=execute)
+
+
+def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
+    """Runs the command and returns the exit status."""
+    from volcontact.report import Comparison, write_report
+    from volcontact.report.design_pose import read_design_pose
+    from volcontact.simulation import simulate
+
+    with contextlib.ExitStack() as stack:
+        design = read_design_pose(arguments.scene)
+        # Before the runs, so that a machine without OpenGL says so at once.
+        renderer = None if arguments.no_frames else stack.enter_context(_renderer(arguments))
+        bars = stack.enter_context(terminal.progress())
+        volumetric, native = (
+            simulate(
+                arguments.scene,
+                contact=contact,
+                duration=arguments.duration,
+                timestep=arguments.timestep,
+                frame_interval=arguments.frame_interval,
+                progress=bars.task(f"{contact} contact"),
+            )
+            for contact in ("volumetric", "native")
+        )
+        comparison = Comparison(
+            scene=arguments.scene,
+            volumetric=volumetric,
+            native=native,
+            design=design,
+            mujoco_version=mujoco.mj_versionString(),
+            volcontact_version=volcontact.__version__,
+        )
+        report = write_report(
+            comparison, arguments.out, renderer=renderer, progress=bars.task("pictures")
+        )
+    if terminal.json:
+        terminal.result({**comparison.summary(), "report": str(report)})
+    else:
+        _print(comparison, report, terminal)
+    return report_warnings(comparison.runs, terminal)
+
+
+def _renderer(arguments: argparse.Namespace) -> Renderer:
+    from volcontact.render import Renderer
+    from volcontact.report.pictures import drawing_model
+
+    model = drawing_model(arguments.scene)
+    return Renderer(model, width=arguments.width, height=arguments.height)
+
+
+def _print(comparison: Comparison, report: Path, terminal: Terminal) -> None:
+    from volcontact.report.findings import findings
+    from volcontact.report.page import figures_side_by_side
+
+    table = Table("", "volumetric", "native", box=None, pad_edge=False)
+    for row in figures_side_by_side(comparison):
+        table.add_row(row.name, row.volumetric, row.native)
+    terminal.out.print(table)
+    colors = {"good": "green", "bad": "red", "plain": "bold"}
+    for finding in findings(comparison):
+        terminal.out.print()
+        terminal.out.print(f"[{colors[finding.verdict]}]{escape(finding.title)}[/]")
+        terminal.out.print(Padding(escape(finding.text), (0, 0, 0, 2)))
+    terminal.out.print(f"\nreport: {report}", markup=False, soft_wrap=True)

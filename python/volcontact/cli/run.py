@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`volcontact run`: steps a scene and says how it ended."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import mujoco
+from rich.table import Table
+
+import volcontact
+from volcontact.cli.arguments import add_command, add_time
+from volcontact.cli.status import report_warnings
+from volcontact.cli.terminal import Terminal
+
+if TYPE_CHECKING:
+    from volcontact.cli.arguments import Subparsers
+
+_EXAMPLES = """\
+  volcontact run scene.xml
+  volcontact run scene.xml --duration 2 --timestep 5e-4 --out results
+  volcontact run scene.xml --contact native --json
+"""
+
+
+def add_to(commands: Subparsers) -> None:
+    """Adds the command to the program."""
+    parser = add_command(
+        commands, "run", "step a scene under one kind of contact and say how it ended", _EXAMPLES
+    )
+    add_time(parser, duration=3.0)
+    parser.add_argument(
+        "--contact",
+        choices=("volumetric", "native"),
+        default="volumetric",
+        help="kind of contact (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help="write summary.json and trajectory.parquet into this folder",
+    )
+    parser.set_defaults(execute=execute)
+
+
+def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
+    """Runs the command and returns the exit status."""
+    from volcontact.report.comparison import run_summary
+    from volcontact.report.design_pose import read_design_pose
+    from volcontact.simulation import simulate
+
+    design = read_design_pose(arguments.scene)
+    with terminal.progress() as bars:
+        recording = simulate(
+            arguments.scene,
+            contact=arguments.contact,
+            duration=arguments.duration,
+            timestep=arguments.timestep,
+            frame_interval=None,
+            progress=bars.task(f"{arguments.contact} contact"),
+        )
+    summary = {
+        arguments.contact: run_summary(recording, design),
+        "mujoco_version": mujoco.mj_versionString(),
+        "volcontact_version": volcontact.__version__,
+    }
+    if arguments.out is not None:
+        from volcontact.report.table import write_table
+
+        arguments.out.mkdir(parents=True, exist_ok=True)
+        text = json.dumps(summary, indent=2, allow_nan=False) + "\n"
+        (arguments.out / "summary.json").write_text(text, encoding="utf-8")
+        write_table((recording,), arguments.out / "trajectory.parquet")
+    if terminal.json:
+        terminal.result(summary)
+    else:
+        from volcontact.report.page import figures
+
+        table = Table("", arguments.contact, box=None, pad_edge=False)
+        for name, text in figures(recording, design):
+            table.add_row(name, text)
+        terminal.out.print(table)
+        if arguments.out is not None:
+            terminal.out.print(f"written to {arguments.out}", markup=False)
+    return report_warnings((recording,), terminal)

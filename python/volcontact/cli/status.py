@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The exit status of commands that ran a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from volcontact.cli.terminal import Terminal
+
+if TYPE_CHECKING:
+    from volcontact.simulation import Recording
+
+MUJOCO_WARNED = 3
+
+
+def report_warnings(runs: Iterable[Recording], terminal: Terminal) -> int:
+    """Prints what MuJoCo warned of; 0 without any warning, else `MUJOCO_WARNED`."""
+    status = 0
+    for run in runs:
+        if run.stopped is not None:
+            terminal.warning(f"{run.contact} contact: {run.stopped}")
+        if run.warnings:
+            counts = ", ".join(f"{name} {count} times" for name, count in run.warnings.items())
+            terminal.warning(f"{run.contact} contact: MuJoCo warned of {counts}")
+            status = MUJOCO_WARNED
+    return status

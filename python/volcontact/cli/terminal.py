@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the program prints: results on standard output, all else on standard error."""
+
+from __future__ import annotations
+
+import contextlib
+import json as json_format
+import time
+from collections.abc import Callable, Iterator
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+
+_PATIENCE = 0.7  # a bar appears when the work has taken so long [s]
+
+
+class Terminal:
+    """Standard output and error of one run of the program.
+
+    Args:
+        json: print nothing but JSON on standard output, and no progress bars.
+    """
+
+    def __init__(self, *, json: bool = False) -> None:
+        self.json = json
+        self.out = Console(highlight=False, soft_wrap=json)
+        self.log = Console(stderr=True, highlight=False)
+
+    def result(self, content: object) -> None:
+        """Prints a result for machines."""
+        self.out.out(json_format.dumps(content, indent=2), highlight=False)
+
+    def error(self, message: str) -> None:
+        """Prints one line that says what is wrong."""
+        line = " ".join(message.split())
+        if self.json:
+            self.result({"error": line})
+        self.log.print("error:", style="bold red", end=" ")
+        self.log.print(line, markup=False, soft_wrap=True)
+
+    def warning(self, message: str) -> None:
+        """Prints one line that deserves attention."""
+        self.log.print("warning:", style="bold yellow", end=" ")
+        self.log.print(" ".join(message.split()), markup=False, soft_wrap=True)
+
+    @contextlib.contextmanager
+    def progress(self) -> Iterator[ProgressBars]:
+        """Shows bars with the time left, once the work takes longer than a moment."""
+        bars = ProgressBars(self.log, enabled=self.log.is_terminal and not self.json)
+        try:
+            yield bars
+        finally:
+            bars.close()
+
+
+class ProgressBars:
+    """One bar per task, each fed by calls of (done, total)."""
+
+    def __init__(self, console: Console, *, enabled: bool) -> None:
+        self._progress = Progress(
+            TextColumn("{task.description:<22}"),
+            BarColumn(bar_width=32),
+            TextColumn("{task.percentage:>3.0f} %"),
+            TimeRemainingColumn(compact=True, elapsed_when_finished=True),
+            console=console,
+            transient=True,
+        )
+        self._enabled = enabled
+        self._begin = time.monotonic()
+        self._started = False
+
+    def task(self, name: str) -> Callable[[int, int], None]:
+        """Adds a bar and returns the function that moves it."""
+        task: TaskID = self._progress.add_task(name, start=False, total=None)
+
+        def move(done: int, total: int) -> None:
+            self._progress.start_task(task)
+            self._progress.update(task, completed=done, total=total)
+            if self._enabled and not self._started and time.monotonic() - self._begin > _PATIENCE:
+                self._started = True
+                self._progress.start()
+
+        return move
+
+    def close(self) -> None:
+        """Removes the bars."""
+        if self._started:
+            self._progress.stop()

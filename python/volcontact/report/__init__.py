@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The report of a comparison: one HTML file, numbers, curves and pictures."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+from volcontact.render import Renderer
+from volcontact.report.comparison import Comparison
+from volcontact.report.page import write_page
+from volcontact.report.pictures import draw_frames, write_frames
+from volcontact.report.table import write_table
+
+__all__ = ["Comparison", "write_report"]
+
+
+def write_report(
+    comparison: Comparison,
+    out: Path,
+    *,
+    renderer: Renderer | None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Path:
+    """Writes `report.html`, `summary.json`, `trajectory.parquet` and `frames/*.png`.
+
+    Args:
+        comparison: what to report.
+        out: folder; made when missing, files of an earlier report are replaced.
+        renderer: of the scene's model; None leaves the pictures out.
+        progress: called with (frames drawn, frames in all).
+
+    Returns:
+        Path of the report.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    summary = json.dumps(comparison.summary(), indent=2, allow_nan=False) + "\n"
+    (out / "summary.json").write_text(summary, encoding="utf-8")
+    write_table(comparison.runs, out / "trajectory.parquet")
+    pairs = [] if renderer is None else draw_frames(comparison, renderer, progress)
+    write_frames(pairs, out / "frames")
+    return write_page(comparison, pairs, out / "report.html")

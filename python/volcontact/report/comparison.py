@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Two runs of one scene, and the figures in which they differ."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from volcontact.report.design_pose import DesignPose, angle_between
+from volcontact.simulation import Recording
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Volumetric and native contact on one scene.
+
+    Attributes:
+        scene: what the user called it.
+        volumetric: the run under volcontact.
+        native: the run under MuJoCo's own contact.
+        design: the pose it should end in, or None.
+        mujoco_version: of the library that ran.
+        volcontact_version: of this package.
+    """
+
+    scene: str
+    volumetric: Recording
+    native: Recording
+    design: DesignPose | None
+    mujoco_version: str
+    volcontact_version: str
+
+    @property
+    def runs(self) -> tuple[Recording, Recording]:
+        """Both runs, the volumetric one first."""
+        return self.volumetric, self.native
+
+    def summary(self) -> dict[str, Any]:
+        """The content of `summary.json`; units are SI, times of a step in microseconds."""
+        return {
+            "volumetric": run_summary(self.volumetric, self.design),
+            "native": run_summary(self.native, self.design),
+            "mujoco_version": self.mujoco_version,
+            "volcontact_version": self.volcontact_version,
+        }
+
+
+@dataclass(frozen=True)
+class Offset:
+    """How far a body is from its design pose over a run.
+
+    Attributes:
+        distance: [m], shape (n,).
+        angle: [degree], shape (n,).
+    """
+
+    distance: np.ndarray
+    angle: np.ndarray
+
+
+def offset_from(run: Recording, design: DesignPose) -> Offset:
+    """The distance and angle of the design's body from the design pose at every instant.
+
+    Raises:
+        ValueError: the scene has no such moving body.
+    """
+    if design.body not in run.bodies:
+        raise ValueError(
+            f"the design pose names body {design.body!r}, the moving bodies are: "
+            f"{', '.join(run.bodies) or 'none'}"
+        )
+    body = run.bodies.index(design.body)
+    return Offset(
+        distance=np.linalg.norm(run.position[:, body] - design.position, axis=1),
+        angle=angle_between(run.quaternion[:, body], design.quaternion),
+    )
+
+
+def is_seated(run: Recording, design: DesignPose) -> bool:
+    """Whether a run ended in its design pose, at rest, within the tolerances."""
+    offset = offset_from(run, design)
+    speed = run.speed[-1, run.bodies.index(design.body)]
+    return bool(
+        run.stopped is None
+        and offset.distance[-1] <= design.position_tolerance
+        and offset.angle[-1] <= design.angle_tolerance
+        and speed <= design.speed_tolerance
+    )
+
+
+def first_touch(run: Recording) -> float | None:
+    """Time of the first contact [s]; None if nothing touched."""
+    rows = np.flatnonzero(run.site_count)
+    return float(run.time[rows[0]]) if len(rows) else None
+
+
+def largest_rise(energy: np.ndarray) -> float:
+    """The most that an energy ever stood above an earlier value of its own [J]."""
+    return float(np.max(energy - np.minimum.accumulate(energy)))
+
+
+def unbalance(run: Recording) -> np.ndarray:
+    """Mechanical plus dissipated energy, less its value at the start [J], shape (n,)."""
+    account = run.energy + run.dissipated.sum(axis=1)
+    change: np.ndarray = account - account[0]
+    return change
+
+
+def run_summary(run: Recording, design: DesignPose | None) -> dict[str, Any]:
+    """One run as plain numbers, ready for JSON."""
+    result: dict[str, Any] = {
+        "steps": run.steps,
+        "dt": run.timestep,
+        "microseconds_per_step": run.microseconds_per_step,
+        "max_penetration": float(run.penetration.max()),
+        "final_qpos": run.qpos[-1].tolist(),
+        "energy_initial": float(run.energy[0]),
+        "energy_final": float(run.energy[-1]),
+        "max_contact_sites": int(run.site_count.max()),
+        "warnings": run.warnings,
+        "stopped": run.stopped,
+        "final_speed": float(run.speed[-1].max(initial=0.0)),
+        "max_contact_force": float(run.contact_force.max()),
+        "final_contact_force": float(run.contact_force[-1]),
+        "energy_dissipated": dict(
+            zip(("normal", "roll", "slide", "spin"), run.dissipated[-1].tolist(), strict=True)
+        ),
+        "first_touch": first_touch(run),
+    }
+    if design is not None:
+        offset = offset_from(run, design)
+        result["design_pose"] = {
+            "seated": is_seated(run, design),
+            "distance": float(offset.distance[-1]),
+            "angle_degrees": float(offset.angle[-1]),
+        }
+    return result

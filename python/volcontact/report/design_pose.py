@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The pose a scene is designed to end in, from `expected.json` beside the scene."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+FILE_NAME = "expected.json"
+
+
+@dataclass(frozen=True)
+class DesignPose:
+    """Where a body should come to rest, and how near counts as seated.
+
+    Attributes:
+        body: its name.
+        position: [m], world, shape (3,).
+        quaternion: (w, x, y, z), shape (4,).
+        position_tolerance: [m].
+        angle_tolerance: [degree].
+        speed_tolerance: [m/s].
+    """
+
+    body: str
+    position: np.ndarray
+    quaternion: np.ndarray
+    position_tolerance: float
+    angle_tolerance: float
+    speed_tolerance: float
+
+
+def read_design_pose(scene: str | os.PathLike[str]) -> DesignPose | None:
+    """The design pose in `expected.json` beside a scene file; None where there is none.
+
+    Raises:
+        ValueError: the file is there and cannot be understood.
+    """
+    text = os.fspath(scene)
+    file = Path(text).parent / FILE_NAME
+    if text.lstrip().startswith("<") or not file.is_file():
+        return None
+    try:
+        pose: dict[str, Any] | None = json.loads(file.read_text(encoding="utf-8")).get(
+            "design_pose"
+        )
+        if pose is None:
+            return None
+        return DesignPose(
+            body=str(pose["body"]),
+            position=np.array(pose["position"], np.float64).reshape(3),
+            quaternion=np.array(pose["quaternion"], np.float64).reshape(4),
+            position_tolerance=float(pose.get("position_tolerance", 1e-3)),
+            angle_tolerance=float(pose.get("angle_tolerance", 0.1)),
+            speed_tolerance=float(pose.get("speed_tolerance", 1e-3)),
+        )
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise ValueError(f"{file}: design_pose cannot be read ({error})") from error
+
+
+def angle_between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Angle of the rotation from one unit quaternion to the other [degree].
+
+    Args:
+        a: shape (..., 4).
+        b: shape (..., 4), broadcast against a.
+    """
+    # The vector part of conj(a) b; its length is sin(angle / 2), exact where arccos is not.
+    vector = a[..., :1] * b[..., 1:] - b[..., :1] * a[..., 1:] - np.cross(a[..., 1:], b[..., 1:])
+    scalar = np.abs(np.sum(a * b, axis=-1))
+    angle: np.ndarray = np.degrees(2.0 * np.arctan2(np.linalg.norm(vector, axis=-1), scalar))
+    return angle

@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What two runs tell, in plain sentences computed from their data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from volcontact.report.comparison import (
+    Comparison,
+    first_touch,
+    is_seated,
+    largest_rise,
+    offset_from,
+    unbalance,
+)
+from volcontact.report.design_pose import DesignPose, angle_between
+from volcontact.report.units import area, digits, nominal, quantity, ratio
+from volcontact.simulation import CHANNELS, Recording
+
+_AT_REST = 1e-3  # [m/s]
+_SETTLED_SHARE = 0.1  # the last tenth of a run counts as its end
+
+Verdict = Literal["good", "bad", "plain"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One sentence or two about one thing.
+
+    Attributes:
+        title: the thing.
+        text: the sentences.
+        verdict: "good" or "bad" where the data decide it, else "plain".
+    """
+
+    title: str
+    text: str
+    verdict: Verdict = "plain"
+
+
+def findings(comparison: Comparison) -> list[Finding]:
+    """Everything worth a sentence, the most important first."""
+    found = list(_trouble(comparison))
+    if comparison.design is not None:
+        found.append(_seating(comparison, comparison.design))
+    found.append(_rest(comparison))
+    found.extend(_final_pose(comparison))
+    found.extend(_forces(comparison))
+    found.extend(_penetration(comparison))
+    found.extend(_places(comparison))
+    found.append(_energy(comparison))
+    found.append(_cost(comparison))
+    return found
+
+
+def _name(run: Recording) -> str:
+    return {"volumetric": "Volumetric contact", "native": "Native contact"}[run.contact]
+
+
+def _trouble(comparison: Comparison) -> Iterator[Finding]:
+    for run in comparison.runs:
+        if run.stopped is not None:
+            yield Finding("Stopped", f"{_name(run)}: {run.stopped}.", "bad")
+        if run.warnings:
+            counts = ", ".join(f"{name} {count} times" for name, count in run.warnings.items())
+            yield Finding("MuJoCo warnings", f"{_name(run)}: {counts}.", "bad")
+
+
+def _seating(comparison: Comparison, design: DesignPose) -> Finding:
+    sentences = []
+    for run in comparison.runs:
+        offset = offset_from(run, design)
+        seated = "seats the" if is_seated(run, design) else "does not seat the"
+        sentences.append(
+            f"{_name(run)} {seated} {_plain(design.body)}: it ends "
+            f"{quantity(offset.distance[-1], 'm')} and {digits(offset.angle[-1])}° from its "
+            "design pose."
+        )
+    sentences.append(
+        f"Seated means within {nominal(design.position_tolerance, 'm')} and "
+        f"{design.angle_tolerance:g}°, slower than {nominal(design.speed_tolerance, 'm/s')}."
+    )
+    verdict: Verdict = "good" if is_seated(comparison.volumetric, design) else "bad"
+    return Finding("Seating", " ".join(sentences), verdict)
+
+
+def _rest(comparison: Comparison) -> Finding:
+    sentences = []
+    for run in comparison.runs:
+        speed = float(run.speed[-1].max(initial=0.0))
+        state = "at rest" if speed < _AT_REST else "still moving"
+        since = _resting_since(run)
+        below = f", slower than {nominal(_AT_REST, 'm/s')} since {digits(since)} s" if since else ""
+        sentences.append(f"{_name(run)} ends {state}, at {quantity(speed, 'm/s')}{below}.")
+    return Finding("Rest", " ".join(sentences))
+
+
+def _resting_since(run: Recording) -> float | None:
+    moving = np.flatnonzero(run.speed.max(axis=1, initial=0.0) >= _AT_REST)
+    if len(moving) == 0 or moving[-1] + 1 >= len(run.time):
+        return None
+    return float(run.time[moving[-1] + 1])
+
+
+def _final_pose(comparison: Comparison) -> Iterator[Finding]:
+    a, b = comparison.runs
+    if not a.bodies:
+        return
+    shift = b.position[-1] - a.position[-1]
+    body = int(np.argmax(np.linalg.norm(shift, axis=1)))
+    turn = float(angle_between(a.quaternion[-1, body], b.quaternion[-1, body]))
+    x, y, z = shift[body]
+    height = "as high as"
+    if abs(z) >= 1e-6:
+        height = f"{quantity(abs(z), 'm')} {'higher' if z > 0.0 else 'lower'} than"
+    yield Finding(
+        "Final pose",
+        f"The {_plain(a.bodies[body])} ends {quantity(float(np.linalg.norm(shift[body])), 'm')} "
+        f"and {digits(turn)}° apart in the two runs: under native contact {height} under "
+        f"volumetric contact and {quantity(float(np.hypot(x, y)), 'm')} to the side.",
+    )
+
+
+def _forces(comparison: Comparison) -> Iterator[Finding]:
+    sentences = []
+    for run in comparison.runs:
+        touch = first_touch(run)
+        if touch is None:
+            sentences.append(f"{_name(run)}: nothing touches.")
+            continue
+        peak = int(np.argmax(run.contact_force))
+        sentences.append(
+            f"{_name(run)} begins at {digits(touch)} s and peaks with "
+            f"{quantity(run.contact_force[peak], 'N')} at {digits(float(run.time[peak]))} s; at "
+            f"the end its forces add up to {quantity(_settled(run.contact_force), 'N')}"
+            f"{_share_of_weight(run)}."
+        )
+    a, b = (float(run.contact_force.max()) for run in comparison.runs)
+    if a > 0.0 and b > 0.0:
+        sentences.append(f"The native peak is {ratio(b, a)}.")
+    yield Finding("Contact force", " ".join(sentences))
+
+
+def _share_of_weight(run: Recording) -> str:
+    if run.weight <= 0.0:
+        return ""
+    share = _settled(run.contact_force) / run.weight
+    return f", {digits(share)} times the weight of {quantity(run.weight, 'N')}"
+
+
+def _settled(values: np.ndarray) -> float:
+    """Median over the last part of a run."""
+    count = max(1, round(_SETTLED_SHARE * len(values)))
+    return float(np.median(values[-count:]))
+
+
+def _penetration(comparison: Comparison) -> Iterator[Finding]:
+    a, b = comparison.runs
+    if a.penetration.max() <= 0.0 and b.penetration.max() <= 0.0:
+        return
+    yield Finding(
+        "Penetration",
+        f"The deepest site reaches {quantity(a.penetration.max(), 'm')} under volumetric and "
+        f"{quantity(b.penetration.max(), 'm')} under native contact "
+        f"(native {ratio(b.penetration.max(), a.penetration.max())}); at the end it is "
+        f"{quantity(_settled(a.penetration), 'm')} and {quantity(_settled(b.penetration), 'm')}.",
+    )
+
+
+def _places(comparison: Comparison) -> Iterator[Finding]:
+    a, b = comparison.runs
+    if a.site_count.max() == 0 and b.site_count.max() == 0:
+        return
+    text = (
+        f"At most {_count(a, 'site')} at once under volumetric and "
+        f"{_count(b, 'contact point')} under native contact; at the end {a.site_count[-1]} and "
+        f"{b.site_count[-1]}."
+    )
+    if a.frames and len(a.frames[-1].sites):
+        sites = a.frames[-1].sites
+        patches = area(float(sites["area"].sum()))
+        text += f" The volumetric patches then cover {patches} in projection; points have no area."
+    yield Finding("Contact places", text)
+
+
+def _count(run: Recording, noun: str) -> str:
+    number = int(run.site_count.max())
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def _energy(comparison: Comparison) -> Finding:
+    a, b = comparison.runs
+    spent = float(a.dissipated[-1].sum())
+    channels = ", ".join(
+        f"{name} {quantity(value, 'J')}"
+        for name, value in zip(CHANNELS, a.dissipated[-1], strict=True)
+        if spent > 0.0 and value > 1e-3 * spent
+    )
+    text = (
+        f"Under volumetric contact {quantity(spent, 'J')} are dissipated"
+        f"{f' ({channels})' if channels else ''}, and the books close to "
+        f"{quantity(float(np.abs(unbalance(a)).max()), 'J')}."
+    )
+    change = b.energy[-1] - b.energy[0]
+    verb = "gains" if change > 0.0 else "loses"
+    text += (
+        f" Native contact {verb} {quantity(abs(change), 'J')} of mechanical energy and does not "
+        "say where"
+    )
+    rise = largest_rise(b.energy)
+    text += f"; it once stood {quantity(rise, 'J')} above an earlier value." if rise > 1e-6 else "."
+    return Finding("Energy", text)
+
+
+def _cost(comparison: Comparison) -> Finding:
+    a, b = (run.microseconds_per_step for run in comparison.runs)
+    return Finding(
+        "Cost",
+        f"A step takes {quantity(1e-6 * a, 's')} under volumetric and {quantity(1e-6 * b, 's')} "
+        f"under native contact (medians): {digits(a / b) if b > 0.0 else 'not comparable'} times.",
+    )
+
+
+def _plain(name: str) -> str:
+    return name.replace("_", " ")
