@@ -114,7 +114,7 @@ class Renderer:
         *,
         sites: np.ndarray | None = None,
         style: SiteStyle | None = None,
-        view: View | None = None,
+        view: View | str | None = None,
     ) -> np.ndarray:
         """Draws one state.
 
@@ -124,10 +124,14 @@ class Renderer:
                 arrows, with the moving bodies translucent. The arrow shows the force on the body
                 that moves.
             style: of the sites; needed with `sites`.
-            view: camera; when None the scene's first camera, or one that sees the whole scene.
+            view: camera, or the name of one of the scene; when None the scene's first camera, or
+                one that sees the whole scene.
 
         Returns:
             Picture, shape (height, width, 3), uint8.
+
+        Raises:
+            ValueError: the scene has no camera of that name.
         """
         if self._context is None:
             raise RenderError("the renderer is closed")
@@ -178,10 +182,10 @@ class Renderer:
     ) -> None:
         self.close()
 
-    def _look_from(self, view: View | None) -> None:
-        if view is None and self._model.ncam > 0:
+    def _look_from(self, view: View | str | None) -> None:
+        if isinstance(view, str) or (view is None and self._model.ncam > 0):
             self._camera.type = int(mujoco.mjtCamera.mjCAMERA_FIXED)
-            self._camera.fixedcamid = 0
+            self._camera.fixedcamid = 0 if view is None else camera_id(self._model, view)
             return
         view = view or default_view(self._model)
         self._camera.type = int(mujoco.mjtCamera.mjCAMERA_FREE)
@@ -249,6 +253,20 @@ class Renderer:
         )
         geom.emission = _SITE_EMISSION
         self._scene.ngeom += 1
+
+
+def camera_id(model: mujoco.MjModel, name: str) -> int:
+    """The index of a camera.
+
+    Raises:
+        ValueError: the scene has no camera of that name; the message lists those it has.
+    """
+    kind = int(mujoco.mjtObj.mjOBJ_CAMERA)
+    index = int(mujoco.mj_name2id(model, kind, name))
+    if index < 0:
+        names = [mujoco.mj_id2name(model, kind, i) or f"camera {i}" for i in range(model.ncam)]
+        raise ValueError(f"no camera {name!r} in the scene; it has: {', '.join(names) or 'none'}")
+    return index
 
 
 def default_view(model: mujoco.MjModel) -> View:

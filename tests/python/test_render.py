@@ -117,6 +117,17 @@ def test_first_camera_of_the_scene_is_the_default():
     assert not np.array_equal(first, chosen)
 
 
+def test_camera_is_found_by_name_or_the_known_ones_are_listed():
+    cameras = '<camera name="near" pos="0 0 1"/><camera name="far" pos="0 0 9"/></worldbody>'
+    model = mujoco.MjModel.from_xml_string(SCENE.replace("</worldbody>", cameras))
+    with Renderer(model, width=64, height=48) as renderer:
+        near = renderer.draw(model.qpos0, view="near")
+        assert np.array_equal(near, renderer.draw(model.qpos0))
+        assert not np.array_equal(near, renderer.draw(model.qpos0, view="far"))
+        with pytest.raises(ValueError, match="no camera 'side' in the scene; it has: near, far"):
+            renderer.draw(model.qpos0, view="side")
+
+
 def test_two_renderers_do_not_disturb_each_other(model):
     with Renderer(model, width=64, height=48) as one:
         alone = one.draw(model.qpos0)

@@ -151,31 +151,51 @@ def test_angle_between_is_exact_for_small_and_large_turns(degrees):
     assert angle_between(identity, -turn) == pytest.approx(degrees, rel=1e-9)
 
 
+EXPECTED = {
+    "body": "box",
+    "design_position": [1, 2, 3],
+    "design_quaternion": [1, 0, 0, 0],
+    "position_tolerance": 2e-3,
+    "angle_tolerance_degrees": 0.2,
+    "speed_tolerance": 3e-3,
+}
+
+
 def test_design_pose_is_read_from_beside_the_scene(tmp_path):
     scene = tmp_path / "scene.xml"
     assert read_design_pose(scene) is None
     assert read_design_pose("<mujoco/>") is None
-    content = {"design_pose": {"body": "box", "position": [1, 2, 3], "quaternion": [1, 0, 0, 0]}}
+    content = {"scenes": {"scene.xml": EXPECTED, "other.xml": {"duration": 1.0}}}
     (tmp_path / "expected.json").write_text(json.dumps(content))
     pose = read_design_pose(scene)
     assert pose.body == "box"
     assert pose.position.tolist() == [1.0, 2.0, 3.0]
-    assert (pose.position_tolerance, pose.angle_tolerance, pose.speed_tolerance) == (
-        1e-3,
-        0.1,
-        1e-3,
-    )
-    (tmp_path / "expected.json").write_text('{"other": 1}')
-    assert read_design_pose(scene) is None
+    assert pose.quaternion.tolist() == [1.0, 0.0, 0.0, 0.0]
+    assert (pose.position_tolerance, pose.angle_tolerance) == (2e-3, 0.2)
+    assert pose.speed_tolerance == 3e-3
+    assert read_design_pose(tmp_path / "other.xml") is None
+    assert read_design_pose(tmp_path / "third.xml") is None
 
 
 @pytest.mark.parametrize(
-    "text",
-    ["{", '{"design_pose": {"body": "box"}}', '{"design_pose": {"body": "b", "position": [1]}}'],
+    ("change", "message"),
+    [
+        (None, r"expected\.json: cannot be read"),
+        ({"design_position": [1, 2]}, r"expected\.json: cannot be read"),
+        ({"design_quaternion": "up"}, r"expected\.json: cannot be read"),
+    ],
 )
-def test_unreadable_design_pose_names_its_file(tmp_path, text):
+def test_unreadable_design_pose_names_its_file(tmp_path, change, message):
+    text = "{" if change is None else json.dumps({"scenes": {"scene.xml": {**EXPECTED, **change}}})
     (tmp_path / "expected.json").write_text(text)
-    with pytest.raises(ValueError, match=r"expected\.json: design_pose cannot be read"):
+    with pytest.raises(ValueError, match=message):
+        read_design_pose(tmp_path / "scene.xml")
+
+
+def test_incomplete_design_pose_names_what_is_missing(tmp_path):
+    content = {"scenes": {"scene.xml": {k: v for k, v in EXPECTED.items() if k != "body"}}}
+    (tmp_path / "expected.json").write_text(json.dumps(content))
+    with pytest.raises(ValueError, match=r"expected\.json: scene\.xml has no 'body'"):
         read_design_pose(tmp_path / "scene.xml")
 
 

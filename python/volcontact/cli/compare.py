@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _EXAMPLES = """\
   volcontact compare scene.xml
   volcontact compare scene.xml --duration 3 --out report
-  volcontact compare scene.xml --frame-interval 0.1 --width 960 --height 720
+  volcontact compare scene.xml --frame-interval 0.1 --width 960 --height 720 --camera side
   volcontact compare scene.xml --no-frames --json
 """
 
@@ -60,6 +60,7 @@ def add_to(commands: Subparsers) -> None:
     parser.add_argument(
         "--height", type=pixels, default=600, metavar="PX", help="of a picture (default: 600)"
     )
+    parser.add_argument("--camera", metavar="NAME", help="camera of the scene (default: its first)")
     parser.add_argument(
         "--no-frames", action="store_true", help="leave the pictures out (needs no OpenGL)"
     )
@@ -97,7 +98,11 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             volcontact_version=volcontact.__version__,
         )
         report = write_report(
-            comparison, arguments.out, renderer=renderer, progress=bars.task("pictures")
+            comparison,
+            arguments.out,
+            renderer=renderer,
+            camera=arguments.camera,
+            progress=bars.task("pictures"),
         )
     if terminal.json:
         terminal.result({**comparison.summary(), "report": str(report)})
@@ -107,10 +112,12 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
 
 
 def _renderer(arguments: argparse.Namespace) -> Renderer:
-    from volcontact.render import Renderer
+    from volcontact.render import Renderer, camera_id
     from volcontact.report.pictures import drawing_model
 
     model = drawing_model(arguments.scene)
+    if arguments.camera is not None:
+        camera_id(model, arguments.camera)  # an unknown one is an error now, not after the runs
     return Renderer(model, width=arguments.width, height=arguments.height)
 
 

@@ -21,6 +21,7 @@ def write_report(
     out: Path,
     *,
     renderer: Renderer | None,
+    camera: str | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Path:
     """Writes `report.html`, `summary.json`, `trajectory.parquet` and `frames/*.png`.
@@ -29,6 +30,7 @@ def write_report(
         comparison: what to report.
         out: folder; made when missing, files of an earlier report are replaced.
         renderer: of the scene's model; None leaves the pictures out.
+        camera: of the scene that sees the pictures; None takes the first.
         progress: called with (frames drawn, frames in all).
 
     Returns:
@@ -38,6 +40,6 @@ def write_report(
     summary = json.dumps(comparison.summary(), indent=2, allow_nan=False) + "\n"
     (out / "summary.json").write_text(summary, encoding="utf-8")
     write_table(comparison.runs, out / "trajectory.parquet")
-    pairs = [] if renderer is None else draw_frames(comparison, renderer, progress)
+    pairs = [] if renderer is None else draw_frames(comparison, renderer, camera, progress)
     write_frames(pairs, out / "frames")
     return write_page(comparison, pairs, out / "report.html")

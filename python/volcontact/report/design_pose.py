@@ -36,31 +36,33 @@ class DesignPose:
 
 
 def read_design_pose(scene: str | os.PathLike[str]) -> DesignPose | None:
-    """The design pose in `expected.json` beside a scene file; None where there is none.
+    """The design pose that `expected.json` beside a scene file gives; None where it gives none.
 
     Raises:
         ValueError: the file is there and cannot be understood.
     """
     text = os.fspath(scene)
-    file = Path(text).parent / FILE_NAME
+    path = Path(text)
+    file = path.parent / FILE_NAME
     if text.lstrip().startswith("<") or not file.is_file():
         return None
     try:
-        pose: dict[str, Any] | None = json.loads(file.read_text(encoding="utf-8")).get(
-            "design_pose"
-        )
-        if pose is None:
+        scenes: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))["scenes"]
+        expected = scenes.get(path.name, {})
+        if "design_position" not in expected:
             return None
         return DesignPose(
-            body=str(pose["body"]),
-            position=np.array(pose["position"], np.float64).reshape(3),
-            quaternion=np.array(pose["quaternion"], np.float64).reshape(4),
-            position_tolerance=float(pose.get("position_tolerance", 1e-3)),
-            angle_tolerance=float(pose.get("angle_tolerance", 0.1)),
-            speed_tolerance=float(pose.get("speed_tolerance", 1e-3)),
+            body=str(expected["body"]),
+            position=np.array(expected["design_position"], np.float64).reshape(3),
+            quaternion=np.array(expected["design_quaternion"], np.float64).reshape(4),
+            position_tolerance=float(expected["position_tolerance"]),
+            angle_tolerance=float(expected["angle_tolerance_degrees"]),
+            speed_tolerance=float(expected["speed_tolerance"]),
         )
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise ValueError(f"{file}: design_pose cannot be read ({error})") from error
+    except KeyError as error:
+        raise ValueError(f"{file}: {path.name} has no {error}") from error
+    except (TypeError, ValueError, AttributeError) as error:
+        raise ValueError(f"{file}: cannot be read ({error})") from error
 
 
 def angle_between(a: np.ndarray, b: np.ndarray) -> np.ndarray:

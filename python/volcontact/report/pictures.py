@@ -43,9 +43,15 @@ class FramePair:
 def draw_frames(
     comparison: Comparison,
     renderer: Renderer,
+    camera: str | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> list[FramePair]:
-    """Draws all recorded frames of both runs."""
+    """Draws all recorded frames of both runs, seen by a camera of the scene, or its first."""
+
+    def draw(run: Recording, frame: Frame) -> np.ndarray:
+        style = SiteStyle(palette.rgb(palette.RUN_COLORS[run.contact]), reference)
+        return renderer.draw(run.qpos[frame.row], sites=frame.sites, style=style, view=camera)
+
     first, second = (list(run.frames) for run in comparison.runs)
     reference = reference_force(comparison)
     pairs = []
@@ -54,10 +60,8 @@ def draw_frames(
         pairs.append(
             FramePair(
                 time=frame.time,
-                volumetric=_draw(renderer, comparison.volumetric, frame, reference),
-                native=(
-                    None if other is None else _draw(renderer, comparison.native, other, reference)
-                ),
+                volumetric=draw(comparison.volumetric, frame),
+                native=None if other is None else draw(comparison.native, other),
                 notes=(_note(frame), _note(other) if other else "ended"),
             )
         )
@@ -120,11 +124,6 @@ def drawing_model(scene: str) -> mujoco.MjModel:
     if scene.lstrip().startswith("<"):
         return mujoco.MjModel.from_xml_string(scene)
     return mujoco.MjModel.from_xml_path(scene)
-
-
-def _draw(renderer: Renderer, run: Recording, frame: Frame, reference: float) -> np.ndarray:
-    style = SiteStyle(palette.rgb(palette.RUN_COLORS[run.contact]), reference)
-    return renderer.draw(run.qpos[frame.row], sites=frame.sites, style=style)
 
 
 def _note(frame: Frame) -> str:
