@@ -24,7 +24,7 @@ from volcontact._mujoco_views import dense
 _PACKAGES = "libegl1 libgl1 libgl1-mesa-dri"
 _MAX_GEOMS = 10_000
 _SHADOW_SIZE = 2048
-_BODY_OPACITY = 0.35  # moving bodies while sites are drawn, so that the sites inside are seen
+_BODY_OPACITY = 0.2  # moving bodies while sites are drawn, so that the sites inside are seen
 _ARROW_FULL = 0.3  # length of the arrow of the reference force, in scene extents
 _ARROW_MAX = 0.8  # longest arrow, in scene extents
 _POINT_RADIUS = 0.012  # disc of a contact that has no area, in scene extents
@@ -32,7 +32,7 @@ _DISC_THICKNESS = 0.003  # in scene extents; more than the usual penetration
 _ARROW_RADIUS = 0.007  # in scene extents
 _HORIZON = (236, 240, 244)  # background of a scene without sky, RGB
 _ZENITH = (202, 212, 222)
-_SITE_EMISSION = 0.5  # sites keep their colour in the shade
+_SITE_EMISSION = 0.35  # sites keep their colour in the shade
 _SMALLEST_ARROW = 0.02  # shorter ones are not drawn, in scene extents
 
 
@@ -252,6 +252,7 @@ class Renderer:
             np.asarray(color, np.float32),
         )
         geom.emission = _SITE_EMISSION
+        geom.specular = 0.0
         self._scene.ngeom += 1
 
 

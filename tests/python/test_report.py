@@ -23,7 +23,7 @@ from volcontact.report.figures import curves, thin
 from volcontact.report.findings import findings
 from volcontact.report.page import page, title_of
 from volcontact.report.pictures import FramePair, png, side_by_side, write_frames
-from volcontact.report.units import area, digits, nominal, quantity, ratio
+from volcontact.report.units import angle, area, digits, nominal, quantity, ratio
 from volcontact.simulation import SITE, Frame, Recording
 
 DESIGN = DesignPose(
@@ -134,6 +134,9 @@ def test_other_numbers_read_well():
     assert area(3e-6) == "3.00 mm²"
     assert digits(12345.6) == "12346"
     assert digits(0.0) == "0"
+    assert angle(0.0123) == "0.0123°"
+    assert angle(2e-14) == "less than 0.001°"
+    assert angle(0.0) == "0°"
     assert ratio(10.0, 2.0) == "5.00 times as large"
     assert ratio(2.0, 10.0) == "5.00 times smaller"
     assert ratio(1.0, 1.0) == "the same"

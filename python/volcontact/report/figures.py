@@ -172,6 +172,7 @@ def _curve(
         axes.tick_params(length=0)
         draw(axes, comparison)
         axes.set_xlabel("time [s]")
+        axes.xaxis.set_major_locator(MaxNLocator(6))
         axes.set_xlim(0.0, max(run.time[-1] for run in comparison.runs) or 1.0)
         return Curve(name, title, caption, _svg(figure, name))
 

@@ -18,7 +18,7 @@ from volcontact.report.comparison import (
     unbalance,
 )
 from volcontact.report.design_pose import DesignPose, angle_between
-from volcontact.report.units import area, digits, nominal, quantity, ratio
+from volcontact.report.units import angle, area, digits, nominal, quantity, ratio
 from volcontact.simulation import CHANNELS, Recording
 
 _AT_REST = 1e-3  # [m/s]
@@ -77,7 +77,7 @@ def _seating(comparison: Comparison, design: DesignPose) -> Finding:
         seated = "seats the" if is_seated(run, design) else "does not seat the"
         sentences.append(
             f"{_name(run)} {seated} {_plain(design.body)}: it ends "
-            f"{quantity(offset.distance[-1], 'm')} and {digits(offset.angle[-1])}° from its "
+            f"{quantity(offset.distance[-1], 'm')} and {angle(float(offset.angle[-1]))} from its "
             "design pose."
         )
     sentences.append(
@@ -120,7 +120,7 @@ def _final_pose(comparison: Comparison) -> Iterator[Finding]:
     yield Finding(
         "Final pose",
         f"The {_plain(a.bodies[body])} ends {quantity(float(np.linalg.norm(shift[body])), 'm')} "
-        f"and {digits(turn)}° apart in the two runs: under native contact {height} under "
+        f"and {angle(turn)} apart in the two runs: under native contact {height} under "
         f"volumetric contact and {quantity(float(np.hypot(x, y)), 'm')} to the side.",
     )
 

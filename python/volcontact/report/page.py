@@ -17,7 +17,7 @@ from volcontact.report.design_pose import DesignPose
 from volcontact.report.figures import curves
 from volcontact.report.findings import findings
 from volcontact.report.pictures import FramePair, png, reference_force
-from volcontact.report.units import digits, nominal, quantity
+from volcontact.report.units import angle, digits, nominal, quantity
 from volcontact.simulation import Recording
 
 _PALETTE_COLORS = 200  # of the embedded pictures; the files in frames/ keep all
@@ -90,7 +90,7 @@ def figures(run: Recording, design: DesignPose | None) -> list[tuple[str, str]]:
         rows += [
             ("Seated", "yes" if is_seated(run, design) else "no"),
             ("Distance from design pose", quantity(float(offset.distance[-1]), "m")),
-            ("Angle from design pose", f"{digits(float(offset.angle[-1]))}°"),
+            ("Angle from design pose", angle(float(offset.angle[-1]))),
         ]
     touch = first_touch(run)
     return [

@@ -42,6 +42,11 @@ def nominal(value: float, unit: str) -> str:
     return f"{number.rstrip('0').rstrip('.') if '.' in number else number} {rest}"
 
 
+def angle(degrees: float) -> str:
+    """An angle given in degrees; below a thousandth nobody cares how little."""
+    return f"{digits(degrees)}°" if degrees == 0.0 or degrees >= 1e-3 else "less than 0.001°"
+
+
 def area(value: float) -> str:
     """An area given in m^2, in the unit that suits it."""
     for scale, unit in ((1.0, "m²"), (1e-4, "cm²")):
