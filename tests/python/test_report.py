@@ -139,7 +139,7 @@ def test_other_numbers_read_well():
     assert angle(0.0) == "0°"
     assert ratio(10.0, 2.0) == "5.00 times as large"
     assert ratio(2.0, 10.0) == "5.00 times smaller"
-    assert ratio(1.0, 1.0) == "the same"
+    assert ratio(1.0, 1.01) == "about the same"
     assert ratio(1.0, 0.0) == "not comparable"
 
 

@@ -70,8 +70,8 @@ def ratio(a: float, b: float) -> str:
     """How many times a is larger or smaller than b, in words."""
     if a <= 0.0 or b <= 0.0:
         return "not comparable"
-    if 0.99 <= a / b <= 1.01:
-        return "the same"
+    if 0.98 <= a / b <= 1.02:
+        return "about the same"
     if a > b:
         return f"{digits(a / b)} times as large"
     return f"{digits(b / a)} times smaller"
