@@ -180,6 +180,7 @@ ConvexPolytope::ConvexPolytope(const std::vector<Vec3>& points) {
   data->metrics = metrics_of(triangles, points);
   data->bounds = {points[triangles[0][0]], points[triangles[0][0]]};
   for (const Triangle& t : triangles) {
+    data->surface_area += area_of(t, points);
     for (int corner : t) {
       data->bounds.min = data->bounds.min.cwiseMin(points[corner]);
       data->bounds.max = data->bounds.max.cwiseMax(points[corner]);

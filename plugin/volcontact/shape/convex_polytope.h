@@ -41,6 +41,7 @@ class ConvexPolytope {
   Vec3 gradient(const Vec3& p) const;
   RayInterval ray(const Vec3& o, const Vec3& d) const;
   VolumeMetrics own_metrics() const { return data_->metrics; }
+  double surface_area() const { return data_->surface_area; }
 
  private:
   struct Data {
@@ -49,6 +50,7 @@ class ConvexPolytope {
     PolytopeGraph graph;
     Aabb bounds;
     VolumeMetrics metrics;
+    double surface_area = 0.0;
   };
 
   const Face& nearest_face(const Vec3& p) const;

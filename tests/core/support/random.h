@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "volcontact/base/types.h"
+
+namespace volcontact::test {
+
+/// Seeded random numbers, the same on every machine (splitmix64; the standard distributions are not).
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+
+  /// From [low, high).
+  double uniform(double low = 0.0, double high = 1.0) {
+    return low + (high - low) * static_cast<double>(next() >> 11) * 0x1p-53;
+  }
+  /// From [low, high), evenly in the logarithm.
+  double log_uniform(double low, double high) {
+    return std::exp(uniform(std::log(low), std::log(high)));
+  }
+  Vec3 in_box(double half) {
+    const double x = uniform(-half, half), y = uniform(-half, half), z = uniform(-half, half);
+    return {x, y, z};
+  }
+  Vec3 direction() {
+    for (;;) {
+      const Vec3 p = in_box(1.0);
+      const double length = p.norm();
+      if (length > 0.1 && length < 1.0) return p / length;
+    }
+  }
+  Mat3 rotation() {
+    for (;;) {
+      Eigen::Quaterniond q(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+      const double length = q.norm();
+      if (length > 0.1 && length < 1.0) return q.normalized().toRotationMatrix();
+    }
+  }
+  Pose pose(double half_range) {
+    const Mat3 r = rotation();
+    return {r, in_box(half_range)};
+  }
+
+ private:
+  std::uint64_t next() {
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+  }
+
+  std::uint64_t state_;
+};
+
+inline Mat3 turn(const Vec3& axis, double angle) {
+  return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+}
+
+/// The pose after a small motion of its frame, seen from outside: turned by `angle` about the
+/// outside origin, then shifted.
+inline Pose moved(const Pose& X, const Vec3& shift, const Vec3& angle) {
+  const double size = angle.norm();
+  const Mat3 r = size > 0.0 ? turn(angle, size) : Mat3(Mat3::Identity());
+  return Pose{r, shift} * X;
+}
+
+}  // namespace volcontact::test
