@@ -242,7 +242,7 @@ def _draw_force(axes: Axes, comparison: Comparison) -> None:
     if weight > 0.0:
         axes.axhline(weight, color=_MUTED, linewidth=0.9, linestyle="--", label="weight")
     axes.set_yscale("log")
-    axes.set_ylim(bottom=_FORCE_FLOOR)
+    axes.set_ylim(bottom=1.25 * _FORCE_FLOOR)  # hides the line along the floor
     axes.set_ylabel("force [N]")
     _legend(axes, columns=3)
 
@@ -250,7 +250,7 @@ def _draw_force(axes: Axes, comparison: Comparison) -> None:
 def _draw_penetration(axes: Axes, comparison: Comparison) -> None:
     _both(axes, comparison, lambda run: 1e3 * np.maximum(run.penetration, _DEPTH_FLOOR))
     axes.set_yscale("log")
-    axes.set_ylim(bottom=1e3 * _DEPTH_FLOOR)
+    axes.set_ylim(bottom=1.25e3 * _DEPTH_FLOOR)
     axes.set_ylabel("depth [mm]")
     _legend(axes)
 
