@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "adaptor/scene_keys.h"
+
+namespace volcontact::adaptor {
+
+/// A copy of the parts of an mjModel on which volcontact's reading of it depends. Models are known
+/// by content: an address says nothing, since MuJoCo copies models (Batch) and memory is reused.
+class ModelContent {
+ public:
+  ModelContent(const mjModel* m, const std::vector<NumericSpan>& numerics);
+
+  /// Names, bodies and tuples are the same: `m` is this model or a copy of it.
+  bool is_same_model(const mjModel* m) const noexcept;
+
+  /// And so are the numbers that may be changed in a compiled model: our numerics, the sizes,
+  /// friction, types and masks of the geoms. Only to be asked when is_same_model().
+  bool has_same_values(const mjModel* m) const noexcept;
+
+ private:
+  std::vector<NumericSpan> numerics_;
+  std::vector<std::byte> structure_;
+  std::vector<std::byte> values_;
+};
+
+}  // namespace volcontact::adaptor

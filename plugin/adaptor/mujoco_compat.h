@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <algorithm>
+#include <string>
+#include <type_traits>
+
+// All that differs between the releases of MuJoCo, and nothing else. mjVERSION_HEADER grows with
+// every release: 222 is 2.2.2, 340 is 3.4.0, 4000000 is 4.0.0.
+
+namespace volcontact::adaptor {
+
+/// Number under which an <exclude> of two bodies is stored.
+inline int exclude_signature(int body_a, int body_b) {
+  const int low = std::min(body_a, body_b), high = std::max(body_a, body_b);
+#if mjVERSION_HEADER < 300
+  return ((low + 1) << 16) + high + 1;
+#else
+  return (low << 16) + high;
+#endif
+}
+
+/// Whether contacts between geoms come from their bit masks, and whether from explicit <pair>s.
+inline bool collides_by_masks([[maybe_unused]] const mjModel* m) {
+#if mjVERSION_HEADER < 300
+  return m->opt.collision != mjCOL_PAIR;
+#else
+  return true;
+#endif
+}
+inline bool collides_by_pairs([[maybe_unused]] const mjModel* m) {
+#if mjVERSION_HEADER < 300
+  return m->opt.collision != mjCOL_DYNAMIC;
+#else
+  return true;
+#endif
+}
+
+/// The flags that make MuJoCo leave out the passive callback without a word; empty when it is
+/// called.
+inline std::string flags_that_skip_passive(const mjModel* m) {
+#if mjVERSION_HEADER <= 335
+  return m->opt.disableflags & mjDSBL_PASSIVE ? "passive=\"disable\"" : "";
+#else
+  constexpr int kBoth = mjDSBL_SPRING | mjDSBL_DAMPER;
+  return (m->opt.disableflags & kBoth) == kBoth ? "spring=\"disable\" damper=\"disable\"" : "";
+#endif
+}
+
+/// Whether bodies may fall asleep; volumetric contact would never wake them.
+inline bool sleep_enabled([[maybe_unused]] const mjModel* m) {
+#if mjVERSION_HEADER >= 340
+  return (m->opt.enableflags & mjENBL_SLEEP) != 0;
+#else
+  return false;
+#endif
+}
+
+inline bool has_flexes([[maybe_unused]] const mjModel* m) {
+#if mjVERSION_HEADER >= 300
+  return m->nflex > 0;
+#else
+  return false;
+#endif
+}
+
+/// Writes a MuJoCo warning; its function became printf-like on the way.
+template <typename Warn = decltype(&mju_warning)>
+void write_warning(const char* text, Warn warn = &mju_warning) {
+  if constexpr (std::is_same_v<Warn, void (*)(const char*)>) {
+    warn(text);
+  } else {
+    warn("%s", text);
+  }
+}
+
+/// "2.2.2" from 222, "4.0.0" from 4000000.
+inline std::string version_text(int version) {
+  const int base = version < 1000 ? 10 : 1000;
+  return std::to_string(version / base / base) + "." + std::to_string(version / base % base) + "." +
+         std::to_string(version % base);
+}
+
+/// The object's name, or "geom 3" for one that has none.
+inline std::string label(const mjModel* m, mjtObj type, int id) {
+  const char* name = mj_id2name(m, type, id);
+  if (name && *name) return name;
+  return std::string(type == mjOBJ_GEOM   ? "geom "
+                     : type == mjOBJ_BODY ? "body "
+                                          : "object ") +
+         std::to_string(id);
+}
+
+}  // namespace volcontact::adaptor

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "adaptor/scene_keys.h"
+#include "adaptor/solids_of_geoms.h"
+
+namespace volcontact::adaptor {
+
+/// Why two geoms can touch.
+enum class PairOrigin : int {
+  kMasks = 0,     ///< contype and conaffinity
+  kExplicit = 1,  ///< a <pair> of the model
+  kListed = 2,    ///< a volcontact/pair/...
+};
+inline constexpr const char* kPairOriginWords[] = {"contype/conaffinity", "<pair>",
+                                                   "volcontact/pair"};
+
+/// Two geoms that can touch; `a` has the lower id.
+struct GeomPair {
+  int a;
+  int b;
+  PairOrigin origin;
+  int listed = -1;  ///< index into SceneKeys::pairs, -1 when no volcontact/pair names the two
+};
+
+/// The pairs that can touch, in ascending order of (a, b): MuJoCo's own rules (bit masks; not
+/// within one rigid body; not parent and child; not excluded; explicit pairs whatever the masks
+/// say) and the scene's listed pairs, or the latter alone.
+std::vector<GeomPair> pairs_that_can_touch(const mjModel* m, const SceneKeys& keys);
+
+/// Leaves out, step by step, the pairs whose bounds are apart. Const once made.
+class Cull {
+ public:
+  /// `solids` has one entry per geom of the model; those of no pair are not looked at.
+  Cull(const std::vector<GeomPair>& pairs, const std::vector<Shape>& solids);
+
+  /// Memory of one call, reused.
+  struct Scratch {
+    std::vector<std::array<double, 6>> boxes;  ///< world bounds: min x, y, z, -max x, y, z
+    std::vector<int> near;                     ///< result: indices of pairs, ascending
+  };
+
+  void run(const mjData* d, Scratch& scratch) const noexcept;
+
+ private:
+  struct Bounded {
+    int geom;
+    Shape solid;
+  };
+  struct Candidate {
+    int first;   // index into bounded_, or the geom of a plane
+    int second;  // index into bounded_
+    bool with_plane;
+  };
+
+  std::vector<Bounded> bounded_;
+  std::vector<Candidate> candidates_;
+};
+
+}  // namespace volcontact::adaptor

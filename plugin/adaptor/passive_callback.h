@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "adaptor/scene_contact.h"
+
+namespace volcontact::adaptor {
+
+/// Puts volcontact_passive into mjcb_passive; what was there before is called first from then on.
+void install_callback();
+
+/// Puts back what was there before, unless somebody has replaced ours.
+void uninstall_callback();
+
+bool callback_is_installed();
+
+/// Scratch memory of the calling thread.
+SceneContact::Scratch& thread_scratch();
+
+}  // namespace volcontact::adaptor

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/scene_contact.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <set>
+
+#include "adaptor/applied_ledger.h"
+#include "adaptor/work_sharing.h"
+#include "volcontact/base/check.h"
+
+namespace volcontact::adaptor {
+namespace {
+
+// Time of one pair in contact, for sharing work among threads [s].
+double typical_time(Engine engine) {
+  switch (engine) {
+    case Engine::kClosedForm:
+      return 0.1e-6;
+    case Engine::kClip:
+      return 1e-6;
+    default:
+      return 1e-3;
+  }
+}
+
+// Below this OpenMP costs more than it saves, also on a busy machine [s].
+constexpr double kWorthSharing = 200e-6;
+
+std::vector<Shape> solids_of(const mjModel* m, const std::vector<GeomPair>& pairs) {
+  std::vector<Shape> solids(static_cast<std::size_t>(m->ngeom), Shape(HalfSpace()));
+  std::set<int> geoms;
+  for (const GeomPair& pair : pairs) geoms.insert({pair.a, pair.b});
+  for (const int geom : geoms) solids[static_cast<std::size_t>(geom)] = solid_of_geom(m, geom);
+  return solids;
+}
+
+std::vector<GeomPair> pairs_of(const mjModel* m, const SceneKeys& keys) {
+  require(m->ngeom > 0, "the model has no geoms: there is nothing that could touch");
+  return pairs_that_can_touch(m, keys);
+}
+
+bool is_finite(const ContactReport& report) {
+  double sum = report.elastic_energy + report.power.sum();
+  for (const SiteReport& site : report.sites) {
+    sum += site.force_on_A.sum() + site.torque_on_A.sum() + site.metrics.centroid.sum();
+  }
+  return sum - sum == 0.0;
+}
+
+bool any(const std::vector<char>& flags, std::size_t count) {
+  return std::any_of(flags.begin(), flags.begin() + static_cast<std::ptrdiff_t>(count),
+                     [](char flag) { return flag != 0; });
+}
+
+}  // namespace
+
+SceneContact::SceneContact(const mjModel* m)
+    : keys_(read_scene_keys(m)),
+      geom_pairs_(pairs_of(m, keys_)),
+      solids_(solids_of(m, geom_pairs_)),
+      cull_(geom_pairs_, solids_) {
+  warn_about_model(m);
+  if (geom_pairs_.empty()) {
+    warn_once("no two geoms can touch: check contype, conaffinity and volcontact/option/pairs");
+  }
+  pairs_.reserve(geom_pairs_.size());
+  for (const GeomPair& pair : geom_pairs_) add_pair(m, pair);
+}
+
+void SceneContact::warn_once(const std::string& warning) {
+  if (std::find(warnings_.begin(), warnings_.end(), warning) == warnings_.end()) {
+    warnings_.push_back(warning);
+  }
+}
+
+void SceneContact::add_pair(const mjModel* m, const GeomPair& geoms) {
+  const auto side = [&](int geom) {
+    const int material = keys_.material_of_geom[static_cast<std::size_t>(geom)];
+    return Side{label(m, mjOBJ_GEOM, geom), m->geom_friction[3 * geom],
+                material < 0 ? nullptr : &keys_.materials[static_cast<std::size_t>(material)]};
+  };
+  const KeyedValues* listed =
+      geoms.listed < 0 ? nullptr : &keys_.pairs[static_cast<std::size_t>(geoms.listed)].keyed;
+  PairLaws laws = combine(side(geoms.a), side(geoms.b), listed);
+  for (const std::string& warning : laws.warnings) warn_once(warning);
+
+  const Shape& a = solids_[static_cast<std::size_t>(geoms.a)];
+  const Shape& b = solids_[static_cast<std::size_t>(geoms.b)];
+  const SceneOptions& options = keys_.options;
+  Engine engine = options.engine == Engine::kAuto ? engine_for(a, b) : options.engine;
+  if (!serves(engine, a, b)) {
+    warn_once(std::string("engine ") + to_string(engine) + " does not serve " + name_of(a) +
+              " with " + name_of(b) + "; auto serves them");
+    engine = engine_for(a, b);
+  }
+  ContactModel model({{a, b, Pose{}, Pose{}}}, laws.laws,
+                     {options.tolerance, engine, options.threads});
+  const int first_state = states_;
+  states_ += model.state_size();
+  pairs_.push_back({geoms, engine, std::move(laws), first_state, std::move(model)});
+}
+
+void SceneContact::warn_about_model(const mjModel* m) {
+  const std::string skipped = skipped_warning(m);
+  if (!skipped.empty()) warn_once(skipped);
+  if (has_flexes(m)) warn_once("flexes have no volumetric contact: they touch nothing");
+  if (keys_.options.target != Target::kXfrc) {
+    for (int i = 0; i < m->nsensor; ++i) {
+      const int type = m->sensor_type[i];
+      if (type == mjSENS_FORCE || type == mjSENS_TORQUE) {
+        warn_once(
+            "force and torque sensors see the contact only with "
+            "volcontact/option/target/xfrc");
+      }
+    }
+  }
+  for (int i = 0; i < m->nsensor; ++i) {
+    if (m->sensor_type[i] == mjSENS_TOUCH) {
+      warn_once("touch sensors read 0 under volumetric contact");
+    }
+  }
+}
+
+std::string skipped_warning(const mjModel* m) {
+  const std::string flags = flags_that_skip_passive(m);
+  if (flags.empty()) return {};
+  return "MuJoCo does not call the passive callback with <flag " + flags +
+         "/>: there will be no contact at all";
+}
+
+UserdataLayout SceneContact::layout(const mjModel* m) const {
+  const int channels = keys_.options.target == Target::kApplied ? static_cast<int>(m->nv)
+                       : keys_.options.target == Target::kXfrc  ? 6 * static_cast<int>(m->nbody)
+                                                                : 0;
+  return {states_, channels};
+}
+
+UserdataBlock SceneContact::block(const mjModel* m, const mjData* d) const {
+  return {d->userdata + m->nuserdata, layout(m)};
+}
+
+int SceneContact::threads_for(const Scratch& scratch) const noexcept {
+  if (keys_.options.threads == 1 || scratch.cull.near.size() < 2) return 1;
+  double work = 0.0, longest = 0.0;
+  for (const int i : scratch.cull.near) {
+    const double time = typical_time(pairs_[static_cast<std::size_t>(i)].engine);
+    work += time;
+    longest = std::max(longest, time);
+  }
+  // One long pair among short ones is better shared by its own engine.
+  if (work < kWorthSharing || work < 2.0 * longest) return 1;
+  return static_cast<int>(std::min<double>(work / (0.25 * kWorthSharing), 1024.0));
+}
+
+void SceneContact::evaluate(const mjModel* m, const mjData* d, const LawState& states,
+                            Scratch& scratch) const noexcept {
+  cull_.run(d, scratch.cull);
+  const std::vector<int>& near = scratch.cull.near;
+  if (scratch.reports.size() < near.size()) {
+    scratch.reports.resize(near.size());
+    scratch.invalid.resize(near.size());
+  }
+  std::fill_n(states.pending, states_, 0.0);
+
+  const EvaluationGuard guard;
+  const int threads = std::min(guard.threads(keys_.options.threads), threads_for(scratch));
+  if (scratch.workspaces.size() < static_cast<std::size_t>(threads)) {
+    scratch.workspaces.resize(static_cast<std::size_t>(threads));
+  }
+  const auto evaluate_one = [&](std::size_t k, int thread) {
+    const PairContact& pair = pairs_[static_cast<std::size_t>(near[k])];
+    const BodyMotion motion{pose_of_geom(d, pair.geoms.a), pose_of_geom(d, pair.geoms.b),
+                            twist_of_geom(m, d, pair.geoms.a), twist_of_geom(m, d, pair.geoms.b)};
+    const LawState state{states.committed + pair.first_state, states.pending + pair.first_state,
+                         states.elapsed};
+    ContactModel::Workspace& workspace = scratch.workspaces[static_cast<std::size_t>(thread)];
+    ContactReport& report = scratch.reports[k];
+    pair.model.evaluate(motion, state, workspace, report);
+    scratch.invalid[k] =
+        workspace.interference.total.status == Status::kInvalid || !is_finite(report);
+    if (!scratch.invalid[k]) return;
+    report.sites.clear();
+    report.elastic_energy = 0.0;
+    report.power = {};
+    std::fill_n(state.pending, pair.model.state_size(), 0.0);
+  };
+  const int count = static_cast<int>(near.size());
+  if (threads == 1) {
+    for (int k = 0; k < count; ++k) evaluate_one(static_cast<std::size_t>(k), 0);
+    return;
+  }
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+  for (int k = 0; k < count; ++k) {
+    evaluate_one(static_cast<std::size_t>(k), omp_get_thread_num());
+  }
+}
+
+void SceneContact::write_forces(const mjModel* m, mjData* d, Scratch& scratch) const noexcept {
+  BodyForces& forces = scratch.forces;
+  forces.reset(m);
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    const GeomPair& geoms = pairs_[static_cast<std::size_t>(scratch.cull.near[k])].geoms;
+    for (const SiteReport& site : scratch.reports[k].sites) {
+      const Vec3& c = site.metrics.centroid;
+      forces.add(m, d, m->geom_bodyid[geoms.a], c, site.force_on_A, site.torque_on_A);
+      forces.add(m, d, m->geom_bodyid[geoms.b], c, -site.force_on_A, -site.torque_on_A);
+    }
+  }
+  const UserdataBlock our = block(m, d);
+  const bool cartesian = keys_.options.target == Target::kXfrc;
+  std::vector<double>& numbers = cartesian ? forces.cartesian(m, d) : forces.generalized(m, d);
+  const bool dropped = drop_non_finite(numbers);
+  if (dropped || any(scratch.invalid, scratch.cull.near.size())) our.dropped() += 1.0;
+  const int count = static_cast<int>(numbers.size());
+  switch (keys_.options.target) {
+    case Target::kApplied:
+      apply_beside_user(our, count, numbers.data(), d->qfrc_applied);
+      break;
+    case Target::kXfrc:
+      apply_beside_user(our, count, numbers.data(), d->xfrc_applied);
+      break;
+    case Target::kPassive:
+      for (int i = 0; i < count; ++i) {
+        d->qfrc_passive[i] += numbers[static_cast<std::size_t>(i)];
+      }
+      break;
+  }
+}
+
+void SceneContact::step(const mjModel* m, mjData* d, Scratch& scratch) const noexcept {
+  if (m->nuserdata < layout(m).size()) return;
+  const UserdataBlock our = block(m, d);
+  our.claim();
+  const double elapsed = open_slot(our, d->time, m->opt.timestep);
+  const bool continues = our.count() > 1;
+  if (scratch.no_states.size() < static_cast<std::size_t>(states_)) {
+    scratch.no_states.assign(static_cast<std::size_t>(states_), 0.0);
+  }
+  const double* committed = continues ? our.slot(1).states() : scratch.no_states.data();
+  evaluate(m, d, {committed, our.slot(0).states(), elapsed}, scratch);
+
+  double elastic = 0.0;
+  ByChannel power;
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    elastic += scratch.reports[k].elastic_energy;
+    power += scratch.reports[k].power;
+  }
+  const EnergyAccount before = continues ? our.slot(1).energy() : EnergyAccount{};
+  our.slot(0).set_energy(continued(before, elastic, power, elapsed));
+  write_forces(m, d, scratch);
+}
+
+bool SceneContact::revisit(const mjModel* m, const mjData* d, Scratch& scratch) const noexcept {
+  if (m->nuserdata < layout(m).size()) return false;
+  const UserdataBlock our = block(m, d);
+  if (!our.is_ours() || our.count() == 0) return false;
+  scratch.no_states.resize(static_cast<std::size_t>(states_), 0.0);
+  scratch.unused_states.resize(static_cast<std::size_t>(states_));
+  const bool continues = our.count() > 1;
+  const double elapsed = continues ? our.slot(0).time() - our.slot(1).time() : 0.0;
+  const double* committed = continues ? our.slot(1).states() : scratch.no_states.data();
+  evaluate(m, d, {committed, scratch.unused_states.data(), elapsed}, scratch);
+  return true;
+}
+
+EnergyAccount SceneContact::energy(const mjModel* m, const mjData* d) const noexcept {
+  if (m->nuserdata < layout(m).size()) return {};
+  const UserdataBlock our = block(m, d);
+  return our.is_ours() && our.count() > 0 ? our.slot(0).energy() : EnergyAccount{};
+}
+
+double SceneContact::dropped(const mjModel* m, const mjData* d) const noexcept {
+  if (m->nuserdata < layout(m).size()) return 0.0;
+  const UserdataBlock our = block(m, d);
+  return our.is_ours() ? our.dropped() : 0.0;
+}
+
+void SceneContact::release(const mjModel* m, mjData* d) const noexcept {
+  if (m->nuserdata < layout(m).size()) return;
+  const UserdataBlock our = block(m, d);
+  if (keys_.options.target == Target::kApplied) {
+    release_to_user(our, layout(m).channels, d->qfrc_applied);
+  } else if (keys_.options.target == Target::kXfrc) {
+    release_to_user(our, layout(m).channels, d->xfrc_applied);
+  }
+}
+
+}  // namespace volcontact::adaptor

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "adaptor/body_forces.h"
+#include "adaptor/pair_list.h"
+#include "adaptor/scene_keys.h"
+#include "adaptor/userdata_layout.h"
+#include "volcontact/model/contact_model.h"
+
+namespace volcontact::adaptor {
+
+/// The contact model of one pair of geoms. Body A is the frame of geom a, body B that of geom b.
+struct PairContact {
+  GeomPair geoms;
+  Engine engine;  ///< the one that will serve
+  PairLaws laws;
+  int first_state;  ///< offset in the law states of the scene
+  ContactModel model;
+};
+
+/// Volumetric contact of one scene. Const once made: what lasts from step to step is in
+/// mjData.userdata, so one object serves any number of mjData, threads and copies of the model.
+class SceneContact {
+ public:
+  /// Memory of one evaluation; one per thread, reused from call to call.
+  struct Scratch {
+    Cull::Scratch cull;                  ///< `near`: the pairs evaluated
+    std::vector<ContactReport> reports;  ///< of the pairs in `near`, finite numbers only
+    std::vector<char> invalid;           ///< whether a report was left out, having no numbers
+    std::vector<ContactModel::Workspace> workspaces;  ///< one per OpenMP thread
+    std::vector<double> no_states;
+    std::vector<double> unused_states;
+    BodyForces forces;
+  };
+
+  /// Reads the scene. Throws std::invalid_argument with a message for the author of the scene.
+  explicit SceneContact(const mjModel* m);
+
+  const SceneKeys& keys() const { return keys_; }
+  const SceneOptions& options() const { return keys_.options; }
+  const std::vector<Shape>& solids() const { return solids_; }
+  const std::vector<PairContact>& pairs() const { return pairs_; }
+  const std::vector<std::string>& warnings() const { return warnings_; }
+  UserdataLayout layout(const mjModel* m) const;
+
+  /// Our block in `d`; only valid where m->nuserdata has room for it.
+  UserdataBlock block(const mjModel* m, const mjData* d) const;
+
+  /// What the passive callback does: evaluates all pairs at the poses and velocities in `d` and
+  /// writes the forces to the target. The same result however often it is called at one time.
+  void step(const mjModel* m, mjData* d, Scratch& scratch) const noexcept;
+
+  /// Evaluates all pairs again at the state of the last evaluation, for reading, into
+  /// `scratch.reports`; nothing is written to `d`. Returns false when there was no evaluation.
+  bool revisit(const mjModel* m, const mjData* d, Scratch& scratch) const noexcept;
+
+  /// Energies of the last evaluation; zero when there was none.
+  EnergyAccount energy(const mjModel* m, const mjData* d) const noexcept;
+
+  /// Evaluations in which a force was no number and was left out.
+  double dropped(const mjModel* m, const mjData* d) const noexcept;
+
+  /// Takes our part out of the force array of the target.
+  void release(const mjModel* m, mjData* d) const noexcept;
+
+ private:
+  void add_pair(const mjModel* m, const GeomPair& geoms);
+  void warn_about_model(const mjModel* m);
+  void warn_once(const std::string& warning);
+  void evaluate(const mjModel* m, const mjData* d, const LawState& states,
+                Scratch& scratch) const noexcept;
+  int threads_for(const Scratch& scratch) const noexcept;
+  void write_forces(const mjModel* m, mjData* d, Scratch& scratch) const noexcept;
+
+  SceneKeys keys_;
+  std::vector<GeomPair> geom_pairs_;
+  std::vector<Shape> solids_;  // by geom; of geoms without a pair a placeholder
+  std::vector<PairContact> pairs_;
+  Cull cull_;
+  int states_ = 0;
+  std::vector<std::string> warnings_;
+};
+
+/// What to tell the author when the flags of the model make MuJoCo leave out the callback; empty
+/// when they do not.
+std::string skipped_warning(const mjModel* m);
+
+}  // namespace volcontact::adaptor

@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/scene_keys.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include "volcontact/base/check.h"
+
+namespace volcontact::adaptor {
+namespace {
+
+constexpr std::string_view kRoot = "volcontact/";
+const std::vector<std::string> kSections{"material", "option", "pair"};
+
+// "c1_volcontact/material/rubber/stiffness" split: prefix "c1_", parts {material, rubber,
+// stiffness}.
+struct Key {
+  std::string text;
+  std::string prefix;
+  std::vector<std::string> parts;
+
+  // "c1_volcontact/" + the first `count` parts.
+  std::string stem(std::size_t count) const {
+    std::string out = prefix + std::string(kRoot);
+    for (std::size_t i = 0; i < count; ++i) out += (i ? "/" : "") + parts[i];
+    return out;
+  }
+};
+
+std::vector<std::string> split(std::string_view text) {
+  std::vector<std::string> parts;
+  std::istringstream stream{std::string(text)};
+  for (std::string part; std::getline(stream, part, '/');) parts.push_back(part);
+  if (text.empty() || text.back() == '/') parts.emplace_back();
+  return parts;
+}
+
+// Null when the name is not one of ours. A first word that is nearly `volcontact` is an error: the
+// key would be ignored in silence.
+std::optional<Key> parse_key(const std::string& name) {
+  const std::size_t at = name.find(kRoot);
+  if (at != std::string::npos) {
+    return Key{name, name.substr(0, at), split(std::string_view(name).substr(at + kRoot.size()))};
+  }
+  const std::size_t slash = name.find('/');
+  if (slash == std::string::npos) return std::nullopt;
+  const std::string root(kRoot.substr(0, kRoot.size() - 1));
+  require(nearest_spelling(name.substr(0, slash), {root}).empty(),
+          name + ": unknown key (did you mean '" + root + name.substr(slash) + "'?)");
+  return std::nullopt;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
+  return out;
+}
+
+[[noreturn]] void unknown(Key key, std::size_t part, const std::vector<std::string>& words) {
+  const std::string stem = key.stem(part) + (part ? "/" : "");
+  std::string message =
+      key.text + ": unknown key; after '" + stem + "' comes one of " + joined(words);
+  const std::string word = part < key.parts.size() ? key.parts[part] : "";
+  const std::string nearest = nearest_spelling(word, words);
+  if (!nearest.empty()) {
+    key.parts[part] = nearest;
+    message += " (did you mean '" + key.stem(key.parts.size()) + "'?)";
+  }
+  throw std::invalid_argument(message);
+}
+
+class KeyReader {
+ public:
+  explicit KeyReader(const mjModel* m) : m_(m) {
+    keys_.material_of_geom.assign(static_cast<std::size_t>(m->ngeom), -1);
+  }
+
+  SceneKeys read() {
+    refuse_texts();
+    for (int i = 0; i < m_->ntuple; ++i) {
+      if (const auto key = parse_key(m_->names + m_->name_tupleadr[i])) read_tuple(*key, i);
+    }
+    for (int i = 0; i < m_->nnumeric; ++i) {
+      if (const auto key = parse_key(m_->names + m_->name_numericadr[i])) read_numeric(*key, i);
+    }
+    finish_options();
+    for (const KeyedValues& material : keys_.materials) check_fields(material);
+    for (const ListedPair& pair : keys_.pairs) check_fields(pair.keyed);
+    return std::move(keys_);
+  }
+
+ private:
+  void refuse_texts() const {
+    for (int i = 0; i < m_->ntext; ++i) {
+      const std::string name = m_->names + m_->name_textadr[i];
+      require(!parse_key(name), name + ": is a <text>; volcontact reads <numeric> and <tuple>");
+    }
+  }
+
+  // Tuples: which geoms a material or a pair is about.
+
+  void read_tuple(const Key& key, int tuple) {
+    const std::vector<std::string> sections{"material", "pair"};
+    const std::string& section = key.parts[0];
+    if (section != "material" && section != "pair") unknown(key, 0, sections);
+    require(
+        key.parts.size() == 2 && !key.parts[1].empty(),
+        key.text + ": a tuple is named " + key.prefix + std::string(kRoot) + section + "/<name>");
+    if (section == "material") {
+      read_material(key, tuple);
+    } else {
+      read_pair(key, tuple);
+    }
+  }
+
+  std::vector<int> geoms_of_element(const Key& key, int tuple, int element) const {
+    const int at = m_->tuple_adr[tuple] + element;
+    const int type = m_->tuple_objtype[at], id = m_->tuple_objid[at];
+    if (type == mjOBJ_GEOM) return {id};
+    require(type == mjOBJ_BODY || type == mjOBJ_XBODY,
+            key.text + ": element " + std::to_string(element + 1) + " is a " + mju_type2Str(type) +
+                "; a tuple takes geoms and bodies only");
+    std::vector<int> geoms;
+    for (int i = 0; i < m_->body_geomnum[id]; ++i) geoms.push_back(m_->body_geomadr[id] + i);
+    require(!geoms.empty(), key.text + ": body '" + label(m_, mjOBJ_BODY, id) + "' has no geoms");
+    return geoms;
+  }
+
+  void read_material(const Key& key, int tuple) {
+    const int index = static_cast<int>(keys_.materials.size());
+    keys_.materials.push_back({key.text, {}, {}});
+    for (int element = 0; element < m_->tuple_size[tuple]; ++element) {
+      for (const int geom : geoms_of_element(key, tuple, element)) {
+        int& owner = keys_.material_of_geom[static_cast<std::size_t>(geom)];
+        require(owner < 0,
+                key.text + ": geom '" + label(m_, mjOBJ_GEOM, geom) + "' is listed already, in " +
+                    (owner < 0 ? "" : keys_.materials[static_cast<std::size_t>(owner)].key) +
+                    "; a geom has one material");
+        owner = index;
+      }
+    }
+  }
+
+  void read_pair(const Key& key, int tuple) {
+    require(m_->tuple_size[tuple] == 2, key.text +
+                                            ": a pair lists exactly 2 geoms or bodies, got " +
+                                            std::to_string(m_->tuple_size[tuple]));
+    const int index = static_cast<int>(keys_.pairs.size());
+    keys_.pairs.push_back({{key.text, {}, {}}, {}});
+    for (const int a : geoms_of_element(key, tuple, 0)) {
+      for (const int b : geoms_of_element(key, tuple, 1)) add_geom_pair(key, index, a, b);
+    }
+    require(!keys_.pairs.back().geoms.empty(),
+            key.text + ": the two are parts of one rigid body and cannot touch each other");
+  }
+
+  void add_geom_pair(const Key& key, int index, int a, int b) {
+    if (m_->body_weldid[m_->geom_bodyid[a]] == m_->body_weldid[m_->geom_bodyid[b]]) return;
+    require(m_->geom_type[a] != mjGEOM_PLANE || m_->geom_type[b] != mjGEOM_PLANE,
+            key.text + ": two planes cannot be a pair");
+    const std::pair<int, int> geoms = std::minmax(a, b);
+    const auto [entry, is_new] = keys_.pair_of_geoms.emplace(geoms, index);
+    require(is_new, key.text + ": geoms '" + label(m_, mjOBJ_GEOM, a) + "' and '" +
+                        label(m_, mjOBJ_GEOM, b) + "' are listed already, in " +
+                        keys_.pairs[static_cast<std::size_t>(entry->second)].keyed.key);
+    keys_.pairs[static_cast<std::size_t>(index)].geoms.push_back(geoms);
+  }
+
+  // Numerics: fields, choices and options.
+
+  void read_numeric(const Key& key, int numeric) {
+    keys_.numerics.push_back({m_->numeric_adr[numeric], m_->numeric_size[numeric]});
+    const mjtNum* data = m_->numeric_data + m_->numeric_adr[numeric];
+    const std::vector<double> numbers(data, data + m_->numeric_size[numeric]);
+    if (key.parts[0] == "option") {
+      read_option(key, numbers);
+    } else if (key.parts[0] == "material" || key.parts[0] == "pair") {
+      read_keyed(key, numbers);
+    } else {
+      unknown(key, 0, kSections);
+    }
+  }
+
+  KeyedValues& owner_of(const Key& key) {
+    const std::string stem = key.stem(2);
+    std::vector<std::string> names;
+    for (KeyedValues& material : keys_.materials) {
+      if (material.key == stem) return material;
+      names.push_back(material.key);
+    }
+    for (ListedPair& pair : keys_.pairs) {
+      if (pair.keyed.key == stem) return pair.keyed;
+      names.push_back(pair.keyed.key);
+    }
+    throw std::invalid_argument(key.text + ": there is no <tuple name=\"" + stem +
+                                "\"> that says which geoms it is for" + did_you_mean(stem, names));
+  }
+
+  void read_keyed(const Key& key, const std::vector<double>& numbers) {
+    if (key.parts.size() < 3) unknown(key, 2, words_after_name());
+    const std::string& word = key.parts[2];
+    const FieldRow* field = field_of_any_law(word);
+    const ChoiceRow* choice = find_choice(word);
+    if (!field && !choice) unknown(key, 2, words_after_name());
+    KeyedValues& owner = owner_of(key);
+    if (choice) {
+      read_choice(key, 3, choice->words, numbers, owner.choices);
+      return;
+    }
+    if (key.parts.size() > 3) {
+      throw std::invalid_argument(key.text + ": unknown key (did you mean '" + key.stem(3) + "'?)");
+    }
+    check_count(key, field->defaults.size(), numbers);
+    for (const double number : numbers) {
+      require(field->range.contains(number),
+              out_of_range_message(key.stem(2), field->name, field->unit, number, field->range));
+    }
+    owner.values[word] = numbers;
+  }
+
+  static const ChoiceRow* find_choice(const std::string& name) {
+    for (const ChoiceRow& choice : all_choices()) {
+      if (choice.name == name) return &choice;
+    }
+    return nullptr;
+  }
+
+  static std::vector<std::string> words_after_name() {
+    std::vector<std::string> words = all_field_names();
+    for (const ChoiceRow& choice : all_choices()) words.push_back(choice.name);
+    return words;
+  }
+
+  static void check_count(const Key& key, std::size_t wanted, const std::vector<double>& numbers) {
+    require(numbers.size() == wanted, key.text + " takes " + std::to_string(wanted) +
+                                          (wanted == 1 ? " number, got " : " numbers, got ") +
+                                          std::to_string(numbers.size()));
+  }
+
+  // A choice is spelled in the key: .../friction_law/regularized_coulomb with data 1, or 0 for
+  // "not this one", so that a program can switch it in a compiled model.
+  static void read_choice(const Key& key, std::size_t part, const std::vector<std::string>& words,
+                          const std::vector<double>& numbers, ChoiceValues& choices) {
+    if (key.parts.size() <= part) unknown(key, part, words);
+    const std::string& word = key.parts[part];
+    if (std::find(words.begin(), words.end(), word) == words.end()) unknown(key, part, words);
+    if (key.parts.size() > part + 1) {
+      throw std::invalid_argument(key.text + ": unknown key (did you mean '" + key.stem(part + 1) +
+                                  "'?)");
+    }
+    check_count(key, 1, numbers);
+    require(numbers[0] == 0.0 || numbers[0] == 1.0,
+            key.text + ": the choice is in the key; its data must be 1 (or 0 for off)");
+    if (numbers[0] == 0.0) return;
+    const auto [entry, is_new] = choices.emplace(key.parts[part - 1], word);
+    require(is_new, key.text + ": " + key.stem(part) + "/" + entry->second + " is chosen already");
+  }
+
+  // Options of the scene itself come before those of attached models, which must agree.
+
+  struct GivenOption {
+    std::string prefix;
+    std::string key;
+    std::vector<double> numbers;
+    std::string word;
+  };
+
+  static const std::map<std::string, std::vector<std::string>>& option_choices() {
+    static const std::map<std::string, std::vector<std::string>> choices = [] {
+      std::map<std::string, std::vector<std::string>> made;
+      for (const Engine engine : kEngines) made["engine"].emplace_back(to_string(engine));
+      made["target"] = {std::begin(kTargetWords), std::end(kTargetWords)};
+      made["pairs"] = {std::begin(kPairRuleWords), std::end(kPairRuleWords)};
+      return made;
+    }();
+    return choices;
+  }
+
+  void read_option(const Key& key, const std::vector<double>& numbers) {
+    std::vector<std::string> names = field_names<OptionNumbers>();
+    for (const auto& [name, words] : option_choices()) names.push_back(name);
+    if (key.parts.size() < 2) unknown(key, 1, names);
+    const std::string& name = key.parts[1];
+    const auto choice = option_choices().find(name);
+    if (choice != option_choices().end()) {
+      ChoiceValues chosen;
+      const auto before = options_.find(name);
+      if (before != options_.end() && before->second.prefix == key.prefix) {
+        chosen[name] = before->second.word;
+      }
+      read_choice(key, 2, choice->second, numbers, chosen);
+      if (numbers[0] == 1.0) keep_option(name, {key.prefix, key.text, numbers, key.parts[2]});
+      return;
+    }
+    const auto* field = find_field<OptionNumbers>(name);
+    if (!field || key.parts.size() > 2) unknown(key, 1, names);
+    check_count(key, 1, numbers);
+    require(field->range.contains(numbers[0]) &&
+                (name != "threads" || numbers[0] == std::floor(numbers[0])),
+            out_of_range_message(key.stem(1), field->name, field->unit, numbers[0], field->range));
+    keep_option(name, {key.prefix, key.text, numbers, ""});
+  }
+
+  void keep_option(const std::string& name, GivenOption option) {
+    const auto [entry, is_new] = options_.emplace(name, option);
+    if (is_new) return;
+    GivenOption& before = entry->second;
+    if (before.prefix.empty()) return;
+    require(
+        option.prefix.empty() || (before.numbers == option.numbers && before.word == option.word),
+        option.key + " and " + before.key + " differ; say which in " + std::string(kRoot) +
+            "option/" + name);
+    before = std::move(option);
+  }
+
+  template <typename Enum, std::size_t kCount>
+  void set_choice(const std::string& name, const char* const (&words)[kCount], Enum& out) const {
+    const auto given = options_.find(name);
+    if (given == options_.end()) return;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      if (given->second.word == words[i]) out = static_cast<Enum>(i);
+    }
+  }
+
+  void finish_options() {
+    OptionNumbers::Params numbers;
+    for (const auto& field : OptionNumbers::kFields) {
+      const auto given = options_.find(field.name);
+      if (given != options_.end()) field.set(numbers, 0, given->second.numbers[0]);
+    }
+    SceneOptions& options = keys_.options;
+    options.tolerance = numbers.tolerance;
+    options.threads = static_cast<int>(numbers.threads);
+    const auto engine = options_.find("engine");
+    if (engine != options_.end()) options.engine = engine_from(engine->second.word);
+    set_choice("target", kTargetWords, options.target);
+    set_choice("pairs", kPairRuleWords, options.pairs);
+  }
+
+  // A material that names its law may only give that law's fields.
+  static void check_fields(const KeyedValues& keyed) {
+    const auto normal = keyed.choices.find(kNormalLaw), friction = keyed.choices.find(kFrictionLaw);
+    for (const auto& [name, value] : keyed.values) {
+      for (const auto& [choice, laws] :
+           {std::pair{normal, &normal_laws()}, std::pair{friction, &friction_laws()}}) {
+        if (choice == keyed.choices.end()) continue;
+        const LawRow& law = law_called(*laws, choice->second);
+        const bool of_this_kind =
+            std::any_of(laws->begin(), laws->end(),
+                        [&, &field = name](const LawRow& other) { return other.field(field); });
+        std::vector<std::string> fields;
+        for (const FieldRow& field : law.fields) fields.push_back(field.name);
+        require(!of_this_kind || law.field(name), keyed.key + "/" + name + ": " + law.name +
+                                                      " has no such field; it has " +
+                                                      joined(fields));
+      }
+    }
+  }
+
+  const mjModel* m_;
+  SceneKeys keys_;
+  std::map<std::string, GivenOption> options_;
+};
+
+}  // namespace
+
+SceneKeys read_scene_keys(const mjModel* m) { return KeyReader(m).read(); }
+
+}  // namespace volcontact::adaptor

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adaptor/materials.h"
+#include "adaptor/mujoco_compat.h"
+#include "volcontact/pair/engine.h"
+
+namespace volcontact::adaptor {
+
+/// Where the contact forces are written.
+enum class Target : int {
+  kApplied = 0,  ///< mjData.qfrc_applied, beside what the user wrote there
+  kPassive = 1,  ///< mjData.qfrc_passive: no user write can disturb it
+  kXfrc = 2,     ///< mjData.xfrc_applied: force and torque sensors see it
+};
+inline constexpr const char* kTargetWords[] = {"applied", "passive", "xfrc"};
+
+/// Which pairs are volumetric.
+enum class PairRule : int {
+  kNative = 0,  ///< all that MuJoCo itself would let collide, and those listed
+  kListed = 1,  ///< only those of a volcontact/pair/...; the rest stays native
+};
+inline constexpr const char* kPairRuleWords[] = {"native", "listed"};
+
+/// The options that are numbers.
+struct OptionNumbers {
+  static constexpr const char* kName = "volcontact/option";
+  struct Params {
+    double tolerance = 1e-3;
+    double threads = 0.0;
+  };
+  static constexpr std::array kFields{
+      Field<Params>{"tolerance", "-", &Params::tolerance,
+                    Range{0.0, 1.0, true, true, "> 0 and < 1"},
+                    "relative error asked of the volume"},
+      Field<Params>{"threads", "-", &Params::threads,
+                    Range{0.0, 1024.0, false, false, "a whole number from 0 to 1024"},
+                    "0 decides by work"}};
+};
+
+struct SceneOptions {
+  double tolerance = 1e-3;
+  int threads = 0;
+  Engine engine = Engine::kAuto;
+  Target target = Target::kApplied;
+  PairRule pairs = PairRule::kNative;
+};
+
+/// A volcontact/pair/...: its values and the geom pairs it stands for, lower geom first.
+struct ListedPair {
+  KeyedValues keyed;
+  std::vector<std::pair<int, int>> geoms;
+};
+
+/// Numbers [address, address + size) of mjModel.numeric_data that belong to volcontact.
+struct NumericSpan {
+  int address;
+  int size;
+};
+
+/// Everything that the `volcontact/...` numerics and tuples of a model say.
+struct SceneKeys {
+  SceneOptions options;
+  std::vector<KeyedValues> materials;
+  std::vector<int> material_of_geom;  ///< index into `materials`, -1 for the default material
+  std::vector<ListedPair> pairs;
+  std::map<std::pair<int, int>, int> pair_of_geoms;  ///< index into `pairs`, lower geom first
+  std::vector<NumericSpan> numerics;
+};
+
+/// Reads the keys; docs/plugin.md, "Keys". Names may carry the prefix that MjSpec.attach puts
+/// before `volcontact/`; materials and pairs of different prefixes are different ones. Throws
+/// std::invalid_argument naming the key, the allowed range and the nearest valid spelling.
+SceneKeys read_scene_keys(const mjModel* m);
+
+}  // namespace volcontact::adaptor

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/scene_registry.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+#include "volcontact/base/check.h"
+
+namespace volcontact::adaptor {
+namespace {
+
+// One set of numbers a model had, and the contact made of it. Where the numbers were not valid the
+// contact is that of the last valid ones.
+struct Variant {
+  ModelContent content;
+  std::shared_ptr<const SceneContact> contact;
+  std::string error;
+  mutable std::atomic<bool> reported{false};
+
+  Variant(const mjModel* m, std::shared_ptr<const SceneContact> made, std::string why)
+      : content(m, made->keys().numerics), contact(std::move(made)), error(std::move(why)) {}
+};
+using VariantPointer = std::shared_ptr<const Variant>;
+
+// Simulations of a batch may have numbers of their own, in turn: keep a good many.
+constexpr std::size_t kVariantsKept = 64;
+
+struct AttachedScene {
+  const mjModel* model;
+  bool contact_was_disabled;
+  std::vector<VariantPointer> variants;  // the latest last
+  std::shared_ptr<const SceneContact> last_valid;
+};
+
+std::mutex registry_mutex;
+std::vector<AttachedScene>& registry() {
+  static std::vector<AttachedScene> scenes;
+  return scenes;
+}
+// Grows with every attach and detach, so that threads notice.
+std::atomic<std::uint64_t> generation{1};
+
+void require_room(const mjModel* m, const SceneContact& contact) {
+  const int needed = contact.layout(m).size();
+  const long long present = m->nuserdata;
+  require(present >= needed,
+          "mjData.userdata is too small: volcontact needs " + std::to_string(needed) +
+              " numbers at its end and nuserdata is " + std::to_string(present) +
+              "; load the scene with volcontact.load, or write <size nuserdata=\"" +
+              std::to_string(needed + present) + "\"/> into it");
+}
+
+std::vector<AttachedScene>::iterator find_scene(const mjModel* m) {
+  return std::find_if(registry().begin(), registry().end(),
+                      [m](const AttachedScene& scene) { return scene.model == m; });
+}
+
+// What may not change in an attached model.
+void require_same_structure(const SceneContact& before, const SceneContact& now) {
+  require(before.options().target == now.options().target,
+          "volcontact/option/target cannot change while the model is attached");
+  require(before.options().pairs == now.options().pairs,
+          "volcontact/option/pairs cannot change while the model is attached");
+}
+
+// The contact for the present numbers of `m`, made when they are new.
+VariantPointer variant_for(AttachedScene& scene, const mjModel* m) {
+  for (const VariantPointer& variant : scene.variants) {
+    if (variant->content.has_same_values(m)) return variant;
+  }
+  std::string error;
+  try {
+    auto contact = std::make_shared<const SceneContact>(m);
+    require_same_structure(*scene.last_valid, *contact);
+    require_room(m, *contact);
+    scene.last_valid = std::move(contact);
+  } catch (const std::exception& invalid) {
+    error = invalid.what();
+  }
+  if (scene.variants.size() == kVariantsKept) scene.variants.erase(scene.variants.begin());
+  scene.variants.push_back(std::make_shared<const Variant>(m, scene.last_valid, error));
+  return scene.variants.back();
+}
+
+// A copy of an attached model has its content and, like it, native contact off; so a second load of
+// the same file, or the model that MuJoCo makes while it compiles one, is not taken for a copy.
+bool is_copy_of(const AttachedScene& scene, const mjModel* m) {
+  return (m->opt.disableflags & mjDSBL_CONTACT) != 0 &&
+         scene.variants.back()->content.is_same_model(m);
+}
+
+VariantPointer look_up(const mjModel* m) {
+  const std::lock_guard lock(registry_mutex);
+  const auto own = find_scene(m);
+  if (own != registry().end() && own->variants.back()->content.is_same_model(m)) {
+    return variant_for(*own, m);
+  }
+  for (AttachedScene& scene : registry()) {
+    if (is_copy_of(scene, m)) return variant_for(scene, m);
+  }
+  return nullptr;
+}
+
+// What a thread found last for a model. The address is a hint only: content decides.
+struct Found {
+  const mjModel* model = nullptr;
+  std::uint64_t generation = 0;
+  VariantPointer variant;
+};
+
+// Valid until this thread asks for another model: the cache keeps it alive.
+const Variant* find_variant(const mjModel* m) {
+  thread_local std::array<Found, 4> cache;
+  thread_local std::size_t next = 0;
+  const std::uint64_t now = generation.load(std::memory_order_acquire);
+  for (const Found& found : cache) {
+    if (found.model == m && found.generation == now && found.variant &&
+        found.variant->content.is_same_model(m) && found.variant->content.has_same_values(m)) {
+      return found.variant.get();
+    }
+  }
+  VariantPointer variant = look_up(m);
+  if (!variant) return nullptr;
+  const auto same = std::find_if(cache.begin(), cache.end(),
+                                 [m](const Found& found) { return found.model == m; });
+  Found& place = same != cache.end() ? *same : cache[next++ % cache.size()];
+  place = {m, now, std::move(variant)};
+  return place.variant.get();
+}
+
+}  // namespace
+
+std::string attach_scene(mjModel* m) {
+  require(!sleep_enabled(m),
+          "the model has <flag sleep=\"enable\"/>: volumetric contact never wakes a sleeping body; "
+          "disable it");
+  auto contact = std::make_shared<const SceneContact>(m);
+  require_room(m, *contact);
+  const auto first = std::make_shared<const Variant>(m, contact, "");
+  const std::lock_guard lock(registry_mutex);
+  require(find_scene(m) == registry().end(), "the model is attached already");
+  const bool was_disabled = (m->opt.disableflags & mjDSBL_CONTACT) != 0;
+  registry().push_back({m, was_disabled, {first}, contact});
+  m->opt.disableflags |= mjDSBL_CONTACT;
+  generation.fetch_add(1, std::memory_order_release);
+  return skipped_warning(m);
+}
+
+bool detach_scene(mjModel* m) {
+  const std::lock_guard lock(registry_mutex);
+  const auto scene = find_scene(m);
+  if (scene == registry().end()) return false;
+  if (!scene->contact_was_disabled) m->opt.disableflags &= ~mjDSBL_CONTACT;
+  registry().erase(scene);
+  generation.fetch_add(1, std::memory_order_release);
+  return true;
+}
+
+bool is_attached(const mjModel* m) {
+  const std::lock_guard lock(registry_mutex);
+  return find_scene(m) != registry().end();
+}
+
+int attached_scenes() {
+  const std::lock_guard lock(registry_mutex);
+  return static_cast<int>(registry().size());
+}
+
+const SceneContact* contact_of(const mjModel* m) noexcept {
+  try {
+    const Variant* variant = find_variant(m);
+    if (!variant) return nullptr;
+    if (!variant->error.empty() && !variant->reported.exchange(true)) {
+      write_warning(("volcontact goes on with the last valid numbers: " + variant->error).c_str());
+    }
+    return variant->contact.get();
+  } catch (...) {
+    return nullptr;  // out of memory
+  }
+}
+
+std::string live_error(const mjModel* m) {
+  const Variant* variant = find_variant(m);
+  return variant ? variant->error : "";
+}
+
+}  // namespace volcontact::adaptor

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "volcontact/model/contact_report.h"
+
+// The one place that knows how volcontact uses mjData.userdata. All that lasts from one evaluation
+// to the next lies there, so that copies, resets and checkpoints of mjData are exact.
+//
+// Our block is the end of userdata; what comes before it belongs to the user:
+//
+//   [ user's numbers | slots: kSlots x (kSlotHead + states) | ledger | header: kHeader ]
+//
+// Ledger and header keep their place when the number of law states changes. All zero, as mjData is
+// made and reset, means "never evaluated".
+
+namespace volcontact::adaptor {
+
+/// Sizes of the block, in numbers.
+struct UserdataLayout {
+  static constexpr int kVersion = 1;
+  static constexpr int kHeader = 8;
+  static constexpr int kSlots = 4;      ///< covers the stages of one Runge-Kutta step
+  static constexpr int kSlotHead = 11;  ///< time, step, elastic energy, dissipated x4, power x4
+
+  int states = 0;    ///< law states of all pairs
+  int channels = 0;  ///< forces in the ledger: nv for applied, 6 nbody for xfrc, 0 for passive
+
+  int slot_size() const { return kSlotHead + states; }
+  int ledger_size() const { return 2 * channels; }
+  int size() const { return kSlots * slot_size() + ledger_size() + kHeader; }
+};
+
+/// Energies of one evaluation.
+struct EnergyAccount {
+  double elastic = 0.0;  ///< [J]
+  ByChannel dissipated;  ///< since the start [J]
+  ByChannel power;       ///< at the evaluation [W]
+};
+
+/// What one evaluation left: its time, its energies, its law states.
+class Slot {
+ public:
+  explicit Slot(double* numbers) : p_(numbers) {}
+
+  double& time() const { return p_[0]; }
+  double& step() const { return p_[1]; }
+  double* states() const { return p_ + UserdataLayout::kSlotHead; }
+
+  EnergyAccount energy() const {
+    return {p_[2], {p_[3], p_[4], p_[5], p_[6]}, {p_[7], p_[8], p_[9], p_[10]}};
+  }
+  void set_energy(const EnergyAccount& e) const {
+    const double numbers[] = {e.elastic,          e.dissipated.normal, e.dissipated.roll,
+                              e.dissipated.slide, e.dissipated.spin,   e.power.normal,
+                              e.power.roll,       e.power.slide,       e.power.spin};
+    std::copy(std::begin(numbers), std::end(numbers), p_ + 2);
+  }
+
+ private:
+  double* p_;
+};
+
+/// Our block in one mjData.
+class UserdataBlock {
+ public:
+  /// `end` is one past the last number of userdata.
+  UserdataBlock(double* end, const UserdataLayout& layout)
+      : layout_(layout), header_(end - UserdataLayout::kHeader) {}
+
+  /// False until an evaluation has written it, and after a reset.
+  bool is_ours() const {
+    return header_[0] == kMagic && header_[1] == UserdataLayout::kVersion &&
+           header_[2] == layout_.channels;
+  }
+
+  /// Makes the block ours. A change in the number of law states forgets the states and the energy
+  /// account, but not the ledger.
+  void claim() const {
+    if (!is_ours()) {
+      std::fill_n(header_ - layout_.ledger_size(), layout_.ledger_size() + UserdataLayout::kHeader,
+                  0.0);
+      header_[0] = kMagic;
+      header_[1] = UserdataLayout::kVersion;
+      header_[2] = layout_.channels;
+    }
+    if (header_[3] != layout_.states) {
+      header_[3] = layout_.states;
+      set_count(0);
+    }
+  }
+
+  int count() const { return static_cast<int>(header_[4]); }
+  void set_count(int count) const { header_[4] = count; }
+
+  /// Slot `age` evaluations back, 0 for the newest; age < count().
+  Slot slot(int age) const {
+    const int index = (newest() + UserdataLayout::kSlots - age) % UserdataLayout::kSlots;
+    return Slot(header_ - layout_.ledger_size() -
+                (UserdataLayout::kSlots - index) * layout_.slot_size());
+  }
+
+  void drop_newest() const {
+    header_[5] = (newest() + UserdataLayout::kSlots - 1) % UserdataLayout::kSlots;
+    set_count(count() - 1);
+  }
+  void push() const {
+    header_[5] = (newest() + 1) % UserdataLayout::kSlots;
+    set_count(std::min(count() + 1, UserdataLayout::kSlots));
+  }
+
+  bool ledger_is_valid() const { return header_[6] != 0.0; }
+  void set_ledger_valid() const { header_[6] = 1.0; }
+  double* base() const { return header_ - layout_.ledger_size(); }
+  double* left() const { return base() + layout_.channels; }
+
+  /// Evaluations in which a force was no number and was left out.
+  double& dropped() const { return header_[7]; }
+
+ private:
+  static constexpr double kMagic = 860310740.0;
+
+  int newest() const { return static_cast<int>(header_[5]); }
+
+  UserdataLayout layout_;
+  double* header_;
+};
+
+/// Opens the slot of an evaluation at `time` [s] and returns how many seconds after its predecessor
+/// it lies; afterwards slot(0) is the evaluation's own and slot(1) its predecessor, if count() > 1.
+///
+/// Evaluations at or after `time` are forgotten: MuJoCo has gone back to redo them (Runge-Kutta
+/// stages, finite differences, repeated mj_forward). After a jump in time of more than a step and a
+/// half all are forgotten: somebody has set another state.
+inline double open_slot(const UserdataBlock& block, double time, double step) {
+  while (block.count() > 0 && block.slot(0).time() >= time) block.drop_newest();
+  double elapsed = 0.0;
+  if (block.count() > 0) {
+    elapsed = time - block.slot(0).time();
+    if (!(elapsed <= 1.5 * std::max(step, block.slot(0).step()))) {
+      block.set_count(0);
+      elapsed = 0.0;
+    }
+  }
+  block.push();
+  block.slot(0).time() = time;
+  block.slot(0).step() = step;
+  return elapsed;
+}
+
+/// The account after `elapsed` seconds: dissipated power integrated by the trapezoidal rule.
+inline EnergyAccount continued(const EnergyAccount& before, double elastic, const ByChannel& power,
+                               double elapsed) {
+  const auto add = [elapsed](double energy, double power_before, double power_now) {
+    return energy + 0.5 * elapsed * (power_before + power_now);
+  };
+  const ByChannel& d = before.dissipated;
+  const ByChannel& p = before.power;
+  return {elastic,
+          {add(d.normal, p.normal, power.normal), add(d.roll, p.roll, power.roll),
+           add(d.slide, p.slide, power.slide), add(d.spin, p.spin, power.spin)},
+          power};
+}
+
+}  // namespace volcontact::adaptor

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/volcontact_mujoco.h"
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <stdexcept>
+#include <string>
+
+#include "adaptor/passive_callback.h"
+#include "adaptor/scene_description.h"
+#include "adaptor/scene_registry.h"
+
+// No exception leaves this file.
+
+namespace volcontact::adaptor {
+namespace {
+
+// Copies as much of `text` as there is room for; returns the length of all of it.
+int copy_text(const std::string& text, char* buffer, int capacity) {
+  if (buffer && capacity > 0) {
+    const std::size_t count = std::min(text.size(), static_cast<std::size_t>(capacity - 1));
+    std::memcpy(buffer, text.data(), count);
+    buffer[count] = '\0';
+  }
+  return static_cast<int>(text.size());
+}
+
+std::string version_mismatch() {
+  if (mj_version() == mjVERSION_HEADER) return {};
+  return "this adaptor was built for MuJoCo " + version_text(mjVERSION_HEADER) + " and MuJoCo " +
+         version_text(mj_version()) + " is running";
+}
+
+// Runs what may throw; its result, or an error code with the message.
+template <typename Function>
+int guarded(char* message, int message_size, Function&& function) noexcept {
+  try {
+    copy_text("", message, message_size);
+    const std::string mismatch = version_mismatch();
+    if (!mismatch.empty()) {
+      copy_text(mismatch, message, message_size);
+      return VOLCONTACT_ERROR_VERSION;
+    }
+    return function();
+  } catch (const std::invalid_argument& error) {
+    copy_text(error.what(), message, message_size);
+    return VOLCONTACT_ERROR_SCENE;
+  } catch (const std::exception& error) {
+    copy_text(error.what(), message, message_size);
+    return VOLCONTACT_ERROR_INTERNAL;
+  } catch (...) {
+    return VOLCONTACT_ERROR_INTERNAL;
+  }
+}
+
+void copy_vector(const Vec3& from, double (&to)[3]) { std::copy(from.data(), from.data() + 3, to); }
+
+volcontact_site record_of(const PairContact& pair, int index, const SiteReport& report) {
+  volcontact_site site{};
+  site.pair = index;
+  site.geom_a = pair.geoms.a;
+  site.geom_b = pair.geoms.b;
+  site.status = static_cast<int>(report.metrics.status);
+  site.volume = report.metrics.volume;
+  copy_vector(report.metrics.centroid, site.centroid);
+  copy_vector(report.normal, site.normal);
+  site.area = report.metrics.area_vector.norm();
+  site.depth = report.metrics.depth;
+  copy_vector(report.force_on_A, site.force);
+  copy_vector(report.torque_on_A, site.torque);
+  site.normal_force = report.normal_force;
+  site.slip = report.slip.norm();
+  site.spin = report.spin;
+  site.elastic_energy = report.elastic_energy;
+  site.flatness = report.metrics.flatness();
+  site.volume_error = report.metrics.volume_error;
+  return site;
+}
+
+void copy_channels(const ByChannel& from, double (&to)[4]) {
+  const double numbers[] = {from.normal, from.roll, from.slide, from.spin};
+  std::copy(std::begin(numbers), std::end(numbers), to);
+}
+
+}  // namespace
+}  // namespace volcontact::adaptor
+
+using namespace volcontact::adaptor;
+
+extern "C" {
+
+int volcontact_mujoco_version(void) { return mjVERSION_HEADER; }
+
+int volcontact_check_version(char* message, int message_size) {
+  return guarded(message, message_size, [] { return 0; });
+}
+
+int volcontact_userdata_size(const mjModel* m, char* message, int message_size) {
+  return guarded(message, message_size, [&] { return SceneContact(m).layout(m).size(); });
+}
+
+int volcontact_reserve(mjModel* m, char* message, int message_size) {
+  return guarded(message, message_size, [&] {
+    const int size = SceneContact(m).layout(m).size();
+    m->nuserdata += size;
+    return size;
+  });
+}
+
+int volcontact_attach(mjModel* m, char* message, int message_size) {
+  return guarded(message, message_size, [&] {
+    if (is_attached(m)) {
+      copy_text("the model is attached already", message, message_size);
+      return static_cast<int>(VOLCONTACT_ERROR_STATE);
+    }
+    copy_text(attach_scene(m), message, message_size);
+    install_callback();
+    return 0;
+  });
+}
+
+int volcontact_detach(mjModel* m, char* message, int message_size) {
+  return guarded(message, message_size, [&] {
+    if (!detach_scene(m)) {
+      copy_text("the model is not attached", message, message_size);
+      return static_cast<int>(VOLCONTACT_ERROR_STATE);
+    }
+    if (attached_scenes() == 0) uninstall_callback();
+    return 0;
+  });
+}
+
+int volcontact_is_attached(const mjModel* m) { return is_attached(m) ? 1 : 0; }
+
+int volcontact_is_installed(void) { return callback_is_installed() ? 1 : 0; }
+
+int volcontact_release(const mjModel* m, mjData* d) {
+  return guarded(nullptr, 0, [&] {
+    const SceneContact* contact = contact_of(m);
+    if (!contact) return static_cast<int>(VOLCONTACT_ERROR_STATE);
+    contact->release(m, d);
+    return 0;
+  });
+}
+
+int volcontact_sites(const mjModel* m, const mjData* d, volcontact_site* sites, int capacity) {
+  return guarded(nullptr, 0, [&] {
+    const SceneContact* contact = contact_of(m);
+    if (!contact) return static_cast<int>(VOLCONTACT_ERROR_STATE);
+    SceneContact::Scratch& scratch = thread_scratch();
+    if (!contact->revisit(m, d, scratch)) return 0;
+    int count = 0;
+    for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+      const int index = scratch.cull.near[k];
+      const PairContact& pair = contact->pairs()[static_cast<std::size_t>(index)];
+      for (const auto& report : scratch.reports[k].sites) {
+        if (count < capacity) sites[count] = record_of(pair, index, report);
+        ++count;
+      }
+    }
+    return count;
+  });
+}
+
+int volcontact_get_energy(const mjModel* m, const mjData* d, volcontact_energy* energy) {
+  return guarded(nullptr, 0, [&] {
+    const SceneContact* contact = contact_of(m);
+    if (!contact) return static_cast<int>(VOLCONTACT_ERROR_STATE);
+    const EnergyAccount account = contact->energy(m, d);
+    energy->elastic = account.elastic;
+    copy_channels(account.dissipated, energy->dissipated);
+    copy_channels(account.power, energy->power);
+    energy->dropped = contact->dropped(m, d);
+    return 0;
+  });
+}
+
+int volcontact_describe(const mjModel* m, char* text, int capacity, char* message,
+                        int message_size) {
+  return guarded(message, message_size, [&] {
+    const SceneContact* contact = contact_of(m);
+    const std::string description = contact ? describe(m, *contact) : describe(m, SceneContact(m));
+    return copy_text(description, text, capacity);
+  });
+}
+
+int volcontact_live_error(const mjModel* m, char* message, int message_size) {
+  return guarded(nullptr, 0, [&] { return copy_text(live_error(m), message, message_size); });
+}
+
+}  // extern "C"

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef VOLCONTACT_ADAPTOR_VOLCONTACT_MUJOCO_H_
+#define VOLCONTACT_ADAPTOR_VOLCONTACT_MUJOCO_H_
+
+#include <mujoco/mujoco.h>
+
+// Plain C interface of the adaptor: volumetric contact for the scenes of one MuJoCo release.
+// docs/plugin.md. Units are SI, vectors are in the world frame.
+//
+// Functions that can fail return a negative VOLCONTACT_ERROR_... and write a text into `message`
+// (at most `message_size` characters with the final zero; both may be 0).
+
+#if defined(_WIN32)
+#define VOLCONTACT_API __declspec(dllexport)
+#else
+#define VOLCONTACT_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum {
+  VOLCONTACT_ERROR_SCENE = -1,    // the scene cannot be used: the message says what to change
+  VOLCONTACT_ERROR_VERSION = -2,  // built for another MuJoCo
+  VOLCONTACT_ERROR_STATE = -3,    // attached already, or not attached
+  VOLCONTACT_ERROR_INTERNAL = -4
+};
+
+// One contact site: a connected region in which two geoms overlap.
+typedef struct volcontact_site_ {
+  int pair;  // index of the pair in the description
+  int geom_a;
+  int geom_b;
+  int status;             // 0 ok; others as in volcontact/metrics/volume_metrics.h
+  double volume;          // of the interference [m^3]
+  double centroid[3];     // of the volume [m]
+  double normal[3];       // on a, from b to a
+  double area;            // of the patch projected along the normal [m^2]
+  double depth;           // extent of the volume along the normal [m]
+  double force[3];        // total force on a [N]
+  double torque[3];       // on a, about the centroid [N m]
+  double normal_force;    // [N]
+  double slip;            // speed of a against b along the patch [m/s]
+  double spin;            // of a against b about the normal [rad/s]
+  double elastic_energy;  // [J]
+  double flatness;        // 1 for a flat patch, small when the normal means little
+  double volume_error;    // bound or estimate of the error of the volume [m^3]
+} volcontact_site;
+
+// Energies; channels in the order normal, roll, slide, spin.
+typedef struct volcontact_energy_ {
+  double elastic;        // stored in the contacts [J]
+  double dissipated[4];  // since the start of the simulation [J]
+  double power[4];       // dissipated now [W]
+  double dropped;        // evaluations in which a force was no number and was left out
+} volcontact_energy;
+
+// mjVERSION_HEADER of the MuJoCo this library was compiled for.
+VOLCONTACT_API int volcontact_mujoco_version(void);
+
+// 0 when the MuJoCo in this process is the one this library was compiled for.
+VOLCONTACT_API int volcontact_check_version(char* message, int message_size);
+
+// How many numbers of mjData.userdata the scene needs.
+VOLCONTACT_API int volcontact_userdata_size(const mjModel* m, char* message, int message_size);
+
+// Adds that many to m->nuserdata. Call it on a new model, before any mjData is made of it.
+VOLCONTACT_API int volcontact_reserve(mjModel* m, char* message, int message_size);
+
+// Makes the contact of the model volumetric: native contact off, passive callback installed (one
+// that was there before keeps being called). Warnings, if any, come in `message`. Detach before the
+// model is deleted.
+VOLCONTACT_API int volcontact_attach(mjModel* m, char* message, int message_size);
+
+// Restores native contact, and the callback when this was the last attached model.
+VOLCONTACT_API int volcontact_detach(mjModel* m, char* message, int message_size);
+
+VOLCONTACT_API int volcontact_is_attached(const mjModel* m);
+
+// 1 while MuJoCo's passive callback is volcontact's; somebody may have replaced it.
+VOLCONTACT_API int volcontact_is_installed(void);
+
+// The passive callback itself, for programs that set mjcb_passive themselves.
+VOLCONTACT_API void volcontact_passive(const mjModel* m, mjData* d);
+
+// Takes our part out of the force array of the target: what remains is the user's. For data that
+// go on under native contact, or before reading qfrc_applied.
+VOLCONTACT_API int volcontact_release(const mjModel* m, mjData* d);
+
+// Contact sites at the state of the last evaluation. Writes up to `capacity` of them and returns
+// how many there are; 0 before the first evaluation.
+VOLCONTACT_API int volcontact_sites(const mjModel* m, const mjData* d, volcontact_site* sites,
+                                    int capacity);
+
+// Energies at the last evaluation.
+VOLCONTACT_API int volcontact_get_energy(const mjModel* m, const mjData* d,
+                                         volcontact_energy* energy);
+
+// What was understood of the scene, as JSON: options, materials, solids, pairs, warnings. The model
+// need not be attached. Writes up to `capacity` characters with the final zero and returns the
+// length of the whole text without it.
+VOLCONTACT_API int volcontact_describe(const mjModel* m, char* text, int capacity, char* message,
+                                       int message_size);
+
+// Why numbers that were changed in an attached model are not in force; empty when they are. Returns
+// the length of the text.
+VOLCONTACT_API int volcontact_live_error(const mjModel* m, char* message, int message_size);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif  // VOLCONTACT_ADAPTOR_VOLCONTACT_MUJOCO_H_

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The adaptor library of the MuJoCo that runs, called through ctypes.
+
+One small library per MuJoCo release, `libvolcontact_mujoco-<release>.so`, with the plain C interface
+of plugin/adaptor/volcontact_mujoco.h.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import importlib.util
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import mujoco  # first: then the process has one copy of libmujoco
+import numpy as np
+
+SITE_DTYPE = np.dtype(
+    [
+        ("pair", "i4"),
+        ("geom_a", "i4"),
+        ("geom_b", "i4"),
+        ("status", "i4"),
+        ("volume", "f8"),
+        ("centroid", "f8", (3,)),
+        ("normal", "f8", (3,)),
+        ("area", "f8"),
+        ("depth", "f8"),
+        ("force", "f8", (3,)),
+        ("torque", "f8", (3,)),
+        ("normal_force", "f8"),
+        ("slip", "f8"),
+        ("spin", "f8"),
+        ("elastic_energy", "f8"),
+        ("flatness", "f8"),
+        ("volume_error", "f8"),
+    ],
+    align=True,
+)
+
+_ERROR_VERSION = -2
+_ERROR_STATE = -3
+_ERROR_INTERNAL = -4
+_MESSAGE_SIZE = 4096
+_PREFIX, _SUFFIX = "libvolcontact_mujoco-", ".so"
+
+
+class RawEnergy(ctypes.Structure):
+    """`volcontact_energy`."""
+
+    _fields_ = (
+        ("elastic", ctypes.c_double),
+        ("dissipated", ctypes.c_double * 4),
+        ("power", ctypes.c_double * 4),
+        ("dropped", ctypes.c_double),
+    )
+
+
+class _Signature(NamedTuple):
+    arguments: tuple[Any, ...]
+    has_message: bool = False
+
+
+_SIGNATURES = {
+    "mujoco_version": _Signature(()),
+    "check_version": _Signature((), has_message=True),
+    "userdata_size": _Signature((ctypes.c_void_p,), has_message=True),
+    "reserve": _Signature((ctypes.c_void_p,), has_message=True),
+    "attach": _Signature((ctypes.c_void_p,), has_message=True),
+    "detach": _Signature((ctypes.c_void_p,), has_message=True),
+    "is_attached": _Signature((ctypes.c_void_p,)),
+    "is_installed": _Signature(()),
+    "release": _Signature((ctypes.c_void_p, ctypes.c_void_p)),
+    "sites": _Signature((ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int)),
+    "get_energy": _Signature((ctypes.c_void_p, ctypes.c_void_p, ctypes.POINTER(RawEnergy))),
+    "describe": _Signature((ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int), has_message=True),
+    "live_error": _Signature((ctypes.c_void_p,), has_message=True),
+}
+
+
+class Adaptor:
+    """The functions of one library; what they report as an error is raised."""
+
+    def __init__(self, path: Path) -> None:
+        self._library = ctypes.CDLL(str(path))
+        self._functions: dict[str, Callable[..., int]] = {}
+        for name, signature in _SIGNATURES.items():
+            function = getattr(self._library, f"volcontact_{name}")
+            function.restype = ctypes.c_int
+            message = (ctypes.c_char_p, ctypes.c_int) if signature.has_message else ()
+            function.argtypes = (*signature.arguments, *message)
+            self._functions[name] = function
+        self.call("check_version")
+
+    @property
+    def passive(self) -> Any:
+        """The passive callback, as `mujoco.set_mjcb_passive` takes it."""
+        return self._library.volcontact_passive
+
+    def call(self, name: str, *arguments: Any) -> int:
+        """Calls a function and returns its result, at least 0."""
+        return self.call_with_message(name, *arguments)[0]
+
+    def call_with_message(self, name: str, *arguments: Any) -> tuple[int, str]:
+        """Calls a function and returns its result and its message.
+
+        Raises:
+            ValueError: the scene, or the state of the model, does not allow it.
+            RuntimeError: the library does not fit, or failed.
+        """
+        if not _SIGNATURES[name].has_message:
+            result = self._functions[name](*arguments)
+            message = ""
+        else:
+            buffer = ctypes.create_string_buffer(_MESSAGE_SIZE)
+            result = self._functions[name](*arguments, buffer, _MESSAGE_SIZE)
+            message = buffer.value.decode("utf-8", "replace")
+        if result in (_ERROR_VERSION, _ERROR_INTERNAL):
+            raise RuntimeError(f"volcontact: {message or name + ' failed'}")
+        if result == _ERROR_STATE and not message:
+            message = "the model is not attached"
+        if result < 0:
+            raise ValueError(message)
+        return result, message
+
+    def text(self, name: str, *arguments: Any) -> str:
+        """Calls a function that writes a text of any length."""
+        length = self.call(name, *arguments, None, 0)
+        buffer = ctypes.create_string_buffer(length + 1)
+        self.call(name, *arguments, buffer, length + 1)
+        return buffer.value.decode("utf-8")
+
+
+@functools.cache
+def adaptor() -> Adaptor:
+    """The adaptor for the MuJoCo that was imported.
+
+    Raises:
+        RuntimeError: the package has none for this release, or a broken one.
+    """
+    wanted = _PREFIX + mujoco.__version__ + _SUFFIX
+    folders = _library_folders()
+    for folder in folders:
+        if (folder / wanted).is_file():
+            return Adaptor(folder / wanted)
+    present = sorted(
+        path.name.removeprefix(_PREFIX).removesuffix(_SUFFIX)
+        for folder in folders
+        for path in folder.glob(f"{_PREFIX}*{_SUFFIX}")
+    )
+    built_for = "MuJoCo " + " and ".join(present) if present else "no MuJoCo at all"
+    raise RuntimeError(
+        f"volcontact runs with MuJoCo {mujoco.__version__} but was built for {built_for}. In a "
+        f"checkout run `MUJOCO={mujoco.__version__} ./run python ...`; elsewhere reinstall "
+        "volcontact beside this MuJoCo with `pip install --no-build-isolation --force-reinstall "
+        "--no-deps .`"
+    )
+
+
+def _library_folders() -> list[Path]:
+    """Where the libraries may lie: beside the compiled core, and beside this file."""
+    folders = [Path(__file__).parent]
+    core = importlib.util.find_spec("volcontact._volcontact")
+    if core is not None and core.origin is not None:
+        folders.insert(0, Path(core.origin).parent)
+    return list(dict.fromkeys(folders))

@@ -1,0 +1,293 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Volumetric contact in MuJoCo scenes: load a model, attach to it, read sites and energy."""
+
+from __future__ import annotations
+
+import ctypes
+import difflib
+import json
+import os
+import warnings
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+from types import TracebackType
+from typing import Any, NamedTuple
+
+import mujoco
+import numpy as np
+
+from volcontact._adaptor import SITE_DTYPE, RawEnergy, adaptor
+
+
+class Channels(NamedTuple):
+    """One number for each way in which a contact dissipates."""
+
+    normal: float
+    roll: float
+    slide: float
+    spin: float
+
+
+class Energy(NamedTuple):
+    """Energies of a scene at the last evaluation.
+
+    Attributes:
+        elastic: stored in the contacts [J].
+        dissipated: by the contacts since the start of the simulation [J].
+        by_channel: the same, channel by channel [J].
+        power: dissipated at that instant, channel by channel [W].
+    """
+
+    elastic: float
+    dissipated: float
+    by_channel: Channels
+    power: Channels
+
+
+def load(path_or_xml_text: str | os.PathLike[str]) -> mujoco.MjModel:
+    """Loads a scene with room in `mjData.userdata` for volumetric contact.
+
+    Works on every MuJoCo release; the model steps in plain MuJoCo as well. Room that the file
+    itself asks for with `<size nuserdata=.../>` stays the user's, in front of ours.
+
+    Args:
+        path_or_xml_text: path of an MJCF (or URDF, or .mjb) file, or MJCF text.
+
+    Raises:
+        TypeError: neither path nor text.
+        FileNotFoundError: there is no such file.
+        ValueError: MuJoCo cannot compile it, or a `volcontact/...` key is wrong; the message names
+            the key, the allowed range and the nearest valid spelling.
+        RuntimeError: the package has no adaptor for this MuJoCo.
+    """
+    if not isinstance(path_or_xml_text, (str, os.PathLike)):
+        raise TypeError(f"load takes a path or MJCF text, got {type(path_or_xml_text).__name__}")
+    library = adaptor()
+    model = _compile(os.fspath(path_or_xml_text))
+    library.call("reserve", model._address)
+    return model
+
+
+def attach(model: mujoco.MjModel) -> Contact:
+    """Makes the contact of a model volumetric, in all its data, until it is closed.
+
+    Turns native contact off and installs the passive callback; a callback that was there before
+    keeps being called. Several models may be attached at a time, each until its own `close`.
+
+    Args:
+        model: with room in userdata, as `load` makes it.
+
+    Returns:
+        A context manager that closes at exit.
+
+    Raises:
+        TypeError: not an MjModel.
+        ValueError: a `volcontact/...` key is wrong, userdata is too small, the model is attached
+            already, or it uses what volumetric contact cannot serve.
+        RuntimeError: the package has no adaptor for this MuJoCo.
+    """
+    if not isinstance(model, mujoco.MjModel):
+        raise TypeError(f"attach takes an mujoco.MjModel, got {type(model).__name__}")
+    return Contact(model)
+
+
+class Contact:
+    """Volumetric contact of one model; made by `attach`."""
+
+    # An attached model stays attached, and alive, until `close`, whoever forgets the object.
+    _open: dict[int, Contact] = {}  # noqa: RUF012
+
+    def __init__(self, model: mujoco.MjModel) -> None:
+        self._adaptor = adaptor()
+        self._model = model
+        self._sites = np.empty(64, SITE_DTYPE)
+        self._reported = ""
+        _, warning = self._adaptor.call_with_message("attach", model._address)
+        Contact._open[model._address] = self
+        if warning:
+            warnings.warn(warning, RuntimeWarning, stacklevel=3)
+
+    def __enter__(self) -> Contact:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    @property
+    def model(self) -> mujoco.MjModel:
+        """The attached model."""
+        return self._model
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the model is attached, by this object."""
+        return Contact._open.get(self._model._address) is self
+
+    def close(self) -> None:
+        """Restores native contact, and the callback when this was the last attached model.
+
+        Data that go on under native contact should be given to `release` first. Closing twice does
+        nothing.
+        """
+        if not self.is_open:
+            return
+        del Contact._open[self._model._address]
+        self._adaptor.call("detach", self._model._address)
+
+    def is_installed(self) -> bool:
+        """Whether MuJoCo calls this contact: open, and the passive callback is ours.
+
+        A `mujoco.set_mjcb_passive` after `attach` silently drops ours.
+        """
+        return self.is_open and bool(self._adaptor.call("is_installed"))
+
+    @property
+    def description(self) -> dict[str, Any]:
+        """What was understood of the scene.
+
+        `options`, `userdata`, `materials`, `solids`, `pairs` with the values they use and where
+        these come from, and `warnings`.
+        """
+        text = self._adaptor.text("describe", self._require_open()._address)
+        return json.loads(text.rstrip("\0"))
+
+    def sites(self, data: mujoco.MjData) -> np.ndarray:
+        """Contact sites at the state of the last evaluation.
+
+        After `mj_step` that is the state the step began with (under RK4 its last stage); call
+        `mj_forward` for the present state.
+
+        Returns:
+            Structured array, one row a connected region of overlap, shape (0,) when all is apart.
+            Vectors have shape (3,) and are in the world frame. Fields: `pair` (index into
+            `description["pairs"]`), `geom_a`, `geom_b`, `volume` [m^3], `centroid` of the volume
+            [m], `normal` (on a, from b to a), `area` of the patch projected along the normal
+            [m^2], `depth` of the volume along the normal [m], `force` on a [N], `torque` on a
+            about the centroid [N m], `normal_force` [N], `slip` [m/s], `spin` [rad/s],
+            `elastic_energy` [J], `flatness` [-], `volume_error` [m^3], `status` (0 is good).
+        """
+        model = self._require_open()
+        self._check(data)
+        while True:
+            count = self._adaptor.call(
+                "sites", model._address, data._address, self._sites.ctypes.data, len(self._sites)
+            )
+            if count <= len(self._sites):
+                return self._sites[:count].copy()
+            self._sites = np.empty(2 * count, SITE_DTYPE)
+
+    def energy(self, data: mujoco.MjData) -> Energy:
+        """Energies at the last evaluation; the account starts anew when the data is reset."""
+        raw = self._raw_energy(data)
+        dissipated = Channels(*raw.dissipated)
+        return Energy(raw.elastic, sum(dissipated), dissipated, Channels(*raw.power))
+
+    def dropped(self, data: mujoco.MjData) -> int:
+        """How many evaluations had a force that was no finite number; such forces are left out."""
+        return int(self._raw_energy(data).dropped)
+
+    def release(self, data: mujoco.MjData) -> None:
+        """Takes the contact forces out of `data.qfrc_applied` (or `xfrc_applied`).
+
+        What remains is what the user wrote. The next step puts them back in while the model is
+        attached; for data that go on under native contact this is the last act before `close`.
+        """
+        model = self._require_open()
+        self._check(data)
+        self._adaptor.call("release", model._address, data._address)
+
+    def live_error(self) -> str:
+        """Why numbers that were changed in the model are not in force; empty when they are."""
+        return self._adaptor.text("live_error", self._require_open()._address)
+
+    def _raw_energy(self, data: mujoco.MjData) -> RawEnergy:
+        model = self._require_open()
+        self._check(data)
+        raw = RawEnergy()
+        self._adaptor.call("get_energy", model._address, data._address, ctypes.byref(raw))
+        return raw
+
+    def _require_open(self) -> mujoco.MjModel:
+        if not self.is_open:
+            raise ValueError("this contact is closed")
+        return self._model
+
+    def _check(self, data: mujoco.MjData) -> None:
+        """The data fit the model; warns when numbers changed in the model are not valid."""
+        if not isinstance(data, mujoco.MjData):
+            raise TypeError(f"takes an mujoco.MjData, got {type(data).__name__}")
+        model = self._model
+        sizes = (data.qpos.size, data.qvel.size, len(data.geom_xpos), data.userdata.size)
+        if sizes != (model.nq, model.nv, model.ngeom, model.nuserdata):
+            raise ValueError("the data are not of the attached model")
+        if not self._adaptor.call("is_installed"):
+            self._report(
+                "MuJoCo's passive callback was replaced: volumetric contact no longer acts"
+            )
+        error = self.live_error()
+        if error:
+            self._report(f"the last valid numbers stay in force: {error}")
+
+    def _report(self, text: str) -> None:
+        if text == self._reported:
+            return
+        self._reported = text
+        warnings.warn(text, RuntimeWarning, stacklevel=4)
+
+
+def _compile(path_or_text: str) -> mujoco.MjModel:
+    is_text = path_or_text.lstrip().startswith("<")
+    if not is_text and not Path(path_or_text).is_file():
+        raise FileNotFoundError(f"no such scene: {path_or_text}")
+    try:
+        if is_text:
+            return mujoco.MjModel.from_xml_string(path_or_text)
+        if path_or_text.endswith(".mjb"):
+            return mujoco.MjModel.from_binary_path(path_or_text)
+        return mujoco.MjModel.from_xml_path(path_or_text)
+    except ValueError as error:
+        hint = _misspelt_reference(path_or_text, is_text=is_text)
+        if hint is None:
+            raise
+        raise ValueError(hint) from error
+
+
+def _misspelt_reference(path_or_text: str, *, is_text: bool) -> str | None:
+    """MuJoCo refuses a tuple that names what is not there; says which name was meant."""
+    try:
+        roots = _roots(path_or_text, is_text=is_text)
+    except (ElementTree.ParseError, OSError):
+        return None
+    bodies = [element for root in roots for element in root.iter()]
+    for kind in ("geom", "body"):
+        names = [e.get("name", "") for e in bodies if e.tag == kind and e.get("name")]
+        for element in bodies:
+            wanted = element.get("objname")
+            if element.tag != "tuple" or "volcontact/" not in element.get("name", ""):
+                continue
+            for member in element.iter("element"):
+                wanted = member.get("objname", "")
+                if member.get("objtype") != kind or wanted in names:
+                    continue
+                near = difflib.get_close_matches(wanted, names, n=1)
+                meant = f" (did you mean {near[0]!r}?)" if near else ""
+                return f"{element.get('name')}: there is no {kind} {wanted!r}{meant}"
+    return None
+
+
+def _roots(path_or_text: str, *, is_text: bool) -> list[ElementTree.Element]:
+    """The document and all it includes."""
+    if is_text:
+        return [ElementTree.fromstring(path_or_text)]
+    top = Path(path_or_text)
+    roots, waiting = [], [top]
+    while waiting:
+        root = ElementTree.parse(waiting.pop()).getroot()
+        roots.append(root)
+        waiting += [top.parent / include.get("file", "") for include in root.iter("include")]
+    return roots
