@@ -93,6 +93,7 @@ class Recording:
         step_microseconds: wall time of each mj_step alone [us], shape (n - 1,).
         warnings: MuJoCo's warning counters that are not 0, by name.
         stopped: why the run ended early, or None.
+        dropped: evaluations in which volcontact left out a force that was no finite number.
         frames: the instants to draw.
         description: what volcontact understood of the scene; {} under native contact.
         weight: of all that moves [N]; 0 without gravity.
@@ -119,6 +120,7 @@ class Recording:
     step_microseconds: np.ndarray
     warnings: dict[str, int]
     stopped: str | None
+    dropped: int
     frames: tuple[Frame, ...]
     description: dict[str, Any]
     weight: float
@@ -243,6 +245,8 @@ class _Probe(Protocol):
 
     def energy(self, data: mujoco.MjData) -> tuple[float, tuple[float, ...]]: ...
 
+    def dropped(self, data: mujoco.MjData) -> int: ...
+
 
 @contextlib.contextmanager
 def _probe(contact: ContactKind, model: mujoco.MjModel) -> Iterator[_Probe]:
@@ -269,6 +273,9 @@ class _VolumetricProbe:
     def energy(self, data: mujoco.MjData) -> tuple[float, tuple[float, ...]]:
         energy = self._contact.energy(data)
         return energy.elastic, tuple(energy.by_channel)
+
+    def dropped(self, data: mujoco.MjData) -> int:
+        return int(self._contact.dropped(data))
 
 
 class _NativeProbe:
@@ -302,6 +309,10 @@ class _NativeProbe:
         del data
         return 0.0, (0.0,) * len(CHANNELS)
 
+    def dropped(self, data: mujoco.MjData) -> int:
+        del data
+        return 0
+
 
 class _Recorder:
     """Arrays of one run, filled row by row."""
@@ -328,6 +339,7 @@ class _Recorder:
         self._frames: list[Frame] = []
         self._frame_rows = _frame_rows(steps, float(model.opt.timestep), frame_interval)
         self._warnings: dict[str, int] = {}
+        self._dropped = 0
         # The last stage of Runge-Kutta is not the state the step began with, so ask for that one.
         self._evaluate_first = model.opt.integrator == int(mujoco.mjtIntegrator.mjINT_RK4)
         self.stopped: str | None = None
@@ -352,6 +364,7 @@ class _Recorder:
     def finish(self, data: mujoco.MjData) -> None:
         """Records the state after the last step."""
         self._warnings = warnings_of(data)
+        self._dropped = self._probe.dropped(data)
         if self.stopped is None:
             self._keep_state(self._rows, data)
             mujoco.mj_forward(self._model, data)
@@ -386,6 +399,7 @@ class _Recorder:
             step_microseconds=self._microseconds[: max(n - 1, 0)],
             warnings=self._warnings,
             stopped=self.stopped,
+            dropped=self._dropped,
             frames=tuple(self._frames),
             description=description,
             weight=float(gravity * self._model.body_mass[self._model.body_weldid != 0].sum()),

@@ -75,6 +75,7 @@ def recording(contact: str = "volumetric", **changes) -> Recording:
         step_microseconds=np.full(n - 1, 20.0),
         warnings={},
         stopped=None,
+        dropped=0,
         frames=(Frame(0, 0.0, sites[:0]), Frame(n - 1, 2.0, sites)),
         description={
             "options": {"tolerance": 1e-3, "engine": "auto"},
@@ -306,6 +307,9 @@ def test_findings_say_what_did_not_come_to_rest():
 
 def test_trouble_comes_first():
     bad = dataclasses.replace(recording("native"), warnings={"BADQACC": 3}, stopped="gone at 1 s")
+    lost = dataclasses.replace(recording(), dropped=4)
+    assert findings(comparison(volumetric=lost))[0].title == "Forces left out"
+    assert "in 4 evaluations" in sentence(comparison(volumetric=lost), "Forces left out")
     titles = [finding.title for finding in findings(comparison(native=bad))]
     assert titles[:2] == ["Stopped", "MuJoCo warnings"]
     assert "BADQACC 3 times" in sentence(comparison(native=bad), "MuJoCo warnings")

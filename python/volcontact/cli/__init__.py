@@ -2,7 +2,7 @@
 """The `volcontact` program: one module per command.
 
 Exit status: 0 all went well, 1 the scene or the request is at fault, 2 wrong usage, 3 it ran and
-MuJoCo warned, 130 interrupted.
+MuJoCo or volcontact warned of the numbers, 130 interrupted.
 """
 
 from __future__ import annotations
@@ -34,8 +34,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = _parser().parse_args(argv)
     terminal = Terminal(json=arguments.json)
     try:
-        status: int = arguments.execute(arguments, terminal)
-        return status
+        with terminal.python_warnings():
+            status: int = arguments.execute(arguments, terminal)
+            return status
     except KeyboardInterrupt:
         terminal.error("interrupted")
         return _INTERRUPTED

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import warnings
 from typing import TYPE_CHECKING
 
 from rich.table import Table
@@ -37,8 +38,10 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     from volcontact.report.description import tables
 
     model = volcontact.load(arguments.scene)
-    with volcontact.attach(model) as contact:
-        description = dict(contact.description)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # they are part of the description
+        with volcontact.attach(model) as contact:
+            description = contact.description
     if terminal.json:
         terminal.result(description)
         return 0

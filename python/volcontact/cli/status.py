@@ -11,17 +11,24 @@ from volcontact.cli.terminal import Terminal
 if TYPE_CHECKING:
     from volcontact.simulation import Recording
 
-MUJOCO_WARNED = 3
+TROUBLE = 3
 
 
 def report_warnings(runs: Iterable[Recording], terminal: Terminal) -> int:
-    """Prints what MuJoCo warned of; 0 without any warning, else `MUJOCO_WARNED`."""
+    """Prints what MuJoCo and volcontact warned of; 0 without any, else `TROUBLE`."""
     status = 0
     for run in runs:
         if run.stopped is not None:
             terminal.warning(f"{run.contact} contact: {run.stopped}")
+            status = TROUBLE
         if run.warnings:
             counts = ", ".join(f"{name} {count} times" for name, count in run.warnings.items())
             terminal.warning(f"{run.contact} contact: MuJoCo warned of {counts}")
-            status = MUJOCO_WARNED
+            status = TROUBLE
+        if run.dropped:
+            terminal.warning(
+                f"{run.contact} contact: in {run.dropped} evaluations a force was no finite number "
+                "and was left out"
+            )
+            status = TROUBLE
     return status

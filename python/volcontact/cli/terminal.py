@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import json as json_format
 import time
+import warnings
 from collections.abc import Callable, Iterator
 
 from rich.console import Console
@@ -42,6 +43,22 @@ class Terminal:
         """Prints one line that deserves attention."""
         self.log.print("warning:", style="bold yellow", end=" ")
         self.log.print(" ".join(message.split()), markup=False, soft_wrap=True)
+
+    @contextlib.contextmanager
+    def python_warnings(self) -> Iterator[None]:
+        """Prints what the package warns of as lines of the program, each text once."""
+        shown: set[str] = set()
+
+        def show(message: Warning | str, *_: object, **__: object) -> None:
+            text = str(message)
+            if text not in shown:
+                shown.add(text)
+                self.warning(text)
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("always", RuntimeWarning)
+            warnings.showwarning = show
+            yield
 
     @contextlib.contextmanager
     def progress(self) -> Iterator[ProgressBars]:

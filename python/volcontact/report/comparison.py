@@ -121,6 +121,7 @@ def run_summary(run: Recording, design: DesignPose | None) -> dict[str, Any]:
         "max_contact_sites": int(run.site_count.max()),
         "warnings": run.warnings,
         "stopped": run.stopped,
+        "dropped": run.dropped,
         "final_speed": float(run.speed[-1].max(initial=0.0)),
         "max_contact_force": float(run.contact_force.max()),
         "final_contact_force": float(run.contact_force[-1]),

@@ -68,6 +68,9 @@ def _trouble(comparison: Comparison) -> Iterator[Finding]:
         if run.warnings:
             counts = ", ".join(f"{name} {count} times" for name, count in run.warnings.items())
             yield Finding("MuJoCo warnings", f"{_name(run)}: {counts}.", "bad")
+        if run.dropped:
+            text = f"{_name(run)}: in {run.dropped} evaluations a force was no finite number."
+            yield Finding("Forces left out", text, "bad")
 
 
 def _seating(comparison: Comparison, design: DesignPose) -> Finding:
