@@ -4,6 +4,7 @@
 #include <array>
 
 #include "volcontact/base/fields.h"
+#include "volcontact/shape/pieces.h"
 #include "volcontact/shape/solid.h"
 
 namespace volcontact {
@@ -15,8 +16,8 @@ class Box {
   struct Params {
     Vec3 half_sizes = Vec3::Ones();
   };
-  static constexpr std::array kFields{Field<Params>{"half_sizes", "m", &Params::half_sizes,
-                                                    kNonNegative, "half the edge lengths"}};
+  static constexpr std::array kFields{
+      Field<Params>{"half_sizes", "m", &Params::half_sizes, kNonNegative, "half the edge lengths"}};
 
   explicit Box(const Params& params) : p_(validated<Box>(params)) {}
   const Params& params() const { return p_; }
@@ -62,6 +63,13 @@ class Box {
     const Vec3 second = m.volume / 3.0 * squares;
     m.inertia = (Vec3::Constant(second.sum()) - second).asDiagonal();
     return m;
+  }
+  void pieces(PieceList& list) const {
+    for (int i = 0; i < 3; ++i) {
+      list.add(Quadric::plane(Vec3::Unit(i), p_.half_sizes[i]));
+      list.add(Quadric::plane(-Vec3::Unit(i), p_.half_sizes[i]));
+    }
+    list.end_piece();
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "volcontact/base/fields.h"
+#include "volcontact/shape/pieces.h"
 #include "volcontact/shape/solid.h"
 
 namespace volcontact {
@@ -48,9 +49,9 @@ class Capsule {
     RayInterval hull;
     const auto join = [&hull](const RayInterval& part) {
       if (part.empty()) return;
-      hull = hull.empty() ? part
-                          : RayInterval{std::min(hull.enter, part.enter),
-                                        std::max(hull.leave, part.leave)};
+      hull = hull.empty()
+                 ? part
+                 : RayInterval{std::min(hull.enter, part.enter), std::max(hull.leave, part.leave)};
     };
     join(middle(o, d));
     join(end_ball(o, d, p_.half_length));
@@ -64,10 +65,22 @@ class Capsule {
     m.volume = kPi * r2 * (2.0 * h + 4.0 / 3.0 * r);
     // int x^2 and int z^2: cylinder, ball, and what moving the half balls apart by h adds.
     const double xx = kPi * r2 * r2 * (h / 2.0 + 4.0 / 15.0 * r);
-    const double zz = kPi * r2 * (2.0 / 3.0 * h * h * h + 4.0 / 15.0 * r * r2 + r2 * h +
-                                  4.0 / 3.0 * r * h * h);
+    const double zz =
+        kPi * r2 * (2.0 / 3.0 * h * h * h + 4.0 / 15.0 * r * r2 + r2 * h + 4.0 / 3.0 * r * h * h);
     m.inertia = Vec3(xx + zz, xx + zz, 2.0 * xx).asDiagonal();
     return m;
+  }
+  void pieces(PieceList& list) const {
+    const double r2 = p_.radius * p_.radius, h = p_.half_length;
+    list.add(Quadric::round({1.0, 1.0, 0.0}, Vec3::Zero(), r2));
+    list.add(Quadric::seam_plane(Vec3::UnitZ(), h));
+    list.add(Quadric::seam_plane(-Vec3::UnitZ(), h));
+    list.end_piece();
+    for (const double side : {1.0, -1.0}) {
+      list.add(Quadric::round(Vec3::Ones(), Vec3(0.0, 0.0, side * h), r2));
+      list.add(Quadric::seam_plane(Vec3(0.0, 0.0, -side), -h));
+      list.end_piece();
+    }
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "volcontact/base/fields.h"
+#include "volcontact/shape/pieces.h"
 #include "volcontact/shape/solid.h"
 
 namespace volcontact {
@@ -83,6 +84,12 @@ class Cylinder {
     const double across = m.volume * (r2 / 4.0 + h2 / 3.0);
     m.inertia = Vec3(across, across, m.volume * r2 / 2.0).asDiagonal();
     return m;
+  }
+  void pieces(PieceList& list) const {
+    list.add(Quadric::round({1.0, 1.0, 0.0}, Vec3::Zero(), p_.radius * p_.radius));
+    list.add(Quadric::plane(Vec3::UnitZ(), p_.half_length));
+    list.add(Quadric::plane(-Vec3::UnitZ(), p_.half_length));
+    list.end_piece();
   }
 
  private:

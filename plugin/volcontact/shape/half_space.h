@@ -4,6 +4,7 @@
 #include <array>
 
 #include "volcontact/base/fields.h"
+#include "volcontact/shape/pieces.h"
 #include "volcontact/shape/solid.h"
 
 namespace volcontact {
@@ -18,9 +19,7 @@ class HalfSpace {
   HalfSpace() = default;
   explicit HalfSpace(const Params&) {}
 
-  Aabb bounds() const {
-    return {Vec3::Constant(-kInfinity), Vec3(kInfinity, kInfinity, 0.0)};
-  }
+  Aabb bounds() const { return {Vec3::Constant(-kInfinity), Vec3(kInfinity, kInfinity, 0.0)}; }
   Vec3 support(const Vec3& e) const {
     if (is_up(e)) return Vec3::Zero();
     return Vec3::Constant(kInfinity);
@@ -40,6 +39,10 @@ class HalfSpace {
     m.volume = kInfinity;
     m.status = Status::kUnbounded;
     return m;
+  }
+  void pieces(PieceList& list) const {
+    list.add(Quadric::plane(Vec3::UnitZ(), 0.0));
+    list.end_piece();
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "volcontact/base/fields.h"
+#include "volcontact/shape/pieces.h"
 #include "volcontact/shape/solid.h"
 
 namespace volcontact {
@@ -44,6 +45,10 @@ class Sphere {
     m.volume = 4.0 / 3.0 * kPi * r * r * r;
     m.inertia = (0.4 * m.volume * r * r) * Mat3::Identity();
     return m;
+  }
+  void pieces(PieceList& list) const {
+    list.add(Quadric::round(Vec3::Ones(), Vec3::Zero(), p_.radius * p_.radius));
+    list.end_piece();
   }
 
  private:

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "volcontact/pair/cell.h"
+#include "volcontact/pair/convex_polygon.h"
+#include "volcontact/pair/cut_polytope.h"
+
+namespace volcontact {
+
+/// Works out what a cell contributes: cuts it by the tangent planes of the faces that pass through
+/// it and corrects for their bend, whose second derivatives are known exactly, so that estimate and
+/// bounds are of third order in the cell size. One per thread; holds scratch memory only.
+/// docs/theory.md, "Octree".
+class CellCut {
+ public:
+  /// A point on a face, from the cell's centre, and the surface it stands for: n dS, n outward.
+  /// Where `sign` is -1 that surface is to be taken off again.
+  struct SurfacePoint {
+    Vec3 position;
+    Vec3 element;
+    double sign;
+    int owner;
+  };
+
+  /// Fills in everything of `cell` but its box and region. `list` and `listed` come in as a guess
+  /// of the faces that pass through it (those of its parent) and go out as those that do.
+  void evaluate(const std::vector<CellFace>& faces, Cell& cell);
+
+  /// Cuts the cell as evaluate does and calls visit(point) with the points of a quadrature of the
+  /// surfaces in it.
+  template <typename Visit>
+  void for_each_surface_point(const std::vector<CellFace>& faces, Cell& cell, Visit&& visit) {
+    if (!collect(faces, cell) || tangents_.empty()) return;
+    cut(cell.half);
+    read_loops();
+    for (const FaceLoop& loop : loops_) {
+      sample_.clear();
+      sample_surface(loop);
+      for (const SurfacePoint& point : sample_) visit(point);
+    }
+  }
+
+  /// Corners of what the tangent planes left of the last cell, from the cell's centre, each drawn
+  /// back against the unit vector `e` to the true faces: calls visit(corner).
+  template <typename Visit>
+  void for_each_corner(const Vec3& e, Visit&& visit) const {
+    for (const Vec3& corner : polytope_.points()) {
+      const double excess = excess_along(corner, e);
+      if (std::isfinite(excess)) visit(Vec3(corner - excess * e));
+    }
+  }
+
+ private:
+  // A face near the cell: F(x) = level + slope . x + 1/2 d^T H d, d = x - touch, x from the cell's
+  // centre. The first two terms are its tangent plane, the last its bend. True up to `slack`.
+  struct Tangent {
+    int owner = 0;
+    bool seam = false;
+    Bend bend = Bend::kFlat;
+    Mat3 hessian = Mat3::Zero();
+    Vec3 slope = Vec3::Zero();
+    Vec3 touch = Vec3::Zero();
+    double level = 0.0;
+    double slack = 0.0;
+    double most = 0.0;  // |bend term| + slack nowhere exceeds this in the cell
+
+    bool exact() const { return bend == Bend::kFlat && slack == 0.0; }
+    double plane(const Vec3& x) const { return level + slope.dot(x); }
+    double bend_at(const Vec3& x) const {
+      const Vec3 d = x - touch;
+      return 0.5 * d.dot(hessian * d);
+    }
+    // Up to rounding.
+    bool on_face(const Vec3& x) const {
+      return std::abs(plane(x) + bend_at(x)) <= 1e-11 * slope.norm() * (touch - x).norm();
+    }
+    // The solid lies within plane <= beyond(), and plane <= -within() lies within the solid.
+    double beyond() const { return bend == Bend::kConvex ? slack : exact() ? 0.0 : most; }
+    double within() const { return bend == Bend::kConcave ? slack : exact() ? 0.0 : most; }
+  };
+
+  // Volume between a tangent plane and its face, positive where it is to be taken off.
+  struct Gap {
+    double low = 0.0, high = 0.0;
+    Vec3 reach = Vec3::Zero();  // of the face's part in the cell, from where the plane touches
+  };
+  struct Moments {
+    double volume = 0.0;
+    Vec3 first = Vec3::Zero();
+    Mat3 second = Mat3::Zero();
+  };
+  struct Columns;
+
+  enum class Side { kOutside, kThrough, kInside };
+  static Side classify(const Quadric& face, const Cell& cell, Tangent& tangent);
+  static Side classify_field(const CellFace& face, const Cell& cell, Tangent& tangent);
+  static void fit_plane(const CellFace& face, const Cell& cell, Tangent& tangent);
+  bool collect(const std::vector<CellFace>& faces, Cell& cell);
+  void cut(const Vec3& half);
+  void read_loops();
+  void add_polytope(CellSums& sums) const;
+  void add_surfaces(CellSums& sums);
+  void sample_surface(const FaceLoop& loop);
+  void sample_edge(const Tangent& tangent, const Vec3& normal, int from, int to, double area);
+  int face_across(int from, int to) const;
+  struct OnFace {
+    double depth;
+    Vec3 outward;
+  };
+  static OnFace on_face(const Tangent& tangent, const Vec3& x, const Vec3& normal);
+  Gap gap_of(int index, const Vec3& half);
+  Gap bent_gap(int index, Columns& columns);
+  void keep_touched(int index, const Columns& columns);
+  void keep_filled(int index, const Columns& columns);
+  void apply_gaps(Cell& cell);
+  void choose_split(const std::vector<Gap>& gaps, Cell& cell) const;
+  double excess_along(const Vec3& corner, const Vec3& e) const;
+
+  CutPolytope polytope_;
+  std::vector<FaceLoop> loops_;
+  std::vector<std::array<std::array<int, 2>, 3>>
+      edges_;  // by vertex: end and left face of the three
+  std::vector<int> edge_count_;
+  std::vector<SurfacePoint> sample_;
+  Moments gap_sample_;  // between plane and face, of the loop last sampled
+  ConvexPolygon polygon_;
+  std::vector<Tangent> tangents_;
+  std::vector<Moments> between_;  // plane and face, estimated, by tangent
+  std::vector<Gap> gaps_;
+};
+
+}  // namespace volcontact

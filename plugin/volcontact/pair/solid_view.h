@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <concepts>
+
+#include "volcontact/shape/pieces.h"
+#include "volcontact/shape/shapes.h"
+#include "volcontact/shape/solid.h"
+
+namespace volcontact {
+
+/// The least the octree needs of a solid, convex or not; meaning as in ConvexSolid. May also offer
+///  pieces(list)                 exact faces: see PieceList
+///  curvature_bound(p, reach)    bound of the second derivatives of signed_distance within `reach`
+///                               of p [1/m], infinite where it has a kink
+/// With neither, the error the octree reports is an estimate and no bound.
+template <typename S>
+concept DistanceField = requires(const S& solid, const Vec3& x) {
+  { solid.bounds() } -> std::same_as<Aabb>;
+  { solid.signed_distance(x) } -> std::same_as<double>;
+  { solid.gradient(x) } -> std::same_as<Vec3>;
+};
+
+// Pieces of the shapes that do not write them themselves.
+inline void add_pieces(const Ellipsoid& solid, PieceList& list) {
+  list.add(Quadric::round(solid.semi_axes().cwiseAbs2().cwiseInverse(), Vec3::Zero(), 1.0));
+  list.end_piece();
+}
+inline void add_pieces(const ConvexPolytope& solid, PieceList& list) {
+  for (const ConvexPolytope::Face& face : solid.faces()) {
+    list.add(Quadric::plane(face.normal, face.offset));
+  }
+  list.end_piece();
+}
+template <typename S>
+requires requires(const S& solid, PieceList& list) { solid.pieces(list); }
+void add_pieces(const S& solid, PieceList& list) { solid.pieces(list); }
+
+/// A solid of any type through one table of functions, so that the octree is compiled once. It
+/// refers to the solid and must not outlive it. A function that the solid lacks is null.
+struct SolidView {
+  const void* solid = nullptr;
+  Aabb bounds;
+  VolumeMetrics own;  ///< of the whole solid; volume -1 where unknown
+  bool convex = false;
+  double (*signed_distance)(const void*, const Vec3&) = nullptr;
+  Vec3 (*gradient)(const void*, const Vec3&) = nullptr;
+  double (*curvature_bound)(const void*, const Vec3&, double) = nullptr;
+  void (*pieces)(const void*, PieceList&) = nullptr;
+  // Convex solids only.
+  Vec3 (*support)(const void*, const Vec3&) = nullptr;
+  double (*support_height)(const void*, const Vec3&) = nullptr;
+  RayInterval (*ray)(const void*, const Vec3&, const Vec3&) = nullptr;
+};
+
+template <DistanceField S>
+SolidView view_of(const S& solid) {
+  SolidView view;
+  view.solid = &solid;
+  view.bounds = solid.bounds();
+  view.signed_distance = [](const void* s, const Vec3& p) {
+    return static_cast<const S*>(s)->signed_distance(p);
+  };
+  view.gradient = [](const void* s, const Vec3& p) -> Vec3 {
+    return static_cast<const S*>(s)->gradient(p);
+  };
+  if constexpr (requires(const Vec3& p) { solid.curvature_bound(p, 1.0); }) {
+    view.curvature_bound = [](const void* s, const Vec3& p, double reach) -> double {
+      return static_cast<const S*>(s)->curvature_bound(p, reach);
+    };
+  }
+  if constexpr (requires(PieceList & list) { add_pieces(solid, list); }) {
+    view.pieces = [](const void* s, PieceList& list) {
+      add_pieces(*static_cast<const S*>(s), list);
+    };
+  }
+  view.own.volume = -1.0;
+  if constexpr (ConvexSolid<S>) {
+    view.own = solid.own_metrics();
+    view.convex = true;
+    view.support = [](const void* s, const Vec3& e) -> Vec3 {
+      return static_cast<const S*>(s)->support(e);
+    };
+    view.support_height = [](const void* s, const Vec3& e) {
+      return static_cast<const S*>(s)->support_height(e);
+    };
+    view.ray = [](const void* s, const Vec3& o, const Vec3& d) {
+      return static_cast<const S*>(s)->ray(o, d);
+    };
+  }
+  return view;
+}
+
+inline SolidView view_of(const Shape& shape) {
+  return std::visit([](const auto& solid) { return view_of(solid); }, shape);
+}
+
+}  // namespace volcontact

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "volcontact/base/types.h"
+
+namespace volcontact {
+
+/// How a face is bent, seen from outside; decides on which side of its tangent planes the solid
+/// lies.
+enum class Bend : signed char {
+  kConcave = -1,  ///< hessian negative semidefinite: the wall of a bore
+  kFlat = 0,      ///< no hessian
+  kConvex = 1,    ///< hessian positive semidefinite: a ball, a cylinder
+  kMixed = 2,     ///< neither
+};
+
+/// One face of a solid: the solid lies where F(x) = 1/2 x^T H x + g . x + k <= 0. F may have any
+/// scale. A seam is a flat face between two pieces of one solid: it bounds the piece, but it is not
+/// surface.
+struct Quadric {
+  Mat3 hessian = Mat3::Zero();
+  Vec3 linear = Vec3::Zero();
+  double constant = 0.0;
+  Bend bend = Bend::kFlat;
+  bool seam = false;
+
+  double operator()(const Vec3& x) const {
+    return constant + x.dot(linear) + 0.5 * x.dot(hessian * x);
+  }
+
+  /// normal . x <= offset.
+  static Quadric plane(const Vec3& normal, double offset) {
+    Quadric face;
+    face.linear = normal;
+    face.constant = -offset;
+    return face;
+  }
+  static Quadric seam_plane(const Vec3& normal, double offset) {
+    Quadric face = plane(normal, offset);
+    face.seam = true;
+    return face;
+  }
+  /// Inside of sum_i weights_i (x_i - center_i)^2 <= level: ball, ellipsoid or round tube.
+  static Quadric round(const Vec3& weights, const Vec3& center, double level) {
+    Quadric face;
+    face.hessian = (2.0 * weights).asDiagonal();
+    face.linear = -2.0 * weights.cwiseProduct(center);
+    face.constant = weights.dot(center.cwiseAbs2()) - level;
+    face.bend = Bend::kConvex;
+    return face;
+  }
+  /// The solid outside of this face instead of inside.
+  Quadric reversed() const {
+    Quadric face = *this;
+    face.hessian = -hessian;
+    face.linear = -linear;
+    face.constant = -constant;
+    if (bend != Bend::kMixed) face.bend = static_cast<Bend>(-static_cast<int>(bend));
+    return face;
+  }
+};
+
+/// The same face in frame W, given X_SW of the frame S it is written in.
+inline Quadric transformed(const Quadric& face_S, const Pose& X_SW) {
+  const Mat3& r = X_SW.rotation;
+  const Vec3& p = X_SW.translation;
+  Quadric face = face_S;
+  face.linear = r.transpose() * (face_S.linear + face_S.hessian * p);
+  face.constant = face_S(p);
+  if (face.bend != Bend::kFlat) face.hessian = r.transpose() * face_S.hessian * r;
+  return face;
+}
+
+/// A solid as a union of pieces with disjoint interiors, each the intersection of its faces. A
+/// shape that can be written so offers `void pieces(PieceList&) const`: its overlaps are then cut
+/// with the exact faces. docs/theory.md, "Octree".
+class PieceList {
+ public:
+  void clear() { faces_.clear(), ends_.clear(); }
+  /// Adds a face to the piece that is being written.
+  void add(const Quadric& face) { faces_.push_back(face); }
+  /// Ends the piece; the next face begins another one.
+  void end_piece() { ends_.push_back(static_cast<int>(faces_.size())); }
+
+  int size() const { return static_cast<int>(ends_.size()); }
+  const Quadric* begin(int piece) const {
+    return faces_.data() + (piece == 0 ? 0 : ends_[piece - 1]);
+  }
+  const Quadric* end(int piece) const { return faces_.data() + ends_[piece]; }
+
+ private:
+  std::vector<Quadric> faces_;
+  std::vector<int> ends_;
+};
+
+}  // namespace volcontact
