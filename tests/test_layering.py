@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Includes point down. Also runs as a program, before anything is built."""
+"""Includes point down, and every source is built. Also runs as a program, before any build."""
 
 import re
 import sys
 from pathlib import Path
 
-PLUGIN = Path(__file__).resolve().parents[1] / "plugin"
+ROOT = Path(__file__).resolve().parents[1]
+PLUGIN = ROOT / "plugin"
 
 # What each folder may include of the project, besides itself; ground floor first.
 MAY_INCLUDE = {
@@ -49,8 +50,8 @@ def fault(source: str, included: str) -> str | None:
     return None
 
 
-def faults() -> list[str]:
-    """All faults under plugin/, one line each."""
+def include_faults() -> list[str]:
+    """All includes under plugin/ that point up, one line each."""
     sources = sorted(p for p in PLUGIN.rglob("*") if p.suffix in {".h", ".cc"})
     assert sources, f"no sources in {PLUGIN}"
     found = (
@@ -61,8 +62,33 @@ def faults() -> list[str]:
     return [line for line in found if line]
 
 
+def forgotten_sources() -> list[str]:
+    """Sources that no CMakeLists.txt above them names: a forgotten test passes unnoticed."""
+    found = []
+    for top in ("plugin", "python/bindings", "tests"):
+        for path in sorted((ROOT / top).rglob("*.cc")):
+            lists = next(
+                p / "CMakeLists.txt" for p in path.parents if (p / "CMakeLists.txt").exists()
+            )
+            words = set(re.findall(r"[\w./]+", lists.read_text()))
+            name = path.relative_to(lists.parent)
+            # A benchmark is named without its suffix.
+            if not words & {name.as_posix(), name.with_suffix("").as_posix()}:
+                found.append(f"{path.relative_to(ROOT)}: missing in {lists.relative_to(ROOT)}")
+    return found
+
+
+def faults() -> list[str]:
+    """All faults, one line each."""
+    return include_faults() + forgotten_sources()
+
+
 def test_no_include_points_up():
-    assert faults() == []
+    assert include_faults() == []
+
+
+def test_every_source_is_built():
+    assert forgotten_sources() == []
 
 
 def test_finds_each_kind_of_fault():
@@ -89,5 +115,6 @@ def test_finds_each_kind_of_fault():
 
 
 if __name__ == "__main__":
-    print(*faults(), sep="\n", end="")
-    sys.exit(bool(faults()))
+    lines = faults()
+    sys.stdout.writelines(f"{line}\n" for line in lines)
+    sys.exit(bool(lines))
