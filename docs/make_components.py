@@ -56,7 +56,7 @@ def _section(component: type) -> str:
     rows = []
     for field, unit, meaning, vector, allowed in _FIELD.findall(doc):
         size = " (3 numbers)" if vector else ""
-        default = "" if defaults is None else f"{getattr(defaults, field):g}"
+        default = "" if defaults is None else _number(getattr(defaults, field))
         rows.append((f"`{field}`", unit, meaning + size, allowed, default))
     for field, meaning, words in _CHOICE.findall(doc):
         allowed = ", ".join(f"`{word}`" for word in _NAME.findall(words))
@@ -75,6 +75,11 @@ def _table(rows: list[tuple[str, ...]], *, with_defaults: bool, signature: str) 
     width = len(header) if with_defaults else len(header) - 1
     lines = [header[:width], ("---",) * width, *(row[:width] for row in rows)]
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+def _number(value: float) -> str:
+    """As people write it: 1e7, not 1e+07."""
+    return re.sub(r"e([+-])0*", lambda exponent: "e" + exponent.group(1).strip("+"), f"{value:g}")
 
 
 def main() -> None:

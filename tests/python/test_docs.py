@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import re
+import subprocess
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -24,10 +26,23 @@ SOURCES = [
 ]
 STEPS = 20  # enough for MuJoCo to complain about a scene that does not work
 
+SCENE = """
+<mujoco>
+  {assets}
+  <worldbody>
+    <geom name="floor" type="plane" size="1 1 0.1"/>
+    <body name="crate" pos="0 0 0.1">
+      <freejoint/><geom name="crate" type="box" size="0.1 0.1 0.1"/>
+    </body>
+    {bodies}
+  </worldbody>
+  <custom>{keys}</custom>
+</mujoco>"""
+
 _FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _LINK = re.compile(r"(?<!\!)\[[^\]\n]+\]\(([^)\s]+)\)")
 _CITATION = re.compile(r"\[([A-Z][A-Za-z]*\d{4}|CSA|Drake|MuJoCo|Simbody)\b[^\]]*\](?!\()")
-_SECTION = re.compile(r"docs/theory\.md, [\"']([^\"']+)[\"']")
+_SECTION = re.compile(r"docs/(\w+\.md), [\"']([^\"']+)[\"']")
 
 
 def blocks(page: Path, language: str) -> list[tuple[int, str]]:
@@ -104,6 +119,91 @@ def test_components_page_lists_every_component() -> None:
             assert f"Python: `{name}`" in page
 
 
+def number(key: str, data: float | str) -> str:
+    return f'<numeric name="volcontact/{key}" data="{data}"/>'
+
+
+def tuple_of(name: str, geom: str) -> str:
+    element = f'<element objtype="geom" objname="{geom}"/>'
+    return f'<tuple name="volcontact/{name}">{element}</tuple>'
+
+
+WOOD = tuple_of("material/wood", "crate")
+SPRING = number("material/wood/normal_law/volume_spring", 1)
+MISTAKES = {
+    "misspelt key": WOOD + number("material/wood/stifness", 1e7),
+    "out of range": WOOD + number("material/wood/stiffness", -1),
+    "two numbers": WOOD + number("material/wood/stiffness", "1 2"),
+    "no such material": WOOD + number("material/wod/stiffness", 1e7),
+    "no such geom": tuple_of("material/wood", "crat"),
+    "two materials": WOOD + tuple_of("material/steel", "crate"),
+    "different laws": WOOD
+    + SPRING
+    + tuple_of("material/stone", "floor")
+    + number("material/stone/normal_law/hunt_crossley", 1),
+    "no such field": WOOD + SPRING + number("material/wood/damping", 1),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_documented_messages_are_those_of_the_code(mistake: str) -> None:
+    with pytest.raises(ValueError, match="volcontact/") as caught:
+        vc.load(SCENE.format(assets="", bodies="", keys=MISTAKES[mistake]))
+    assert str(caught.value) in documented_messages()
+
+
+def test_documented_message_for_too_little_userdata() -> None:
+    model = mujoco.MjModel.from_xml_string(SCENE.format(assets="", bodies="", keys=""))
+    with pytest.raises(ValueError, match="userdata") as caught:
+        vc.attach(model)
+    assert str(caught.value) in documented_messages()
+
+
+def test_documented_message_for_a_mesh() -> None:
+    assets = '<asset><mesh name="rock" vertex="0 0 0  1 0 0  0 1 0  0 0 1"/></asset>'
+    geom = '<geom name="rock" type="mesh" mesh="rock"/>'
+    bodies = f'<body name="rock"><freejoint/>{geom}</body>'
+    with pytest.raises(ValueError, match="type mesh") as caught:
+        vc.load(SCENE.format(assets=assets, bodies=bodies, keys=""))
+    assert str(caught.value) in documented_messages()
+
+
+def documented_messages() -> list[str]:
+    """Lines of the text blocks of the page that lists the messages."""
+    page = ROOT / "docs" / "writing_a_scene.md"
+    return [line for _, text in blocks(page, "text") for line in text.splitlines()]
+
+
+def test_c_program_of_the_plugin_page_runs(tmp_path: Path) -> None:
+    """Compiled as the page says, against the MuJoCo and the adaptor of this environment."""
+    page = ROOT / "plugin" / "README.md"
+    (_, program), (_, scene) = blocks(page, "c")[0], blocks(page, "xml")[0]
+    (tmp_path / "program.c").write_text(program, encoding="utf-8")
+    (tmp_path / "scene.xml").write_text(scene, encoding="utf-8")
+    package = Path(mujoco.__file__).parent
+    adaptor = Path(vc._volcontact.__file__).parent
+    (mujoco_library,) = package.glob("libmujoco.so.*")
+    (adaptor_library,) = adaptor.glob(f"libvolcontact_mujoco-{mujoco.__version__}.so")
+    subprocess.run(
+        [
+            os.environ.get("CXX", "c++"),
+            tmp_path / "program.c",
+            f"-I{ROOT / 'plugin'}",
+            f"-I{package / 'include'}",
+            adaptor_library,
+            mujoco_library,
+            f"-Wl,-rpath,{adaptor}:{package}",
+            "-o",
+            tmp_path / "program",
+        ],
+        check=True,
+    )
+    ran = subprocess.run(
+        [tmp_path / "program"], cwd=tmp_path, check=True, capture_output=True, text=True
+    )
+    assert "touches at 1 place" in ran.stdout
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_links_lead_somewhere(page: Path) -> None:
     prose = _FENCE.sub("", page.read_text(encoding="utf-8"))
@@ -119,25 +219,22 @@ def test_links_lead_somewhere(page: Path) -> None:
 
 
 def test_every_section_the_code_names_exists() -> None:
-    known = set(headings(ROOT / "docs" / "theory.md"))
     named = {
-        (section, path.name)
+        (page, section, path.name)
         for path in SOURCES
         # A comment may break the line inside the name of a section.
-        for section in _SECTION.findall(
+        for page, section in _SECTION.findall(
             re.sub(r"\s*\n\s*(///?|#)?\s*", " ", path.read_text(encoding="utf-8"))
         )
     }
-    assert named, "the code refers to no section of docs/theory.md"
-    missing = sorted((section, name) for section, name in named if section not in known)
-    assert not missing
+    assert named, "the code refers to no section of the documentation"
+    known = {page: headings(ROOT / "docs" / page) for page, _, _ in named}
+    assert not sorted(reference for reference in named if reference[1] not in known[reference[0]])
 
 
 def test_every_citation_is_in_the_bibliography() -> None:
     bibliography = (ROOT / "docs" / "references.md").read_text(encoding="utf-8")
     keys = set(re.findall(r"^\| \[(\w+)\] \|", bibliography, re.MULTILINE))
     assert keys
-    cited = {
-        key for page in PAGES for key in _CITATION.findall(page.read_text(encoding="utf-8"))
-    }
+    cited = {key for page in PAGES for key in _CITATION.findall(page.read_text(encoding="utf-8"))}
     assert cited <= keys, f"not in docs/references.md: {sorted(cited - keys)}"
