@@ -22,7 +22,7 @@ std::vector<double>& BodyForces::generalized(const mjModel* m, const mjData* d) 
   numbers_.assign(static_cast<std::size_t>(m->nv), 0.0);
   if (!any_) return numbers_;
   // A joint carries the forces on all bodies beyond it; parents have lower numbers.
-  for (int body = m->nbody - 1; body > 0; --body) {
+  for (int body = static_cast<int>(m->nbody) - 1; body > 0; --body) {
     const int parent = m->body_parentid[body];
     if (parent == 0) continue;
     at_tree_com_[static_cast<std::size_t>(parent)] += at_tree_com_[static_cast<std::size_t>(body)];

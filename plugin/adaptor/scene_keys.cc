@@ -304,15 +304,13 @@ class KeyReader {
   }
 
   void keep_option(const std::string& name, GivenOption option) {
-    const auto [entry, is_new] = options_.emplace(name, option);
-    if (is_new) return;
-    GivenOption& before = entry->second;
-    if (before.prefix.empty()) return;
-    require(
-        option.prefix.empty() || (before.numbers == option.numbers && before.word == option.word),
-        option.key + " and " + before.key + " differ; say which in " + std::string(kRoot) +
-            "option/" + name);
-    before = std::move(option);
+    GivenOption& kept = options_.emplace(name, option).first->second;
+    if (option.prefix.empty()) {
+      kept = std::move(option);
+    } else if (kept.numbers != option.numbers || kept.word != option.word) {
+      disagreements_.emplace(name, option.key + " and " + kept.key + " differ; say which in " +
+                                       std::string(kRoot) + "option/" + name);
+    }
   }
 
   template <typename Enum, std::size_t kCount>
@@ -325,6 +323,9 @@ class KeyReader {
   }
 
   void finish_options() {
+    for (const auto& [name, message] : disagreements_) {
+      require(options_.at(name).prefix.empty(), message);
+    }
     OptionNumbers::Params numbers;
     for (const auto& field : OptionNumbers::kFields) {
       const auto given = options_.find(field.name);
@@ -362,6 +363,7 @@ class KeyReader {
   const mjModel* m_;
   SceneKeys keys_;
   std::map<std::string, GivenOption> options_;
+  std::map<std::string, std::string> disagreements_;  // by option; moot when the scene has it too
 };
 
 }  // namespace

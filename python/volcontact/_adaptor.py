@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The adaptor library of the MuJoCo that runs, called through ctypes.
 
-One small library per MuJoCo release, `libvolcontact_mujoco-<release>.so`, with the plain C interface
-of plugin/adaptor/volcontact_mujoco.h.
+One small library per MuJoCo release, `libvolcontact_mujoco-<release>.so`, with the plain C
+interface of plugin/adaptor/volcontact_mujoco.h.
 """
 
 from __future__ import annotations

@@ -1,0 +1,396 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/scene_contact.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <thread>
+
+#include "adaptor/support/count_allocations.h"
+#include "adaptor/support/models.h"
+
+namespace volcontact::adaptor {
+namespace {
+
+using testing::Attached;
+using testing::DataPointer;
+using testing::ModelPointer;
+
+std::vector<volcontact_site> sites(const ModelPointer& m, const DataPointer& d) {
+  std::vector<volcontact_site> out(100);
+  out.resize(static_cast<std::size_t>(volcontact_sites(m.get(), d.get(), out.data(), 100)));
+  return out;
+}
+
+volcontact_energy energy(const ModelPointer& m, const DataPointer& d) {
+  volcontact_energy out{};
+  EXPECT_EQ(volcontact_get_energy(m.get(), d.get(), &out), 0);
+  return out;
+}
+
+void step(const ModelPointer& m, const DataPointer& d, int count) {
+  for (int i = 0; i < count; ++i) mj_step(m.get(), d.get());
+}
+
+// Two bodies of one stiffness are in series: half of it acts.
+std::string both(const std::string& stiffness, const std::string& damping,
+                 const std::string& geom) {
+  return testing::material(
+      "m", {{"stiffness", stiffness}, {"damping", damping}, {"friction", "0.1"}}, {"floor", geom});
+}
+
+TEST(SceneContact, BallRestsWhereTheCapCarriesItsWeight) {
+  // k V(h) = m g with V = pi h^2 (3 R - h) / 3, R = 0.05 m, k = 1e8 N/m^3, m = 1 kg.
+  constexpr double kDepth = 0.792364e-3;
+  const ModelPointer m = testing::load(testing::ball_scene(0.0493, both("2e8", "10", "ball")));
+  m->opt.timestep = 1e-3;
+  const DataPointer d = testing::make_data(m);
+  const Attached attached(m);
+  step(m, d, 1000);
+  EXPECT_NEAR(0.05 - d->qpos[2], kDepth, 1e-6 * kDepth);
+  const auto found = sites(m, d);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0].depth, kDepth, 1e-6 * kDepth);
+  EXPECT_NEAR(found[0].normal_force, 9.81, 1e-8);
+  EXPECT_NEAR(found[0].force[2], -9.81, 1e-8);  // on the floor, the lower geom
+}
+
+TEST(SceneContact, CubeRestsAtWeightOverStiffnessAndFace) {
+  // h = m g / (k A) = 9.81 / (1e7 0.04) m.
+  constexpr double kDepth = 24.525e-6;
+  const ModelPointer m = testing::load(
+      "<mujoco><option timestep=\"5e-4\"/><worldbody><geom name=\"floor\" type=\"plane\" "
+      "size=\"1 1 .1\"/><body pos=\"0 0 .09998\"><freejoint/><geom name=\"cube\" type=\"box\" "
+      "size=\".1 .1 .1\" mass=\"1\"/></body></worldbody>" +
+      both("2e7", "10", "cube") + "</mujoco>");
+  const DataPointer d = testing::make_data(m);
+  const Attached attached(m);
+  step(m, d, 2000);
+  EXPECT_NEAR(0.1 - d->qpos[2], kDepth, 1e-6 * kDepth);
+  EXPECT_NEAR(d->qpos[3], 1.0, 1e-12);
+}
+
+TEST(SceneContact, SceneWithoutAKeyWorks) {
+  // Two default materials: k = 5e6 N/m^3, so h = m g / (k A) = 49.05 um.
+  const ModelPointer m = testing::load(
+      "<mujoco><option timestep=\"5e-4\"/><worldbody><geom type=\"plane\" size=\"1 1 .1\"/>"
+      "<body pos=\"0 0 .0999\"><freejoint/><geom type=\"box\" size=\".1 .1 .1\" mass=\"1\"/></body>"
+      "</worldbody></mujoco>");
+  const DataPointer d = testing::make_data(m);
+  const Attached attached(m);
+  step(m, d, 6000);
+  EXPECT_NEAR(0.1 - d->qpos[2], 49.05e-6, 1e-3 * 49.05e-6);
+}
+
+// Energy: kinetic + potential + elastic + dissipated.
+
+struct Run {
+  const char* integrator;
+  double timestep;
+};
+
+class EnergyBalance : public ::testing::TestWithParam<Run> {};
+
+TEST_P(EnergyBalance, ClosesForABouncingSlidingSpinningBall) {
+  const std::string keys = testing::material(
+      "m", {{"stiffness", "2e7"}, {"damping", "0.5"}, {"friction", "0.3"}, {"slip_speed", "0.05"}},
+      {"floor", "ball"});
+  const ModelPointer m = testing::load(
+      testing::ball_scene(0.1, keys, std::string("integrator=\"") + GetParam().integrator + "\""));
+  m->opt.timestep = GetParam().timestep;
+  m->opt.enableflags |= mjENBL_ENERGY;
+  const DataPointer d = testing::make_data(m);
+  d->qvel[0] = 1.0;
+  d->qvel[4] = -10.0;
+  d->qvel[5] = 30.0;
+  const Attached attached(m);
+  double first = 0.0, worst = 0.0;
+  const int steps = static_cast<int>(0.5 / GetParam().timestep);
+  for (int i = 0; i < steps; ++i) {
+    mj_forward(m.get(), d.get());  // all at one instant, also under Runge-Kutta
+    const volcontact_energy e = energy(m, d);
+    double sum = d->energy[0] + d->energy[1] + e.elastic;
+    for (const double dissipated : e.dissipated) sum += dissipated;
+    if (i == 0) first = sum;
+    worst = std::max(worst, std::abs(sum - first));
+    mj_step(m.get(), d.get());
+  }
+  EXPECT_LT(worst, 1e-3 * first);
+  const volcontact_energy e = energy(m, d);
+  EXPECT_GT(e.dissipated[0], 0.0);                     // normal
+  EXPECT_GT(e.dissipated[2] + e.dissipated[3], 0.05);  // slide and spin: it was thrown fast
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, EnergyBalance,
+                         ::testing::Values(Run{"Euler", 1e-5}, Run{"RK4", 1e-4},
+                                           Run{"implicit", 1e-5}),
+                         [](const auto& run) { return std::string(run.param.integrator); });
+
+// A pile in which many pairs touch, all of the fast engines' kind.
+constexpr const char* kPile = R"(
+<mujoco><option timestep="1e-3"/><worldbody>
+  <geom name="floor" type="plane" size="2 2 .1"/>
+  <geom name="wall" type="box" size=".02 1 1" pos="-.2 0 0"/>
+  <body pos="0 0 .15"><freejoint/><geom type="box" size=".15 .1 .1" mass="2"/></body>
+  <body pos=".02 .03 .37" euler="10 5 0"><freejoint/><geom type="box" size=".1 .1 .1" mass="1"/>
+  </body>
+  <body pos=".4 0 .12"><freejoint/><geom type="sphere" size=".1" mass="1"/></body>
+  <body pos=".4 .02 .32"><freejoint/><geom type="sphere" size=".1" mass="1"/></body>
+  <body pos="0 .5 .2" euler="30 0 0"><freejoint/><geom type="ellipsoid" size=".1 .15 .08"/></body>
+  <body pos="-.05 0 .55"><joint axis="0 1 0" pos=".3 0 0"/>
+    <geom type="box" size=".1 .1 .03" mass="1"/></body>
+</worldbody></mujoco>)";
+
+// How the callback is watched: what it allocates, once warm.
+long allocations_inside = 0;
+void watched_callback(const mjModel* m, mjData* d) {
+  const long before = testing::AllocationCounter::total();
+  {
+    const testing::AllocationCounter counter;
+    volcontact_passive(m, d);
+  }
+  allocations_inside += testing::AllocationCounter::total() - before;
+}
+
+TEST(SceneContact, WarmStepAllocatesNothing) {
+  const ModelPointer m = testing::load(kPile);
+  const DataPointer d = testing::make_data(m);
+  const Attached attached(m);
+  mjcb_passive = watched_callback;
+  allocations_inside = 0;
+  step(m, d, 1500);
+  EXPECT_GT(allocations_inside, 0) << "the counter does not count";
+  EXPECT_GE(sites(m, d).size(), 4u);
+  allocations_inside = 0;
+  step(m, d, 1500);
+  EXPECT_EQ(allocations_inside, 0);
+  mjcb_passive = volcontact_passive;
+}
+
+TEST(SceneContact, MomentumOfFreeBodiesIsConserved) {
+  const ModelPointer m = testing::load(kPile);
+  m->opt.gravity[2] = 0.0;
+  m->geom_contype[0] = m->geom_conaffinity[0] = 0;
+  m->geom_contype[1] = m->geom_conaffinity[1] = 0;
+  m->geom_contype[7] = m->geom_conaffinity[7] = 0;  // hangs on the world
+  const DataPointer d = testing::make_data(m);
+  d->qvel[2] = 1.0;
+  d->qvel[8] = -1.0;
+  d->qvel[14] = 0.5;
+  d->qvel[20] = -0.5;
+  const Attached attached(m);
+  const auto momentum = [&] {
+    mj_forward(m.get(), d.get());
+    mj_subtreeVel(m.get(), d.get());
+    // Of all bodies together: linear, and angular about the origin.
+    Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
+    for (int body = 1; body <= 5; ++body) {
+      const Vec3 p = m->body_mass[body] * vec3_at(d->subtree_linvel, body);
+      linear += p;
+      angular +=
+          Vec3(vec3_at(d->subtree_angmom, body)) + Vec3(vec3_at(d->subtree_com, body)).cross(p);
+    }
+    return std::pair{linear, angular};
+  };
+  const auto before = momentum();
+  double strongest = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    mj_step(m.get(), d.get());
+    for (const volcontact_site& site : sites(m, d)) {
+      strongest = std::max(strongest, site.normal_force);
+    }
+  }
+  const auto after = momentum();
+  EXPECT_GT(strongest, 10.0);
+  EXPECT_LT((after.first - before.first).norm(), 1e-12);
+  EXPECT_LT((after.second - before.second).norm(), 1e-4);  // MuJoCo's free rotation: O(h)
+}
+
+void expect_equal_states(const ModelPointer& m, const DataPointer& a, const DataPointer& b) {
+  for (int i = 0; i < m->nq; ++i) EXPECT_EQ(a->qpos[i], b->qpos[i]);
+  for (int i = 0; i < m->nv; ++i) EXPECT_EQ(a->qvel[i], b->qvel[i]);
+  for (int i = 0; i < m->nuserdata; ++i) EXPECT_EQ(a->userdata[i], b->userdata[i]);
+}
+
+TEST(SceneContact, CopiedDataGoOnAsTheOriginal) {
+  const ModelPointer m = testing::load(kPile);
+  const DataPointer d = testing::make_data(m), copy = testing::make_data(m);
+  const Attached attached(m);
+  step(m, d, 400);
+  mj_copyData(copy.get(), m.get(), d.get());
+  step(m, d, 400);
+  step(m, copy, 400);
+  expect_equal_states(m, d, copy);
+}
+
+TEST(SceneContact, ResetDataStartAsNew) {
+  const ModelPointer m = testing::load(kPile);
+  const DataPointer used = testing::make_data(m), fresh = testing::make_data(m);
+  const Attached attached(m);
+  step(m, used, 400);
+  mj_resetData(m.get(), used.get());
+  EXPECT_TRUE(sites(m, used).empty());
+  EXPECT_EQ(energy(m, used).dissipated[0], 0.0);
+  step(m, used, 400);
+  step(m, fresh, 400);
+  expect_equal_states(m, used, fresh);
+}
+
+TEST(SceneContact, RepeatedForwardAndInverseChangeNothing) {
+  const ModelPointer m = testing::load(kPile);
+  const DataPointer plain = testing::make_data(m), repeated = testing::make_data(m);
+  const Attached attached(m);
+  for (int i = 0; i < 400; ++i) {
+    mj_forward(m.get(), repeated.get());
+    mj_inverse(m.get(), repeated.get());
+    mj_forward(m.get(), repeated.get());
+    // Each of these makes the quaternions unit again, which may change their last bit.
+    for (int k = 0; k < 3; ++k) mj_kinematics(m.get(), plain.get());
+    step(m, repeated, 1);
+    step(m, plain, 1);
+  }
+  expect_equal_states(m, plain, repeated);
+}
+
+TEST(SceneContact, ThreadsOnTheirOwnDataEqualASingleRun) {
+  const ModelPointer m = testing::load(kPile);
+  const Attached attached(m);
+  const DataPointer single = testing::make_data(m);
+  step(m, single, 500);
+  std::vector<DataPointer> data;
+  for (int i = 0; i < 8; ++i) data.push_back(testing::make_data(m));
+  std::vector<std::thread> threads;
+  for (const DataPointer& d : data) threads.emplace_back([&] { step(m, d, 500); });
+  for (std::thread& thread : threads) thread.join();
+  for (const DataPointer& d : data) expect_equal_states(m, single, d);
+}
+
+TEST(SceneContact, CopyOfTheModelHasContactToo) {
+  const ModelPointer m = testing::load(kPile);
+  const Attached attached(m);
+  const ModelPointer copy(mj_copyModel(nullptr, m.get()));
+  const DataPointer d = testing::make_data(m), of_copy = testing::make_data(copy);
+  step(m, d, 300);
+  step(copy, of_copy, 300);
+  expect_equal_states(m, d, of_copy);
+  EXPECT_GT(d->qpos[2], 0.0);
+}
+
+TEST(SceneContact, OtherModelKeepsNativeContact) {
+  const ModelPointer m = testing::load(testing::ball_scene(0.0499, ""));
+  const ModelPointer other = testing::load(testing::ball_scene(0.0499, ""));
+  const Attached attached(m);
+  const DataPointer d = testing::make_data(other);
+  step(other, d, 2);
+  EXPECT_GT(d->ncon, 0);
+  EXPECT_EQ(d->qfrc_applied[2], 0.0);
+}
+
+TEST(SceneContact, ForceThatIsNoNumberIsLeftOutAndCounted) {
+  const ModelPointer m = testing::load(testing::ball_scene(0.0499, ""));
+  const DataPointer d = testing::make_data(m);
+  const Attached attached(m);
+  mj_forward(m.get(), d.get());
+  EXPECT_EQ(energy(m, d).dropped, 0.0);
+  for (double* number : {&d->qvel[2], &d->qpos[2]}) {
+    const double sound = *number;
+    *number = std::numeric_limits<double>::quiet_NaN();
+    mj_forward(m.get(), d.get());
+    *number = sound;
+    for (int i = 0; i < m->nv; ++i) EXPECT_TRUE(std::isfinite(d->qfrc_applied[i]));
+    for (int i = 0; i < m->nuserdata; ++i) EXPECT_TRUE(std::isfinite(d->userdata[i]));
+  }
+  EXPECT_EQ(energy(m, d).dropped, 2.0);
+  mj_forward(m.get(), d.get());
+  EXPECT_EQ(energy(m, d).dropped, 2.0);
+  EXPECT_GT(d->qfrc_applied[2], 0.0);
+}
+
+TEST(SceneContact, NothingIsReadBeforeTheFirstEvaluation) {
+  const ModelPointer m = testing::load(testing::ball_scene(0.0499, ""));
+  const DataPointer d = testing::make_data(m);
+  const Attached attached(m);
+  EXPECT_TRUE(sites(m, d).empty());
+  EXPECT_EQ(energy(m, d).elastic, 0.0);
+}
+
+TEST(SceneContact, ReadingChangesNothing) {
+  const ModelPointer m = testing::load(kPile);
+  const DataPointer read = testing::make_data(m), plain = testing::make_data(m);
+  const Attached attached(m);
+  for (int i = 0; i < 200; ++i) {
+    step(m, read, 1);
+    step(m, plain, 1);
+    sites(m, read);
+    energy(m, read);
+  }
+  expect_equal_states(m, read, plain);
+}
+
+// Live numbers.
+
+double ball_force(const ModelPointer& m, const DataPointer& d) {
+  mj_forward(m.get(), d.get());
+  return d->qfrc_applied[2];
+}
+
+TEST(LiveNumbers, ChangeActsInTheNextEvaluation) {
+  const ModelPointer m = testing::load(testing::ball_scene(0.049, both("2e8", "0", "ball")));
+  const DataPointer d = testing::make_data(m);
+  const Attached attached(m);
+  const double before = ball_force(m, d);
+  m->numeric_data[0] = 4e8;  // both sides have this material
+  EXPECT_NEAR(ball_force(m, d), 2.0 * before, 1e-9 * before);
+  m->numeric_data[0] = 2e8;
+  EXPECT_EQ(ball_force(m, d), before);
+}
+
+TEST(LiveNumbers, SizesFrictionAndMasksAreFollowed) {
+  const ModelPointer m = testing::load(testing::ball_scene(0.049, both("2e8", "0", "ball")));
+  const DataPointer d = testing::make_data(m);
+  const Attached attached(m);
+  const double before = ball_force(m, d);
+  m->geom_size[3] = 0.051;
+  EXPECT_GT(ball_force(m, d), 2.0 * before);
+  m->geom_contype[1] = m->geom_conaffinity[1] = 0;
+  EXPECT_EQ(ball_force(m, d), 0.0);
+}
+
+TEST(LiveNumbers, InvalidOnesLeaveTheLastValidInForce) {
+  const ModelPointer m = testing::load(testing::ball_scene(0.049, both("2e8", "0", "ball")));
+  const DataPointer d = testing::make_data(m);
+  const Attached attached(m);
+  m->numeric_data[0] = 3e8;
+  const double valid = ball_force(m, d);
+  static int warnings;
+  warnings = 0;
+  mju_user_warning = [](const char*) { ++warnings; };
+  m->numeric_data[0] = -1.0;
+  EXPECT_EQ(ball_force(m, d), valid);
+  EXPECT_EQ(ball_force(m, d), valid);
+  mju_user_warning = nullptr;
+  EXPECT_EQ(warnings, 1);
+  char text[500];
+  EXPECT_GT(volcontact_live_error(m.get(), text, sizeof text), 0);
+  EXPECT_TRUE(testing::contains(text, "stiffness = -1 [N/m^3] is out of range: must be > 0"));
+  m->numeric_data[0] = 2e8;
+  EXPECT_LT(ball_force(m, d), valid);
+  EXPECT_EQ(volcontact_live_error(m.get(), text, sizeof text), 0);
+}
+
+TEST(LiveNumbers, TargetCannotChangeWhileAttached) {
+  const ModelPointer m = testing::load(
+      testing::ball_scene(0.049, testing::numeric("volcontact/option/target/passive", "0")));
+  const DataPointer d = testing::make_data(m);
+  const Attached attached(m);
+  mju_user_warning = [](const char*) {};
+  m->numeric_data[0] = 1.0;
+  EXPECT_GT(ball_force(m, d), 0.0);
+  mju_user_warning = nullptr;
+  char text[500];
+  volcontact_live_error(m.get(), text, sizeof text);
+  EXPECT_TRUE(testing::contains(text, "volcontact/option/target cannot change"));
+}
+
+}  // namespace
+}  // namespace volcontact::adaptor

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/volcontact_mujoco.h"
+
+#include <gtest/gtest.h>
+
+#include "adaptor/mujoco_compat.h"
+#include "adaptor/support/models.h"
+
+namespace volcontact::adaptor {
+namespace {
+
+using testing::ModelPointer;
+
+struct Answer {
+  int code;
+  std::string message;
+};
+
+template <typename Model>
+Answer ask(int (*function)(Model*, char*, int), const ModelPointer& m) {
+  char message[1000] = "";
+  const int code = function(m.get(), message, sizeof message);
+  return {code, message};
+}
+
+TEST(Interface, KnowsTheReleaseItWasBuiltFor) {
+  EXPECT_EQ(volcontact_mujoco_version(), mj_version());
+  EXPECT_EQ(volcontact_check_version(nullptr, 0), 0);
+}
+
+TEST(Interface, VersionsAreSpeltAsMuJoCoDoes) {
+  EXPECT_EQ(version_text(222), "2.2.2");
+  EXPECT_EQ(version_text(3010000), "3.10.0");
+  EXPECT_EQ(version_text(4000000), "4.0.0");
+}
+
+TEST(Interface, TooSmallUserdataNamesTheLineToAdd) {
+  const ModelPointer m = testing::compile(testing::ball_scene(1.0, ""));
+  const int needed = ask(volcontact_userdata_size, m).code;
+  EXPECT_GT(needed, 0);
+  const Answer answer = ask(volcontact_attach, m);
+  EXPECT_EQ(answer.code, VOLCONTACT_ERROR_SCENE);
+  const std::string line = "<size nuserdata=\"" + std::to_string(needed) + "\"/>";
+  EXPECT_TRUE(testing::contains(answer.message, line));
+  // And with that line it works.
+  const ModelPointer better = testing::compile(testing::ball_scene(1.0, line));
+  EXPECT_EQ(ask(volcontact_attach, better).code, 0);
+  EXPECT_EQ(ask(volcontact_detach, better).code, 0);
+}
+
+TEST(Interface, UsersOwnUserdataIsNotTouched) {
+  const ModelPointer m = testing::load(testing::ball_scene(0.049, "<size nuserdata=\"3\"/>"));
+  const testing::DataPointer d = testing::make_data(m);
+  const testing::Attached attached(m);
+  for (int i = 0; i < 3; ++i) d->userdata[i] = 1.0 + i;
+  for (int i = 0; i < 10; ++i) mj_step(m.get(), d.get());
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(d->userdata[i], 1.0 + i);
+  EXPECT_GT(d->qfrc_applied[2], 0.0);
+}
+
+TEST(Interface, SceneErrorsComeAsMessages) {
+  const ModelPointer m = testing::compile(
+      testing::ball_scene(1.0, testing::numeric("volcontact/option/tolerence", "1e-3")));
+  for (const Answer& answer :
+       {ask(volcontact_attach, m), ask(volcontact_reserve, m), ask(volcontact_userdata_size, m)}) {
+    EXPECT_EQ(answer.code, VOLCONTACT_ERROR_SCENE);
+    EXPECT_TRUE(testing::contains(answer.message, "did you mean 'volcontact/option/tolerance'?"));
+  }
+  EXPECT_FALSE(m->opt.disableflags & mjDSBL_CONTACT);
+}
+
+TEST(Interface, ModelWithoutGeomsIsRefused) {
+  const ModelPointer m = testing::compile(
+      "<mujoco><worldbody><body><freejoint/><inertial pos=\"0 0 0\" mass=\"1\" "
+      "diaginertia=\"1 1 1\"/></body></worldbody></mujoco>");
+  const Answer answer = ask(volcontact_attach, m);
+  EXPECT_EQ(answer.code, VOLCONTACT_ERROR_SCENE);
+  EXPECT_TRUE(testing::contains(answer.message, "no geoms"));
+}
+
+TEST(Interface, MeshThatCanTouchIsRefusedAndOthersAreNot) {
+  const std::string mesh =
+      "<mujoco><asset><mesh name=\"w\" vertex=\"0 0 0  1 0 0  0 1 0  0 0 1\"/></asset><worldbody>"
+      "<geom type=\"plane\" size=\"1 1 1\"/><body><freejoint/><geom name=\"wedge\" type=\"mesh\" "
+      "mesh=\"w\" MASKS/></body></worldbody></mujoco>";
+  const auto with = [&](const std::string& masks) {
+    std::string text = mesh;
+    return testing::compile(text.replace(text.find("MASKS"), 5, masks));
+  };
+  const Answer answer = ask(volcontact_reserve, with(""));
+  EXPECT_EQ(answer.code, VOLCONTACT_ERROR_SCENE);
+  EXPECT_TRUE(testing::contains(answer.message, "geom 'wedge' is of type mesh"));
+  EXPECT_GT(ask(volcontact_reserve, with("contype=\"0\" conaffinity=\"0\"")).code, 0);
+}
+
+TEST(Interface, NativeContactIsOffWhileAttachedAndRestored) {
+  const ModelPointer m = testing::load(testing::ball_scene(0.0499, ""));
+  const testing::DataPointer d = testing::make_data(m);
+  {
+    const testing::Attached attached(m);
+    mj_forward(m.get(), d.get());
+    EXPECT_EQ(d->ncon, 0);
+  }
+  mj_forward(m.get(), d.get());
+  EXPECT_EQ(d->ncon, 1);
+  // A scene that had it off keeps it off.
+  m->opt.disableflags |= mjDSBL_CONTACT;
+  {
+    const testing::Attached attached(m);
+  }
+  EXPECT_TRUE(m->opt.disableflags & mjDSBL_CONTACT);
+}
+
+TEST(Interface, AttachingTwiceOrDetachingNothingIsAnError) {
+  const ModelPointer m = testing::load(testing::ball_scene(1.0, ""));
+  const Answer nothing = ask(volcontact_detach, m);
+  EXPECT_EQ(nothing.code, VOLCONTACT_ERROR_STATE);
+  EXPECT_EQ(nothing.message, "the model is not attached");
+  const testing::Attached attached(m);
+  const Answer twice = ask(volcontact_attach, m);
+  EXPECT_EQ(twice.code, VOLCONTACT_ERROR_STATE);
+  EXPECT_EQ(twice.message, "the model is attached already");
+  EXPECT_EQ(volcontact_is_attached(m.get()), 1);
+}
+
+TEST(Interface, ReleaseLeavesTheUsersForce) {
+  const ModelPointer m = testing::load(testing::ball_scene(0.049, ""));
+  const testing::DataPointer d = testing::make_data(m);
+  const testing::Attached attached(m);
+  d->qfrc_applied[0] = 2.0;
+  d->qfrc_applied[2] = 3.0;
+  mj_forward(m.get(), d.get());
+  EXPECT_GT(d->qfrc_applied[2], 3.0);
+  EXPECT_EQ(volcontact_release(m.get(), d.get()), 0);
+  EXPECT_EQ(d->qfrc_applied[0], 2.0);
+  EXPECT_EQ(d->qfrc_applied[2], 3.0);
+}
+
+TEST(Interface, SkippedCallbackIsWarnedOf) {
+  const ModelPointer m = testing::load(testing::ball_scene(1.0, ""));
+#if mjVERSION_HEADER <= 335
+  m->opt.disableflags |= mjDSBL_PASSIVE;
+#else
+  m->opt.disableflags |= mjDSBL_SPRING | mjDSBL_DAMPER;
+#endif
+  const Answer answer = ask(volcontact_attach, m);
+  EXPECT_EQ(answer.code, 0);
+  EXPECT_TRUE(testing::contains(answer.message, "there will be no contact at all"));
+  ask(volcontact_detach, m);
+}
+
+TEST(Interface, FlagsThatSkipTheCallbackAreTheOnesNamed) {
+  // Independent of what we believe: count the calls.
+  const ModelPointer m = testing::load(testing::ball_scene(1.0, ""));
+  const testing::DataPointer d = testing::make_data(m);
+  static int calls;
+  mjcb_passive = [](const mjModel*, mjData*) { ++calls; };
+  for (int flags = 0; flags < (1 << 12); ++flags) {
+    m->opt.disableflags = flags;
+    calls = 0;
+    mj_forward(m.get(), d.get());
+    EXPECT_EQ(calls == 0, !flags_that_skip_passive(m.get()).empty()) << "flags " << flags;
+  }
+  mjcb_passive = nullptr;
+}
+
+#if mjVERSION_HEADER >= 340
+TEST(Interface, SleepIsRefused) {
+  const ModelPointer m = testing::load(testing::ball_scene(1.0, ""));
+  m->opt.enableflags |= mjENBL_SLEEP;
+  const Answer answer = ask(volcontact_attach, m);
+  EXPECT_EQ(answer.code, VOLCONTACT_ERROR_SCENE);
+  EXPECT_TRUE(testing::contains(answer.message, "sleep"));
+}
+#endif
+
+TEST(Interface, DescriptionNeedsNoAttachAndCutsAtTheBuffer) {
+  const ModelPointer m = testing::compile(testing::ball_scene(1.0, ""));
+  const int length = volcontact_describe(m.get(), nullptr, 0, nullptr, 0);
+  ASSERT_GT(length, 100);
+  std::string text(static_cast<std::size_t>(length) + 1, 'x');
+  EXPECT_EQ(volcontact_describe(m.get(), text.data(), length + 1, nullptr, 0), length);
+  EXPECT_EQ(text[static_cast<std::size_t>(length)], '\0');
+  EXPECT_EQ(text[static_cast<std::size_t>(length) - 1], '}');
+  char little[5] = "xxxx";
+  EXPECT_EQ(volcontact_describe(m.get(), little, 5, nullptr, 0), length);
+  EXPECT_STREQ(little, text.substr(0, 4).c_str());
+}
+
+TEST(Interface, SitesBeyondTheCapacityAreCountedOnly) {
+  const ModelPointer m = testing::load(testing::ball_scene(0.049, ""));
+  const testing::DataPointer d = testing::make_data(m);
+  const testing::Attached attached(m);
+  mj_forward(m.get(), d.get());
+  EXPECT_EQ(volcontact_sites(m.get(), d.get(), nullptr, 0), 1);
+}
+
+TEST(Interface, ReadingAModelThatIsNotAttachedIsAnError) {
+  const ModelPointer m = testing::load(testing::ball_scene(0.049, ""));
+  const testing::DataPointer d = testing::make_data(m);
+  volcontact_energy energy;
+  EXPECT_EQ(volcontact_sites(m.get(), d.get(), nullptr, 0), VOLCONTACT_ERROR_STATE);
+  EXPECT_EQ(volcontact_get_energy(m.get(), d.get(), &energy), VOLCONTACT_ERROR_STATE);
+  EXPECT_EQ(volcontact_release(m.get(), d.get()), VOLCONTACT_ERROR_STATE);
+}
+
+}  // namespace
+}  // namespace volcontact::adaptor
