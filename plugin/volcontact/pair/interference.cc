@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/interference.h"
+
+#include <type_traits>
+
+#include "volcontact/pair/clip.h"
+#include "volcontact/pair/closed_form/half_space_ellipsoid.h"
+#include "volcontact/pair/closed_form/half_space_sphere.h"
+#include "volcontact/pair/closed_form/sphere_sphere.h"
+#include "volcontact/pair/octree.h"
+
+namespace volcontact {
+
+struct InterferenceWorkspace::Scratch {
+  ClipScratch clip;
+  OctreeScratch octree;
+};
+
+InterferenceWorkspace::InterferenceWorkspace() : scratch_(std::make_unique<Scratch>()) {}
+InterferenceWorkspace::~InterferenceWorkspace() = default;
+InterferenceWorkspace::InterferenceWorkspace(InterferenceWorkspace&&) noexcept = default;
+InterferenceWorkspace& InterferenceWorkspace::operator=(InterferenceWorkspace&&) noexcept = default;
+
+namespace {
+
+// An engine serves a pair when its function is found by overload for the shapes in this order; the
+// other order is then the mirror image.
+template <typename A, typename B>
+constexpr bool has_closed_form =
+    requires(const A& a, const B& b, const Pose& X_AB) { closed_form(a, b, X_AB); };
+template <typename A, typename B>
+constexpr bool has_clip = requires(const A& a, const B& b, const Pose& X_AB, ClipScratch& scratch) {
+  clip(a, b, X_AB, scratch);
+};
+template <typename A, typename B>
+constexpr bool both_unbounded = std::is_same_v<A, HalfSpace> && std::is_same_v<B, HalfSpace>;
+
+template <typename A, typename B>
+constexpr bool serves_pair(Engine engine) {
+  switch (engine) {
+    case Engine::kAuto:
+      return true;
+    case Engine::kClosedForm:
+      return has_closed_form<A, B> || has_closed_form<B, A>;
+    case Engine::kClip:
+      return has_clip<A, B> || has_clip<B, A>;
+    case Engine::kOctree:
+      return !both_unbounded<A, B>;
+  }
+  return false;
+}
+
+template <typename A, typename B>
+constexpr Engine engine_for_pair() {
+  for (Engine engine : {Engine::kClosedForm, Engine::kClip, Engine::kOctree}) {
+    if (serves_pair<A, B>(engine)) return engine;
+  }
+  return Engine::kAuto;
+}
+
+// Metrics of B's pair with A, from a function made for (B, A).
+template <typename Function>
+VolumeMetrics mirror(const Pose& X_AB, Function&& metrics_in_B) {
+  VolumeMetrics metrics_B = metrics_in_B(X_AB.inverse());
+  if (!metrics_B.touching()) return metrics_B;
+  return reversed(transformed(metrics_B, X_AB));
+}
+
+template <typename A, typename B>
+VolumeMetrics closed_form_metrics(const A& a, const B& b, const Pose& X_AB) {
+  if constexpr (has_closed_form<A, B>) {
+    return closed_form(a, b, X_AB);
+  } else {
+    return mirror(X_AB, [&](const Pose& X_BA) { return closed_form(b, a, X_BA); });
+  }
+}
+
+template <typename A, typename B>
+VolumeMetrics clip_metrics(const A& a, const B& b, const Pose& X_AB, ClipScratch& scratch) {
+  if constexpr (has_clip<A, B>) {
+    return clip(a, b, X_AB, scratch);
+  } else {
+    return mirror(X_AB, [&](const Pose& X_BA) { return clip(b, a, X_BA, scratch); });
+  }
+}
+
+void set_one_site(const VolumeMetrics& metrics, Interference& out) {
+  out.total = metrics;
+  out.sites.clear();
+  if (metrics.touching()) out.sites.push_back(metrics);
+}
+
+void set_status(Status status, Interference& out) {
+  out.total = VolumeMetrics{};
+  out.total.status = status;
+  out.sites.clear();
+}
+
+}  // namespace
+
+bool serves(Engine engine, const Shape& a, const Shape& b) {
+  return std::visit(
+      [=](const auto& solid_a, const auto& solid_b) {
+        return serves_pair<std::decay_t<decltype(solid_a)>, std::decay_t<decltype(solid_b)>>(
+            engine);
+      },
+      a, b);
+}
+
+Engine engine_for(const Shape& a, const Shape& b) {
+  return std::visit(
+      [](const auto& solid_a, const auto& solid_b) {
+        return engine_for_pair<std::decay_t<decltype(solid_a)>, std::decay_t<decltype(solid_b)>>();
+      },
+      a, b);
+}
+
+void interference(const Shape& a, const Shape& b, const Pose& X_AB,
+                  const InterferenceOptions& options, InterferenceWorkspace& workspace,
+                  Interference& out) noexcept {
+  const auto run = [&](const auto& solid_a, const auto& solid_b) {
+    using A = std::decay_t<decltype(solid_a)>;
+    using B = std::decay_t<decltype(solid_b)>;
+    const bool wanted = options.engine != Engine::kAuto && serves_pair<A, B>(options.engine);
+    out.engine = wanted ? options.engine : engine_for_pair<A, B>();
+    if (!X_AB.is_finite()) return set_status(Status::kInvalid, out);
+    if constexpr (both_unbounded<A, B>) return set_status(Status::kUnbounded, out);
+    if constexpr (serves_pair<A, B>(Engine::kClosedForm)) {
+      if (out.engine == Engine::kClosedForm) {
+        return set_one_site(closed_form_metrics(solid_a, solid_b, X_AB), out);
+      }
+    }
+    if constexpr (serves_pair<A, B>(Engine::kClip)) {
+      if (out.engine == Engine::kClip) {
+        return set_one_site(clip_metrics(solid_a, solid_b, X_AB, workspace.scratch().clip), out);
+      }
+    }
+    octree_interference(a, b, X_AB, options, workspace.scratch().octree, out);
+  };
+  std::visit(run, a, b);
+}
+
+}  // namespace volcontact
