@@ -17,7 +17,7 @@ from volcontact.report.comparison import (
     offset_from,
     unbalance,
 )
-from volcontact.report.description import tables
+from volcontact.report.description import tables, text
 from volcontact.report.design_pose import DesignPose, angle_between, read_design_pose
 from volcontact.report.figures import curves, thin
 from volcontact.report.findings import findings
@@ -34,6 +34,18 @@ DESIGN = DesignPose(
     angle_tolerance=0.1,
     speed_tolerance=1e-3,
 )
+
+
+def floor_pair(index: int, geom: str, friction: float) -> dict:
+    return {
+        "pair": index,
+        "geom_a": geom,
+        "geom_b": "floor",
+        "id_a": index,
+        "engine": "clip",
+        "friction": friction,
+        "sources": {"friction": "larger of: volcontact/material/steel, volcontact/material/tin"},
+    }
 
 
 def recording(contact: str = "volumetric", **changes) -> Recording:
@@ -79,8 +91,18 @@ def recording(contact: str = "volumetric", **changes) -> Recording:
         frames=(Frame(0, 0.0, sites[:0]), Frame(n - 1, 2.0, sites)),
         description={
             "options": {"tolerance": 1e-3, "engine": "auto"},
-            "materials": {"steel": {"stiffness": 2e8, "damping": 0.5}},
-            "pairs": [{"a": f"foot_{i}", "b": "floor", "engine": "clip"} for i in range(20)],
+            "materials": {
+                "steel": {
+                    "key": "volcontact/material/steel",
+                    "stiffness": 2e8,
+                    "damping": 0.5,
+                    "geoms": ["foot", "lid"],
+                }
+            },
+            "pairs": [
+                *(floor_pair(i, f"foot_{i}", friction=0.1) for i in range(20)),
+                floor_pair(20, "lid", friction=0.2),
+            ],
             "warnings": ["the handle touches nothing"],
         },
         weight=100.0,
@@ -384,7 +406,7 @@ def test_page_shows_settings_parameters_with_units_and_warnings():
         "2e+08",
         "damping [s/m]",
         "the handle touches nothing",
-        "Pairs (20)",
+        "17 more",
     ):
         assert expected in text
     assert "<script" not in text  # nothing to play without pictures
@@ -413,12 +435,34 @@ def test_description_becomes_tables():
     assert [table.title for table in made] == ["Options", "Materials", "Pairs"]
     options, materials, pairs = made
     assert options.rows == (("tolerance", "0.001", "-"), ("engine", "auto", ""))
-    assert materials.columns == ("name", "stiffness [N/m³]", "damping [s/m]")
-    assert materials.rows == (("steel", "2e+08", "0.5"),)
-    assert pairs.rows[0] == ("foot_0", "floor", "clip")
-    uneven = tables({"pairs": [{"a": "x", "on": True}, {"a": "y", "limits": (1.0, 2.5)}], "no": []})
-    assert uneven[0].rows == (("x", "yes", ""), ("y", "", "1, 2.5"))
-    assert len(uneven) == 1
+    assert materials.columns == ("name", "geoms", "stiffness [N/m³]", "damping [s/m]")
+    assert materials.rows == (("steel", "foot, lid", "2e+08", "0.5"),)
+    assert pairs.columns == ("pairs", "geoms", "engine", "friction [-]", "sources")
+    first, second = pairs.rows
+    geoms = "foot_0 with floor, foot_1 with floor, foot_2 with floor and 17 more"
+    assert first == ("20", geoms, "clip", "0.1", "friction larger of: steel, tin")
+    assert second[:2] == ("1", "lid with floor")
+
+
+def test_compact_tables_say_once_what_all_rows_share():
+    materials, pairs = tables(recording().description, compact=True)[1:]
+    assert materials.note == ""  # a single row keeps its columns
+    assert pairs.columns == ("pairs", "geoms", "friction [-]")
+    assert pairs.note == "all: engine clip"
+    pair = {"geom_a": "a", "geom_b": "b", "engine": "clip"}
+    stiff = [{**pair, "stiffness": 5e9, "friction": mu} for mu in (0.1, 0.2)]
+    (table,) = tables({"pairs": stiff, "nothing": [], "mujoco_version": "9"}, compact=True)
+    assert table.note == "all: engine clip, stiffness 5e+09 N/m³"
+
+
+def test_values_read_well():
+    assert text(None) == ""
+    assert text(True) == "yes"
+    assert text(10_000_000_000) == "1e+10"
+    assert text((1.0, 2.5)) == "1, 2.5"
+    assert text(["a", "b", "c", "d"]) == "a, b, c, d"
+    assert text(["a", "b", "c", "d", "e"]) == "a, b, c and 2 more"
+    assert text("in series: volcontact/material/a, volcontact/material/b") == "in series: a, b"
 
 
 def test_picture_files_replace_those_of_a_longer_run(tmp_path):

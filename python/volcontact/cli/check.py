@@ -7,6 +7,8 @@ import argparse
 import warnings
 from typing import TYPE_CHECKING
 
+from rich.box import SIMPLE_HEAD
+from rich.markup import escape
 from rich.table import Table
 
 import volcontact
@@ -45,11 +47,14 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     if terminal.json:
         terminal.result(description)
         return 0
-    for part in tables(description):
-        table = Table(*part.columns, title=part.title, title_justify="left", title_style="bold")
+    for part in tables(description, compact=True):
+        terminal.out.print(part.title, style="bold")
+        if part.note:
+            terminal.out.print(part.note, markup=False)
+        table = Table(*(escape(column) for column in part.columns), box=SIMPLE_HEAD)
         for row in part.rows:
-            table.add_row(*row)
-        terminal.out.print(table, markup=False)
+            table.add_row(*(escape(cell) for cell in row))
+        terminal.out.print(table)
     for warning in description.get("warnings", ()):
         terminal.warning(str(warning))
     return 0

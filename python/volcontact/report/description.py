@@ -9,6 +9,16 @@ from typing import Any
 
 from volcontact.report.units import FIELD_UNITS
 
+Record = Mapping[str, Any]
+
+_PREFIXES = ("volcontact/material/", "volcontact/pair/", "volcontact/solid/")
+_LISTED = 3  # so many entries of a long list are named
+# What only programs want to know, and what another column says already.
+_HIDDEN = frozenset({"id", "id_a", "id_b", "key", "pair"})
+_FIRST = ("name", "pairs", "geom", "geoms", "engine", "shape", "body", "material", "normal_law")
+_LAST = ("sources",)
+_WHO = frozenset({"name", "pairs", "geom", "geoms"})
+
 
 @dataclass(frozen=True)
 class Table:
@@ -18,54 +28,109 @@ class Table:
         title: above the table.
         columns: their headings.
         rows: one entry per column each.
+        note: what holds for every row; may be empty.
     """
 
     title: str
     columns: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
+    note: str = ""
 
 
-def tables(description: Mapping[str, Any]) -> list[Table]:
-    """One table per part of a description that has rows; its warnings are not among them."""
-    made = [
-        _table(str(name), content) for name, content in description.items() if name != "warnings"
-    ]
-    return [table for table in made if table.rows]
+def tables(description: Record, *, compact: bool = False) -> list[Table]:
+    """One table per part of a description; its warnings and single values are not among them.
+
+    Args:
+        description: as `Contact.description` gives it.
+        compact: leave sources out, and move what is the same in all rows into the note.
+    """
+    made = []
+    for name, content in description.items():
+        records = _records(content)
+        if name == "warnings" or not records:
+            if isinstance(content, Mapping) and content:
+                made.append(_table_of_values(name, content))
+            continue
+        if name == "pairs":
+            records = _alike(records)
+        made.append(_table(name, records, compact=compact))
+    return made
 
 
-def _table(name: str, content: object) -> Table:
-    title = name.replace("_", " ").capitalize()
-    records = _records(content)
-    if records is None:
-        rows = content.items() if isinstance(content, Mapping) else [(name, content)]
-        return Table(
-            title,
-            ("name", "value", "unit"),
-            tuple((str(k), text(v), FIELD_UNITS.get(str(k), "")) for k, v in rows),
-        )
-    keys = list(dict.fromkeys(key for record in records for key in record))
+def _table_of_values(name: str, values: Record) -> Table:
+    rows = tuple((_heading(key, unit=False), text(v), _unit(key)) for key, v in values.items())
+    return Table(_title(name), ("name", "value", "unit"), rows)
+
+
+def _table(name: str, records: list[Record], *, compact: bool) -> Table:
+    keys = sorted(dict.fromkeys(key for record in records for key in record), key=_rank)
+    keys = [key for key in keys if key not in _HIDDEN and not (compact and key in _LAST)]
+    note = ""
+    if compact and len(records) > 1:
+        shared = [
+            key
+            for key in keys
+            if key not in _WHO and len({text(record.get(key)) for record in records}) == 1
+        ]
+        keys = [key for key in keys if key not in shared]
+        note = ", ".join(f"{_heading(k, unit=False)} {_with_unit(records[0], k)}" for k in shared)
     return Table(
-        title,
+        _title(name),
         tuple(_heading(key) for key in keys),
         tuple(tuple(text(record.get(key)) for key in keys) for record in records),
+        f"all: {note}" if note else "",
     )
 
 
-def _records(content: object) -> list[Mapping[str, Any]] | None:
-    """The rows of a list of mappings, or of a mapping from names to mappings."""
+def _records(content: object) -> list[Record]:
+    """The rows of a list of mappings, or of a mapping from names to mappings; else none."""
     if isinstance(content, Mapping):
-        if content and all(isinstance(value, Mapping) for value in content.values()):
+        if all(isinstance(value, Mapping) for value in content.values()):
             return [{"name": name, **value} for name, value in content.items()]
-        return None
-    if isinstance(content, Sequence) and not isinstance(content, str):
-        return [item if isinstance(item, Mapping) else {"entry": item} for item in content]
-    return None
+    elif isinstance(content, Sequence) and not isinstance(content, str):
+        return [item for item in content if isinstance(item, Mapping)]
+    return []
 
 
-def _heading(key: str) -> str:
-    unit = FIELD_UNITS.get(key, "")
+def _alike(pairs: list[Record]) -> list[Record]:
+    """One record for all pairs that differ in their geoms only."""
+    groups: dict[str, list[Record]] = {}
+    own = _HIDDEN | {"geom_a", "geom_b"}
+    for pair in pairs:
+        rest = {key: value for key, value in pair.items() if key not in own}
+        groups.setdefault(repr(rest), []).append(pair)
+    return [
+        {
+            "pairs": len(group),
+            "geoms": [f"{pair.get('geom_a')} with {pair.get('geom_b')}" for pair in group],
+            **{key: value for key, value in group[0].items() if key not in own},
+        }
+        for group in groups.values()
+    ]
+
+
+def _rank(key: str) -> tuple[int, int]:
+    if key in _FIRST:
+        return 0, _FIRST.index(key)
+    return (2, 0) if key in _LAST else (1, 0)
+
+
+def _title(name: str) -> str:
+    return name.replace("_", " ").capitalize()
+
+
+def _unit(key: str) -> str:
+    return FIELD_UNITS.get(key, "")
+
+
+def _heading(key: str, *, unit: bool = True) -> str:
     label = key.replace("_", " ")
-    return f"{label} [{unit}]" if unit else label
+    return f"{label} [{_unit(key)}]" if unit and _unit(key) else label
+
+
+def _with_unit(record: Record, key: str) -> str:
+    unit = _unit(key)
+    return f"{text(record.get(key))}{f' {unit}' if unit not in ('', '-') else ''}"
 
 
 def text(value: object) -> str:
@@ -74,10 +139,15 @@ def text(value: object) -> str:
         return ""
     if isinstance(value, bool):
         return "yes" if value else "no"
-    if isinstance(value, float):
+    if isinstance(value, (int, float)):
         return f"{value:.6g}"
     if isinstance(value, Mapping):
-        return ", ".join(f"{key} {text(item)}" for key, item in value.items())
+        return "; ".join(f"{_heading(key, unit=False)} {text(v)}" for key, v in value.items())
     if isinstance(value, Sequence) and not isinstance(value, str):
-        return ", ".join(text(item) for item in value)
-    return str(value)
+        more = len(value) - _LISTED
+        named = [text(item) for item in (value if more <= 1 else value[:_LISTED])]
+        return ", ".join(named) + (f" and {more} more" if more > 1 else "")
+    word = str(value)
+    for prefix in _PREFIXES:
+        word = word.replace(prefix, "")
+    return word

@@ -206,7 +206,7 @@ def _energy(comparison: Comparison) -> Finding:
     text = (
         f"Under volumetric contact {quantity(spent, 'J')} are dissipated"
         f"{f' ({channels})' if channels else ''}, and the books close to "
-        f"{quantity(float(np.abs(unbalance(a)).max()), 'J')}."
+        f"{quantity(float(np.abs(unbalance(a)).max()), 'J')}, which a smaller timestep lowers."
     )
     change = b.energy[-1] - b.energy[0]
     verb = "gains" if change > 0.0 else "loses"

@@ -23,6 +23,7 @@ FIELD_UNITS = {
     "dwell_time": "s",
     "tolerance": "-",
     "timestep": "s",
+    "volume": "m³",
 }
 
 
