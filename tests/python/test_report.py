@@ -36,7 +36,10 @@ DESIGN = DesignPose(
 )
 
 
-def floor_pair(index: int, geom: str, friction: float) -> dict:
+LARGER = "larger of: volcontact/material/steel, volcontact/material/tin"
+
+
+def floor_pair(index: int, geom: str, friction: float, source: str = LARGER) -> dict:
     return {
         "pair": index,
         "geom_a": geom,
@@ -44,7 +47,7 @@ def floor_pair(index: int, geom: str, friction: float) -> dict:
         "id_a": index,
         "engine": "clip",
         "friction": friction,
-        "sources": {"friction": "larger of: volcontact/material/steel, volcontact/material/tin"},
+        "sources": {"friction": source},
     }
 
 
@@ -101,7 +104,7 @@ def recording(contact: str = "volumetric", **changes) -> Recording:
             },
             "pairs": [
                 *(floor_pair(i, f"foot_{i}", friction=0.1) for i in range(20)),
-                floor_pair(20, "lid", friction=0.2),
+                floor_pair(20, "lid", friction=0.2, source="of pair lid"),
             ],
             "warnings": ["the handle touches nothing"],
         },
@@ -437,21 +440,20 @@ def test_description_becomes_tables():
     assert options.rows == (("tolerance", "0.001", "-"), ("engine", "auto", ""))
     assert materials.columns == ("name", "geoms", "stiffness [N/m³]", "damping [s/m]")
     assert materials.rows == (("steel", "foot, lid", "2e+08", "0.5"),)
-    assert pairs.columns == ("pairs", "geoms", "engine", "friction [-]", "sources")
-    first, second = pairs.rows
+    assert pairs.columns == ("pairs", "geoms", "friction [-]", "sources")
     geoms = "foot_0 with floor, foot_1 with floor, foot_2 with floor and 17 more"
-    assert first == ("20", geoms, "clip", "0.1", "friction larger of: steel, tin")
-    assert second[:2] == ("1", "lid with floor")
+    assert pairs.rows[0] == ("20", geoms, "0.1", "friction larger of: steel, tin")
+    assert pairs.rows[1] == ("1", "lid with floor", "0.2", "friction of pair lid")
+    assert tables(recording().description, sources=False)[2].columns == pairs.columns[:3]
 
 
-def test_compact_tables_say_once_what_all_rows_share():
-    materials, pairs = tables(recording().description, compact=True)[1:]
+def test_tables_say_once_what_all_rows_share():
+    materials, pairs = tables(recording().description)[1:]
     assert materials.note == ""  # a single row keeps its columns
-    assert pairs.columns == ("pairs", "geoms", "friction [-]")
     assert pairs.note == "all: engine clip"
     pair = {"geom_a": "a", "geom_b": "b", "engine": "clip"}
     stiff = [{**pair, "stiffness": 5e9, "friction": mu} for mu in (0.1, 0.2)]
-    (table,) = tables({"pairs": stiff, "nothing": [], "mujoco_version": "9"}, compact=True)
+    (table,) = tables({"pairs": stiff, "nothing": [], "mujoco_version": "9"})
     assert table.note == "all: engine clip, stiffness 5e+09 N/m³"
 
 

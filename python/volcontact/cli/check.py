@@ -47,7 +47,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     if terminal.json:
         terminal.result(description)
         return 0
-    for part in tables(description, compact=True):
+    for part in tables(description, sources=False):
         terminal.out.print(part.title, style="bold")
         if part.note:
             terminal.out.print(part.note, markup=False)

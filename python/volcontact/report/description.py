@@ -37,12 +37,12 @@ class Table:
     note: str = ""
 
 
-def tables(description: Record, *, compact: bool = False) -> list[Table]:
+def tables(description: Record, *, sources: bool = True) -> list[Table]:
     """One table per part of a description; its warnings and single values are not among them.
 
     Args:
         description: as `Contact.description` gives it.
-        compact: leave sources out, and move what is the same in all rows into the note.
+        sources: say where the values come from.
     """
     made = []
     for name, content in description.items():
@@ -53,7 +53,7 @@ def tables(description: Record, *, compact: bool = False) -> list[Table]:
             continue
         if name == "pairs":
             records = _alike(records)
-        made.append(_table(name, records, compact=compact))
+        made.append(_table(name, records, sources=sources))
     return made
 
 
@@ -62,11 +62,11 @@ def _table_of_values(name: str, values: Record) -> Table:
     return Table(_title(name), ("name", "value", "unit"), rows)
 
 
-def _table(name: str, records: list[Record], *, compact: bool) -> Table:
+def _table(name: str, records: list[Record], *, sources: bool) -> Table:
     keys = sorted(dict.fromkeys(key for record in records for key in record), key=_rank)
-    keys = [key for key in keys if key not in _HIDDEN and not (compact and key in _LAST)]
+    keys = [key for key in keys if key not in _HIDDEN and (sources or key not in _LAST)]
     note = ""
-    if compact and len(records) > 1:
+    if len(records) > 1:
         shared = [
             key
             for key in keys
