@@ -48,7 +48,7 @@ _PROGRESS_CALLS = 200
 
 
 class SimulationError(ValueError):
-    """A scene that cannot be run: the message is one line and says what to change."""
+    """A request that makes no sense: the message is one line and says what to change."""
 
 
 @dataclass(frozen=True)
@@ -172,6 +172,7 @@ def simulate(
 
     Raises:
         SimulationError: duration, timestep, interval or kind of contact out of range.
+        FileNotFoundError: there is no such file.
         ValueError: the scene cannot be read or understood.
     """
     model = _model_to_run(scene, contact, timestep)
@@ -197,6 +198,23 @@ def simulate(
         return recorder.recording(contact, probe.description)
 
 
+def native_model(scene: str | os.PathLike[str]) -> mujoco.MjModel:
+    """Loads a scene as plain MuJoCo does, from a path or MJCF text.
+
+    Raises:
+        FileNotFoundError: there is no such file.
+        ValueError: MuJoCo cannot compile it.
+    """
+    text = os.fspath(scene)
+    if text.lstrip().startswith("<"):
+        return mujoco.MjModel.from_xml_string(text)
+    if not Path(text).is_file():
+        raise FileNotFoundError(f"no such scene: {text}")
+    if text.endswith(".mjb"):
+        return mujoco.MjModel.from_binary_path(text)
+    return mujoco.MjModel.from_xml_path(text)
+
+
 def warnings_of(data: mujoco.MjData) -> dict[str, int]:
     """MuJoCo's warning counters that are not 0, by name (without the mjWARN_ prefix)."""
     kinds = {
@@ -218,7 +236,7 @@ def _model_to_run(
     elif contact == "volumetric":
         model = volumetric_scene.load(scene)
     else:
-        model = _native_model(os.fspath(scene))
+        model = native_model(scene)
     if timestep is not None:
         if not (np.isfinite(timestep) and timestep > 0.0):
             raise SimulationError(f"timestep {timestep:g} s must be positive")
@@ -226,14 +244,6 @@ def _model_to_run(
     # MuJoCo then evaluates both energies inside the step, at the state the step began with.
     model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
     return model
-
-
-def _native_model(scene: str) -> mujoco.MjModel:
-    if scene.lstrip().startswith("<"):
-        return mujoco.MjModel.from_xml_string(scene)
-    if not Path(scene).is_file():
-        raise SimulationError(f"no such scene: {scene}")
-    return mujoco.MjModel.from_xml_path(scene)
 
 
 class _Probe(Protocol):

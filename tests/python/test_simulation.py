@@ -172,8 +172,15 @@ def test_bad_requests_say_what_is_wrong(options, message):
 
 
 def test_missing_scene_is_named():
-    with pytest.raises(SimulationError, match=r"no such scene: nowhere\.xml"):
-        simulate("nowhere.xml", contact="native", duration=1.0)
+    for kind in KINDS:
+        with pytest.raises(FileNotFoundError, match=r"no such scene: nowhere\.xml"):
+            simulate("nowhere.xml", contact=kind, duration=1.0)
+
+
+def test_binary_models_run_too(tmp_path):
+    path = tmp_path / "ball.mjb"
+    mujoco.mj_saveModel(mujoco.MjModel.from_xml_string(ball(1.0)), str(path), None)
+    assert simulate(path, contact="native", duration=0.01).steps == 20
 
 
 def test_jointed_bodies_are_followed_where_none_is_free():

@@ -113,9 +113,9 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
 
 def _renderer(arguments: argparse.Namespace) -> Renderer:
     from volcontact.render import Renderer, camera_id
-    from volcontact.report.pictures import drawing_model
+    from volcontact.simulation import native_model
 
-    model = drawing_model(arguments.scene)
+    model = native_model(arguments.scene)
     if arguments.camera is not None:
         camera_id(model, arguments.camera)  # an unknown one is an error now, not after the runs
     return Renderer(model, width=arguments.width, height=arguments.height)

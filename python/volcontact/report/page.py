@@ -41,7 +41,7 @@ def write_page(comparison: Comparison, pairs: list[FramePair], path: Path) -> Pa
 def page(comparison: Comparison, pairs: list[FramePair]) -> str:
     """The report as HTML text."""
     environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("volcontact.report", "templates"),
+        loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib
-import mujoco
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
@@ -117,13 +116,6 @@ def png(picture: np.ndarray, colors: int | None = None) -> bytes:
     buffer = io.BytesIO()
     image.save(buffer, format="png", optimize=True)
     return buffer.getvalue()
-
-
-def drawing_model(scene: str) -> mujoco.MjModel:
-    """The model for pictures of a scene given as path or MJCF text."""
-    if scene.lstrip().startswith("<"):
-        return mujoco.MjModel.from_xml_string(scene)
-    return mujoco.MjModel.from_xml_path(scene)
 
 
 def _note(frame: Frame) -> str:
