@@ -21,7 +21,7 @@ from volcontact.report.description import tables, text
 from volcontact.report.design_pose import DesignPose, angle_between, read_design_pose
 from volcontact.report.figures import curves, thin
 from volcontact.report.findings import findings
-from volcontact.report.page import page, title_of
+from volcontact.report.page import label_of, page, title_of
 from volcontact.report.pictures import FramePair, png, side_by_side, write_frames
 from volcontact.report.units import angle, area, digits, nominal, quantity, ratio
 from volcontact.simulation import SITE, Frame, Recording
@@ -431,6 +431,12 @@ def test_page_escapes_what_the_user_wrote():
 )
 def test_title_comes_from_folder_or_file(scene, title):
     assert title_of(scene) == title
+
+
+def test_label_keeps_the_machine_to_itself():
+    assert label_of("/home/me/project/mjcf_models/peg/scene.xml") == "mjcf_models/peg/scene.xml"
+    assert label_of("../peg/scene.xml") == "../peg/scene.xml"
+    assert label_of("<mujoco/>") == "MJCF text"
 
 
 def test_description_becomes_tables():

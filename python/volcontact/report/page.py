@@ -51,7 +51,7 @@ def page(comparison: Comparison, pairs: list[FramePair]) -> str:
     parts = tables(run.description)
     return environment.get_template("report.html.j2").render(
         title=title_of(comparison.scene),
-        scene=comparison.scene,
+        scene=label_of(comparison.scene),
         comparison=comparison,
         settings=_settings(comparison),
         findings=findings(comparison),
@@ -74,6 +74,14 @@ def title_of(scene: str) -> str:
     path = Path(scene)
     name = path.resolve().parent.name if path.stem == "scene" else path.stem
     return name.replace("_", " ").replace("-", " ").capitalize() or "Scene"
+
+
+def label_of(scene: str) -> str:
+    """Where a scene is, without the part of an absolute path that only its machine knows."""
+    if scene.lstrip().startswith("<"):
+        return "MJCF text"
+    path = Path(scene)
+    return "/".join(path.parts[-3:]) if path.is_absolute() else scene
 
 
 def figures_side_by_side(comparison: Comparison) -> list[Row]:
