@@ -25,6 +25,9 @@ double typical_time(Engine engine) {
   }
 }
 
+// An engine may use the threads that are free: the guard of the evaluation sets how many there are.
+constexpr int kInnerThreads = 0;
+
 // Below this OpenMP costs more than it saves, also on a busy machine [s].
 constexpr double kWorthSharing = 200e-6;
 
@@ -96,7 +99,7 @@ void SceneContact::add_pair(const mjModel* m, const GeomPair& geoms) {
     engine = engine_for(a, b);
   }
   ContactModel model({{a, b, Pose{}, Pose{}}}, laws.laws,
-                     {options.tolerance, engine, options.threads});
+                     {options.tolerance, engine, kInnerThreads});
   const int first_state = states_;
   states_ += model.state_size();
   pairs_.push_back({geoms, engine, std::move(laws), first_state, std::move(model)});
@@ -142,7 +145,7 @@ UserdataBlock SceneContact::block(const mjModel* m, const mjData* d) const {
 }
 
 int SceneContact::threads_for(const Scratch& scratch) const noexcept {
-  if (keys_.options.threads == 1 || scratch.cull.near.size() < 2) return 1;
+  if (scratch.cull.near.size() < 2) return 1;
   double work = 0.0, longest = 0.0;
   for (const int i : scratch.cull.near) {
     const double time = typical_time(pairs_[static_cast<std::size_t>(i)].engine);
@@ -164,8 +167,8 @@ void SceneContact::evaluate(const mjModel* m, const mjData* d, const LawState& s
   }
   std::fill_n(states.pending, states_, 0.0);
 
-  const EvaluationGuard guard;
-  const int threads = std::min(guard.threads(keys_.options.threads), threads_for(scratch));
+  const EvaluationGuard guard(keys_.options.threads);
+  const int threads = std::min(guard.threads(), threads_for(scratch));
   if (scratch.workspaces.size() < static_cast<std::size_t>(threads)) {
     scratch.workspaces.resize(static_cast<std::size_t>(threads));
   }

@@ -4,7 +4,6 @@
 #include <omp.h>
 #include <pthread.h>
 
-#include <algorithm>
 #include <atomic>
 
 namespace volcontact::adaptor {
@@ -21,21 +20,16 @@ std::atomic<bool> is_forked_child{false};
 
 }  // namespace
 
-EvaluationGuard::EvaluationGuard() noexcept
-    : alone_(evaluations_in_flight.fetch_add(1) == 0 && !is_forked_child), restored_threads_(0) {
-  if (alone_) return;
-  restored_threads_ = omp_get_max_threads();
-  omp_set_num_threads(1);
+EvaluationGuard::EvaluationGuard(int wanted) noexcept
+    : restored_threads_(omp_get_max_threads()) {
+  const bool alone = evaluations_in_flight.fetch_add(1) == 0 && !is_forked_child;
+  threads_ = !alone ? 1 : wanted > 0 ? wanted : restored_threads_;
+  if (threads_ != restored_threads_) omp_set_num_threads(threads_);
 }
 
 EvaluationGuard::~EvaluationGuard() {
-  if (!alone_) omp_set_num_threads(restored_threads_);
+  if (threads_ != restored_threads_) omp_set_num_threads(restored_threads_);
   evaluations_in_flight.fetch_sub(1);
-}
-
-int EvaluationGuard::threads(int wanted) const noexcept {
-  if (!alone_) return 1;
-  return wanted > 0 ? wanted : std::max(1, omp_get_max_threads());
 }
 
 }  // namespace volcontact::adaptor

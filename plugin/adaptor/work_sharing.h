@@ -3,22 +3,22 @@
 
 namespace volcontact::adaptor {
 
-/// While it lives, this thread evaluates a scene. Says how many threads the evaluation may use: one
-/// while another thread evaluates too (each has a core of its own then), and one in a forked child,
-/// where the threads of OpenMP no longer exist.
+/// While it lives, this thread evaluates a scene and limits the threads that OpenMP may use for it:
+/// to those asked for; to one while another thread evaluates too, since each has a core of its own
+/// then; to one in a forked child, where the threads of OpenMP no longer exist.
 class EvaluationGuard {
  public:
-  EvaluationGuard() noexcept;
+  /// `wanted` threads, 0 for as many as OpenMP thinks right.
+  explicit EvaluationGuard(int wanted) noexcept;
   ~EvaluationGuard();
   EvaluationGuard(const EvaluationGuard&) = delete;
   EvaluationGuard& operator=(const EvaluationGuard&) = delete;
 
-  /// `wanted` threads, 0 for as many as there are.
-  int threads(int wanted) const noexcept;
+  int threads() const noexcept { return threads_; }
 
  private:
-  bool alone_;
   int restored_threads_;
+  int threads_;
 };
 
 }  // namespace volcontact::adaptor
