@@ -41,11 +41,12 @@ struct Cell {
   std::int16_t listed = -1;  ///< ... of which these may pass through the cell; -1: any
   std::array<std::uint16_t, kListed> list;
 
-  bool divided = false;                      ///< has children instead
-  bool empty = false;                        ///< certainly no overlap in it
-  std::uint8_t split = 7;                    ///< bits of the axes to halve next
-  double low = 0.0;                          ///< volume is certainly not less ...
-  double high = 0.0;                         ///< ... and not more
+  bool divided = false;    ///< has children instead
+  bool empty = false;      ///< certainly no overlap in it
+  bool rough = false;      ///< only the bounds are worked out, and `sums.volume` between them
+  std::uint8_t split = 7;  ///< bits of the axes to halve next
+  double low = 0.0;        ///< volume is certainly not less ...
+  double high = 0.0;       ///< ... and not more
   std::array<double, 2> doubt = {0.0, 0.0};  ///< share of high - low by the owner of the face
   CellSums sums;
 };

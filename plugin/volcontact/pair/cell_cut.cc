@@ -2,6 +2,7 @@
 #include "volcontact/pair/cell_cut.h"
 
 #include <algorithm>
+#include <span>
 
 #include "volcontact/pair/overlap_window.h"
 
@@ -16,12 +17,9 @@ constexpr double kOthersShare = 0.25;  // weight of the other faces' bend in a f
 // Sum over |m_ij| u_i v_j.
 double sum_abs(const Mat3& m, const Vec3& u) { return u.dot(m.cwiseAbs() * u); }
 
-// Outward normal of the cell's side that is face `face` of the box graph.
-Vec3 cell_side_normal(int face) {
-  static const Vec3 normals[kFirstFace] = {-Vec3::UnitZ(), Vec3::UnitZ(),  -Vec3::UnitY(),
-                                           Vec3::UnitY(),  -Vec3::UnitX(), Vec3::UnitX()};
-  return face < kFirstFace ? normals[face] : Vec3::Zero();
-}
+// The cell's sides as the box graph numbers them: -z, +z, -y, +y, -x, +x.
+int cell_side(int axis, bool high) { return 2 * (2 - axis) + (high ? 1 : 0); }
+Vec3 cell_side_normal(int side) { return (side & 1 ? 1.0 : -1.0) * Vec3::Unit(2 - side / 2); }
 
 Vec3 corner_signs(int i) { return {i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0}; }
 
@@ -209,6 +207,8 @@ bool CellCut::collect(const std::vector<CellFace>& faces, Cell& cell) {
     if (through < Cell::kListed) cell.list[through] = static_cast<std::uint16_t>(index);
     ++through;
   }
+  all_flat_ = std::all_of(tangents_.begin(), tangents_.end(),
+                          [](const Tangent& t) { return t.bend == Bend::kFlat; });
   if (through <= Cell::kListed) cell.listed = static_cast<std::int16_t>(through);
   return true;
 }
@@ -217,6 +217,7 @@ bool CellCut::collect(const std::vector<CellFace>& faces, Cell& cell) {
 // --------------------------------------------------------------------------------
 
 void CellCut::cut(const Vec3& half) {
+  half_ = half;
   polytope_.start(box_graph());
   for (int i = 0; i < 8; ++i) polytope_.points()[i] = corner_signs(i).cwiseProduct(half);
   for (std::size_t i = 0; i < tangents_.size(); ++i) {
@@ -248,6 +249,19 @@ int CellCut::face_across(int from, int to) const {
   return 0;
 }
 
+double CellCut::polytope_volume() const {
+  const auto points = polytope_.points();
+  double six = 0.0;
+  for (const FaceLoop& loop : loops_) {
+    const int* index = polytope_.loop_vertices().data() + loop.first;
+    const Vec3& p = points[index[0]];
+    for (int i = 2; i < loop.count; ++i) {
+      six += p.dot(points[index[i - 1]].cross(points[index[i]]));
+    }
+  }
+  return std::max(0.0, six / 6.0);
+}
+
 // Moments from the faces by the divergence theorem: tetrahedra from the cell's centre.
 void CellCut::add_polytope(CellSums& sums) const {
   const auto points = polytope_.points();
@@ -267,13 +281,58 @@ void CellCut::add_polytope(CellSums& sums) const {
   }
 }
 
+const CellCut::Tangent* CellCut::tangent_of(const FaceLoop& loop) const {
+  return loop.face < kFirstFace ? nullptr : &tangents_[loop.face - kFirstFace];
+}
+
+bool CellCut::looks_along(const Tangent& t, const Vec3& e) {
+  return t.bend != Bend::kFlat || t.slope.dot(e) > 0.0;
+}
+
+// A tangent plane's unit normal n, with H n and n . H n.
+struct CellCut::Normal {
+  const Tangent& tangent;
+  Vec3 n;
+  Vec3 bent = Vec3::Zero();
+  double along = 0.0;
+  double steep;
+
+  explicit Normal(const Tangent& t) : tangent(t), steep(t.slope.norm()) {
+    n = t.slope / steep;
+    if (t.bend == Bend::kFlat) return;
+    bent = t.hessian * n;
+    along = n.dot(bent);
+  }
+};
+
+// Where x, a point of the tangent plane, meets the face along the plane's normal: how deep, and the
+// outward direction there, of unit length along that normal.
+struct CellCut::Foot {
+  double depth = 0.0;
+  Vec3 outward;
+
+  Foot(const Normal& normal, const Vec3& x) : outward(normal.n) {
+    const Tangent& t = normal.tangent;
+    if (t.bend == Bend::kFlat) return;
+    const Vec3 d = x - t.touch;
+    const Vec3 bent = t.hessian * d;
+    const Vec3 gradient = t.slope + bent;
+    const double bend = 0.5 * d.dot(bent);
+    depth = first_root(bend, gradient.dot(normal.n), normal.along);
+    if (!std::isfinite(depth)) depth = bend / normal.steep;
+    const Vec3 on_face = gradient - depth * normal.bent;
+    const double facing = on_face.dot(normal.n);
+    if (facing > kSteepEnough * normal.steep) outward = on_face / facing;
+  }
+};
+
 void CellCut::add_surfaces(CellSums& sums) {
   between_.assign(tangents_.size(), Moments{});
   for (const FaceLoop& loop : loops_) {
-    sample_.clear();
-    sample_surface(loop);
-    if (sample_.empty()) continue;
-    CellSums::Surface& surface = sums.surface[sample_[0].owner];
+    const Tangent* tangent = tangent_of(loop);
+    if (!tangent || tangent->seam) continue;
+    sample_surface(*tangent, loop, 0, false);
+    CellSums::Surface& surface = sums.surface[tangent->owner];
     for (const SurfacePoint& point : sample_) {
       surface.area_vector += point.element;
       surface.moment += point.position.cross(point.element);
@@ -283,82 +342,116 @@ void CellCut::add_surfaces(CellSums& sums) {
   }
 }
 
-// The part of a face in the cell: its tangent plane's polygon, three points a triangle, each taken
-// to the face along the plane's normal, and what the polygon's edges are off by.
-void CellCut::sample_surface(const FaceLoop& loop) {
+// The part of a face in the cell: its tangent plane's polygon, taken to the face along the plane's
+// normal, and what the polygon's edges are off by.
+void CellCut::sample_surface(const Tangent& tangent, const FaceLoop& loop, int levels, bool fine) {
+  sample_.clear();
   gap_sample_ = Moments{};
-  const int face = loop.face - kFirstFace;
-  if (face < 0 || tangents_[face].seam) return;
-  const Tangent& t = tangents_[face];
+  const Normal normal(tangent);
   const auto points = polytope_.points();
   const int* index = polytope_.loop_vertices().data() + loop.first;
-  const Vec3 normal = t.slope.normalized();
-  const auto add_point = [&](const Vec3& x, double weight) {
-    if (t.bend == Bend::kFlat) {
-      sample_.push_back({x, weight * normal, 1.0, t.owner});
-      return;
-    }
-    const OnFace foot = on_face(t, x, normal);
-    sample_.push_back({x - foot.depth * normal, weight * foot.outward, 1.0, t.owner});
-    const Vec3 middle = x - 0.5 * foot.depth * normal;
-    const double volume = weight * foot.depth;
-    gap_sample_.volume += volume;
-    gap_sample_.first += volume * middle;
-    gap_sample_.second += volume * middle * middle.transpose();
-  };
   const Vec3& p = points[index[0]];
   double area = 0.0;
   for (int i = 2; i < loop.count; ++i) {
     const Vec3 &q = points[index[i - 1]], &r = points[index[i]];
-    const double third = (q - p).cross(r - p).dot(normal) / 6.0;
-    area += 3.0 * third;
-    const Vec3 sixth = (p + q + r) / 6.0;
-    add_point(0.5 * p + sixth, third);
-    add_point(0.5 * q + sixth, third);
-    add_point(0.5 * r + sixth, third);
+    area += 0.5 * (q - p).cross(r - p).dot(normal.n);
+    sample_triangle(normal, p, q, r, levels, fine);
   }
+  if (all_flat_) return;
   for (int i = 0; i < loop.count; ++i) {
-    sample_edge(t, normal, index[i], index[i + 1 < loop.count ? i + 1 : 0], area);
+    sample_edge(normal, index[i], index[i + 1 < loop.count ? i + 1 : 0], area);
   }
 }
 
-// Where x, a point of the tangent plane, meets the face along the plane's normal: how deep, and the
-// outward direction there, of unit length along that normal.
-CellCut::OnFace CellCut::on_face(const Tangent& t, const Vec3& x, const Vec3& normal) {
-  const Vec3 gradient = t.slope + t.hessian * (x - t.touch);
-  const Vec3 bent = t.hessian * normal;
-  const double bend = t.bend_at(x), steep = t.slope.dot(normal);
-  double depth = first_root(bend, gradient.dot(normal), bent.dot(normal));
-  if (!std::isfinite(depth)) depth = bend / steep;
-  const Vec3 outward = gradient - depth * bent;
-  const double facing = outward.dot(normal);
-  return {depth, facing > kSteepEnough * steep ? Vec3(outward / facing) : normal};
+// Three inner points are exact for quadratic functions, six for quartic ones (Dunavant, 1985).
+void CellCut::sample_triangle(const Normal& normal, const Vec3& p, const Vec3& q, const Vec3& r,
+                              int levels, bool fine) {
+  if (levels > 0) {
+    const Vec3 pq = 0.5 * (p + q), qr = 0.5 * (q + r), rp = 0.5 * (r + p);
+    sample_triangle(normal, p, pq, rp, levels - 1, fine);
+    sample_triangle(normal, pq, q, qr, levels - 1, fine);
+    sample_triangle(normal, rp, qr, r, levels - 1, fine);
+    sample_triangle(normal, pq, qr, rp, levels - 1, fine);
+    return;
+  }
+  struct Orbit {
+    double corner, others, weight;
+  };
+  static constexpr Orbit kThree[] = {{2.0 / 3.0, 1.0 / 6.0, 1.0 / 3.0}};
+  static constexpr Orbit kSix[] = {{0.108103018168070, 0.445948490915965, 0.223381589678011},
+                                   {0.816847572980459, 0.091576213509771, 0.109951743655322}};
+  const double area = 0.5 * (q - p).cross(r - p).dot(normal.n);
+  const Vec3 sum = p + q + r;
+  for (const Orbit& orbit : fine ? std::span<const Orbit>(kSix) : std::span<const Orbit>(kThree)) {
+    for (const Vec3* corner : {&p, &q, &r}) {
+      sample_point(normal, orbit.others * sum + (orbit.corner - orbit.others) * *corner,
+                   orbit.weight * area);
+    }
+  }
+}
+
+void CellCut::sample_point(const Normal& normal, const Vec3& x, double weight) {
+  const Foot foot(normal, x);
+  sample_.push_back({x - foot.depth * normal.n, weight * foot.outward, 1.0});
+  if (foot.depth == 0.0) return;
+  const Vec3 middle = x - 0.5 * foot.depth * normal.n;
+  const double volume = weight * foot.depth;
+  gap_sample_.volume += volume;
+  gap_sample_.first += volume * middle;
+  gap_sample_.second += volume * middle * middle.transpose();
+}
+
+// How far x can go in the tangent plane along the unit vector `outward` before it leaves the cell
+// or another tangent plane than the one across the edge.
+double CellCut::room(const Normal& normal, const Vec3& x, const Vec3& outward, int across) const {
+  double way = kInfinity;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int side = cell_side(axis, outward[axis] > 0.0);
+    if (side != across && outward[axis] != 0.0) {
+      way = std::min(way, half_[axis] / std::abs(outward[axis]) - x[axis] / outward[axis]);
+    }
+  }
+  for (std::size_t j = 0; j < tangents_.size(); ++j) {
+    const Tangent& t = tangents_[j];
+    const double rise = t.slope.dot(outward);
+    if (&t == &normal.tangent || static_cast<int>(j) + kFirstFace == across) continue;
+    if (rise > 0.0) way = std::min(way, -t.plane(x) / rise);
+  }
+  return std::max(0.0, way);
 }
 
 // The edge of two tangent planes lies `off` outside the edge of the two faces, across the edge
-// along the first plane. The strip between is taken off, by Simpson's rule.
-void CellCut::sample_edge(const Tangent& t, const Vec3& normal, int from, int to, double area) {
-  const int across = face_across(from, to) - kFirstFace;
-  const Tangent* other = across < 0 ? nullptr : &tangents_[across];
-  if (t.bend == Bend::kFlat && (!other || other->bend == Bend::kFlat)) return;
+// along the first plane. The strip between is taken off, by two Gauss points.
+void CellCut::sample_edge(const Normal& normal, int from, int to, double area) {
+  const int across = face_across(from, to);
+  const Tangent* other = across < kFirstFace ? nullptr : &tangents_[across - kFirstFace];
+  const bool other_flat = !other || other->bend == Bend::kFlat;
+  if (normal.tangent.bend == Bend::kFlat && other_flat) return;
   const Vec3 &p = polytope_.points()[from], &q = polytope_.points()[to];
-  const Vec3 outward = (q - p).cross(normal);  // as long as the edge
+  Vec3 outward = (q - p).cross(normal.n);
   const double length = outward.norm();
   if (!(length > 0.0)) return;
-  const double widest = area / length;
-  const Vec3 side = cell_side_normal(across + kFirstFace);
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 x = p + 0.5 * k * (q - p);
-    OnFace foot{0.0, normal};
-    if (t.bend != Bend::kFlat) foot = on_face(t, x, normal);
-    const Vec3 slope = other ? Vec3(other->slope + other->hessian * (x - other->touch)) : side;
-    const double excess = (other ? other->bend_at(x) : 0.0) - foot.depth * slope.dot(normal);
-    const double rise = slope.dot(outward) / length;
+  outward /= length;
+  constexpr double kGauss = 0.21132486540518712;
+  for (const double along : {kGauss, 1.0 - kGauss}) {
+    const Vec3 x = p + along * (q - p);
+    const Foot foot(normal, x);
+    Vec3 slope = other ? other->slope : cell_side_normal(across);
+    double bend = 0.0;
+    if (!other_flat) {
+      const Vec3 d = x - other->touch;
+      const Vec3 bent = other->hessian * d;
+      slope += bent;
+      bend = 0.5 * d.dot(bent);
+    }
+    const double rise = slope.dot(outward);
     if (!(rise > 0.0)) continue;
-    const double off = std::clamp(excess / rise, -widest, widest);
-    const double weight = (k == 1 ? -4.0 : -1.0) / 6.0 * length * off;
-    const Vec3 at = x - foot.depth * normal - 0.5 * off / length * outward;
-    sample_.push_back({at, weight * foot.outward, std::copysign(1.0, weight), t.owner});
+    double off = (bend - foot.depth * slope.dot(normal.n)) / rise;
+    off =
+        off > 0.0 ? std::min(off, area / length) : std::max(off, -room(normal, x, outward, across));
+    const double weight = -0.5 * length * off;
+    const Vec3 at = x - foot.depth * normal.n - 0.5 * off * outward;
+    sample_.push_back({at, weight * foot.outward, std::copysign(1.0, weight)});
   }
 }
 
@@ -463,11 +556,9 @@ CellCut::Gap CellCut::gap_of(int index, const Vec3& half) {
   return gap;
 }
 
-void CellCut::apply_gaps(Cell& cell) {
-  CellSums& sums = cell.sums;
+void CellCut::bound(Cell& cell) {
   const double cell_volume = 8.0 * cell.half.prod();
-  cell.low = cell.high = sums.volume;
-  cell.doubt = {0.0, 0.0};
+  cell.low = cell.high = polytope_volume();
   gaps_.assign(tangents_.size(), Gap{});
   for (std::size_t i = 0; i < tangents_.size(); ++i) {
     if (tangents_[i].exact()) continue;
@@ -475,15 +566,23 @@ void CellCut::apply_gaps(Cell& cell) {
     cell.low -= gap.high;
     cell.high -= gap.low;
     cell.doubt[tangents_[i].owner] += gap.high - gap.low;
-    const Moments& estimate = between_[i];
-    if (estimate.volume == 0.0) continue;
-    const double share = std::clamp(estimate.volume, gap.low, gap.high) / estimate.volume;
-    sums.volume -= share * estimate.volume;
-    sums.first -= share * estimate.first;
-    sums.second -= share * estimate.second;
   }
   cell.low = std::clamp(cell.low, 0.0, cell_volume);
   cell.high = std::clamp(cell.high, cell.low, cell_volume);
+}
+
+void CellCut::estimate(Cell& cell) {
+  CellSums& sums = cell.sums;
+  add_polytope(sums);
+  add_surfaces(sums);
+  for (std::size_t i = 0; i < tangents_.size(); ++i) {
+    const Moments& between = between_[i];
+    if (between.volume == 0.0) continue;
+    const double share = std::clamp(between.volume, gaps_[i].low, gaps_[i].high) / between.volume;
+    sums.volume -= share * between.volume;
+    sums.first -= share * between.first;
+    sums.second -= share * between.second;
+  }
   const double inside = std::clamp(sums.volume, cell.low, cell.high);
   if (inside != sums.volume) {
     const double scale = sums.volume > 0.0 ? inside / sums.volume : 0.0;
@@ -494,10 +593,10 @@ void CellCut::apply_gaps(Cell& cell) {
 }
 
 // Halving an axis helps against a bend along it; a straight cylinder is never cut across.
-void CellCut::choose_split(const std::vector<Gap>& gaps, Cell& cell) const {
+void CellCut::choose_split(Cell& cell) const {
   const auto share_of = [&](std::size_t i) -> Vec3 {
     const Tangent& t = tangents_[i];
-    Vec3 share = t.hessian.diagonal().cwiseAbs().cwiseProduct(gaps[i].reach.cwiseAbs2());
+    Vec3 share = t.hessian.diagonal().cwiseAbs().cwiseProduct(gaps_[i].reach.cwiseAbs2());
     if (t.slack > 0.0 || !(share.sum() > 0.0)) share = cell.half.cwiseAbs2();
     return share / share.sum();
   };
@@ -506,7 +605,7 @@ void CellCut::choose_split(const std::vector<Gap>& gaps, Cell& cell) const {
     if (!tangents_[i].exact()) others += kOthersShare * share_of(i);
   }
   for (std::size_t i = 0; i < tangents_.size(); ++i) {
-    if (!tangents_[i].exact()) score += (gaps[i].high - gaps[i].low) * (share_of(i) + others);
+    if (!tangents_[i].exact()) score += (gaps_[i].high - gaps_[i].low) * (share_of(i) + others);
   }
   cell.split = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -514,47 +613,52 @@ void CellCut::choose_split(const std::vector<Gap>& gaps, Cell& cell) const {
   }
 }
 
-void CellCut::evaluate(const std::vector<CellFace>& faces, Cell& cell) {
+void CellCut::evaluate(const std::vector<CellFace>& faces, Cell& cell, double rough_above) {
   cell.sums = CellSums{};
   cell.low = cell.high = 0.0;
   cell.doubt = {0.0, 0.0};
+  cell.rough = false;
   cell.empty = !collect(faces, cell);
   if (cell.empty) return;
+  cut(cell.half);
   if (tangents_.empty()) {
     cell.sums.volume = cell.low = cell.high = 8.0 * cell.half.prod();
     cell.sums.second = (cell.sums.volume / 3.0 * cell.half.cwiseAbs2()).asDiagonal();
     return;
   }
-  cut(cell.half);
   const bool bounded_by_planes = std::all_of(tangents_.begin(), tangents_.end(),
                                              [](const Tangent& t) { return t.beyond() == 0.0; });
   cell.empty = polytope_.size() == 0 && bounded_by_planes;
   if (cell.empty) return;
   read_loops();
-  add_polytope(cell.sums);
-  add_surfaces(cell.sums);
-  apply_gaps(cell);
-  choose_split(gaps_, cell);
+  bound(cell);
+  choose_split(cell);
+  cell.rough = cell.high - cell.low > rough_above;
+  if (cell.rough) {
+    cell.sums.volume = 0.5 * (cell.low + cell.high);
+  } else {
+    estimate(cell);
+  }
 }
 
-// How far the corner must go against e to lie within all faces; infinite when it never gets there.
-double CellCut::excess_along(const Vec3& corner, const Vec3& e) const {
+// Moves the corner against e until it lies within all faces. False when it never does, or not
+// within the cell.
+bool CellCut::draw_back(const Vec3& half, const Vec3& e, Vec3& corner) const {
   double excess = 0.0;
   for (const Tangent& t : tangents_) {
     const double value = t.plane(corner) + t.bend_at(corner);
+    if (!(value > 0.0) || t.on_face(corner)) continue;
     const Vec3 bent = t.hessian * e;
     const double rise = t.slope.dot(e) + bent.dot(corner - t.touch);
-    if (value > 0.0 && !t.on_face(corner)) {
-      excess = std::max(excess, first_root(value, rise, e.dot(bent)));
-    }
+    excess = std::max(excess, first_root(value, rise, e.dot(bent)));
   }
-  if (excess > 0.0 && std::isfinite(excess)) {
-    const Vec3 back = corner - excess * e;
-    for (const Tangent& t : tangents_) {
-      if (t.plane(back) + t.bend_at(back) > 0.0 && !t.on_face(back)) return kInfinity;
-    }
-  }
-  return excess;
+  if (excess == 0.0) return true;
+  if (!std::isfinite(excess)) return false;
+  corner -= excess * e;
+  return (corner.cwiseAbs() - half).maxCoeff() <= 1e-9 * half.norm() &&
+         std::all_of(tangents_.begin(), tangents_.end(), [&](const Tangent& t) {
+           return t.plane(corner) + t.bend_at(corner) <= 0.0 || t.on_face(corner);
+         });
 }
 
 }  // namespace volcontact

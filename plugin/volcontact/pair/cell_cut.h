@@ -22,34 +22,36 @@ class CellCut {
     Vec3 position;
     Vec3 element;
     double sign;
-    int owner;
   };
 
   /// Fills in everything of `cell` but its box and region. `list` and `listed` come in as a guess
-  /// of the faces that pass through it (those of its parent) and go out as those that do.
-  void evaluate(const std::vector<CellFace>& faces, Cell& cell);
+  /// of the faces that pass through it (those of its parent) and go out as those that do. A cell
+  /// with more doubt than `rough_above` [m^3], which will be divided anyway, is left rough.
+  void evaluate(const std::vector<CellFace>& faces, Cell& cell, double rough_above = kInfinity);
 
-  /// Cuts the cell as evaluate does and calls visit(point) with the points of a quadrature of the
-  /// surfaces in it.
+  /// Points of a quadrature, exact to degree 4 on triangles, of the surfaces in the cell that look
+  /// along `e`: calls visit(point). Each triangle is divided in four `levels` times.
   template <typename Visit>
-  void for_each_surface_point(const std::vector<CellFace>& faces, Cell& cell, Visit&& visit) {
+  void for_each_surface_point(const std::vector<CellFace>& faces, Cell& cell, const Vec3& e,
+                              int levels, Visit&& visit) {
     if (!collect(faces, cell) || tangents_.empty()) return;
     cut(cell.half);
     read_loops();
     for (const FaceLoop& loop : loops_) {
-      sample_.clear();
-      sample_surface(loop);
+      const Tangent* tangent = tangent_of(loop);
+      if (!tangent || tangent->seam || !looks_along(*tangent, e)) continue;
+      sample_surface(*tangent, loop, levels, true);
       for (const SurfacePoint& point : sample_) visit(point);
     }
   }
 
   /// Corners of what the tangent planes left of the last cell, from the cell's centre, each drawn
-  /// back against the unit vector `e` to the true faces: calls visit(corner).
+  /// back against the unit vector `e` to the true faces, where that stays within the cell: calls
+  /// visit(corner).
   template <typename Visit>
-  void for_each_corner(const Vec3& e, Visit&& visit) const {
-    for (const Vec3& corner : polytope_.points()) {
-      const double excess = excess_along(corner, e);
-      if (std::isfinite(excess)) visit(Vec3(corner - excess * e));
+  void for_each_corner(const Vec3& half, const Vec3& e, Visit&& visit) const {
+    for (Vec3 corner : polytope_.points()) {
+      if (draw_back(half, e, corner)) visit(corner);
     }
   }
 
@@ -101,23 +103,28 @@ class CellCut {
   bool collect(const std::vector<CellFace>& faces, Cell& cell);
   void cut(const Vec3& half);
   void read_loops();
+  const Tangent* tangent_of(const FaceLoop& loop) const;
+  static bool looks_along(const Tangent& tangent, const Vec3& e);
+  double polytope_volume() const;
   void add_polytope(CellSums& sums) const;
   void add_surfaces(CellSums& sums);
-  void sample_surface(const FaceLoop& loop);
-  void sample_edge(const Tangent& tangent, const Vec3& normal, int from, int to, double area);
+  struct Foot;
+  struct Normal;
+  void sample_surface(const Tangent& tangent, const FaceLoop& loop, int levels, bool fine);
+  void sample_triangle(const Normal& normal, const Vec3& p, const Vec3& q, const Vec3& r,
+                       int levels, bool fine);
+  void sample_point(const Normal& normal, const Vec3& x, double weight);
+  double room(const Normal& normal, const Vec3& x, const Vec3& outward, int across) const;
+  void sample_edge(const Normal& normal, int from, int to, double area);
   int face_across(int from, int to) const;
-  struct OnFace {
-    double depth;
-    Vec3 outward;
-  };
-  static OnFace on_face(const Tangent& tangent, const Vec3& x, const Vec3& normal);
   Gap gap_of(int index, const Vec3& half);
   Gap bent_gap(int index, Columns& columns);
   void keep_touched(int index, const Columns& columns);
   void keep_filled(int index, const Columns& columns);
-  void apply_gaps(Cell& cell);
-  void choose_split(const std::vector<Gap>& gaps, Cell& cell) const;
-  double excess_along(const Vec3& corner, const Vec3& e) const;
+  void bound(Cell& cell);
+  void estimate(Cell& cell);
+  void choose_split(Cell& cell) const;
+  bool draw_back(const Vec3& half, const Vec3& e, Vec3& corner) const;
 
   CutPolytope polytope_;
   std::vector<FaceLoop> loops_;
@@ -128,6 +135,8 @@ class CellCut {
   Moments gap_sample_;  // between plane and face, of the loop last sampled
   ConvexPolygon polygon_;
   std::vector<Tangent> tangents_;
+  bool all_flat_ = false;
+  Vec3 half_;                     // of the cell that was cut
   std::vector<Moments> between_;  // plane and face, estimated, by tangent
   std::vector<Gap> gaps_;
 };

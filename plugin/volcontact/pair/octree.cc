@@ -21,8 +21,13 @@ constexpr int kMostCells = 60000;   // about 25 MB and 30 ms
 constexpr int kEvaluateGrain = 8;   // cells a thread takes at a time
 constexpr int kSumGrain = 64;       // cells in a partial sum
 constexpr int kWorthThreads = 256;  // cells in a round, when the number of threads is our choice
-constexpr double kRestShare = 0.5;  // of the tolerance, left to the cells that are not divided
-constexpr double kNudge = 1e-6;     // from the surface of a field, in sizes of the scene
+constexpr double kRoughShare =
+    0.5;  // of that threshold: more doubt means division in the next round
+constexpr double kRestShare = 0.5;    // of the tolerance, left to the cells that are not divided
+constexpr double kColumnShare = 2.0;  // of the tolerance, for the volume that columns add up to
+constexpr double kColumnTolerance = 1e-4;  // ... which is not asked to be finer than this
+constexpr double kMostPatches = 4096;      // from which columns start
+constexpr double kNudge = 1e-6;            // from the surface of a field, in sizes of the scene
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 // The root box is a little larger than the hull, and not in the middle of it, so that neither its
@@ -88,8 +93,12 @@ class Octree {
   bool cut_by_seams(int first_face);
   void add_root(int first_face, const CutPolytope& hull);
   Cell& new_cell();
-  void evaluate(int first, int last);
+  void evaluate(int first, int last, double rough_above);
   void take_up(int first, int last);
+  int threads_for(int count) const;
+  bool precise() const;
+  void smooth();
+  bool divide_worst();
   void refine();
   double threshold() const;
   void divide(int index);
@@ -99,9 +108,10 @@ class Octree {
   VolumeMetrics metrics_of(int site);
   bool contained(const OctreeScratch::Totals& t, const SolidView& inner, const Pose& X_IW,
                  VolumeMetrics& metrics) const;
-  void add_depths(int site, VolumeMetrics& metrics);
-  RayInterval chord(const SolidView& view, const Pose& X_SW, const Vec3& p, const Vec3& e) const;
-  double depth_moment(const Cell& leaf, const Vec3& e);
+  void add_depths(int site, const OctreeScratch::Totals& totals, VolumeMetrics& metrics);
+  RayInterval chord(const SolidView& view, const Vec3& p_S, const Vec3& e_S) const;
+  OctreeScratch::Columns columns(const Cell& leaf, const Vec3& e, int levels);
+  double depth_moment(int site, const Vec3& first_way, double volume);
   double farthest(int site, const Vec3& e);
   bool farthest_support(const Vec3& e, double& height) const;
 
@@ -202,13 +212,18 @@ Cell& Octree::new_cell() {
 }
 
 // ---- refinement
-// ----------------------------------------------------------------------------------
+// ------------------------------------------------------------------------------------
 
-void Octree::evaluate(int first, int last) {
+int Octree::threads_for(int count) const {
+  return asked_threads_ == 0 && count < kWorthThreads ? 1 : thread_limit_;
+}
+
+void Octree::evaluate(int first, int last, double rough_above) {
   const int count = last - first;
   const bool alone = asked_threads_ == 0 && count < kWorthThreads;
-  for_each_task(count, alone ? 1 : thread_limit_, kEvaluateGrain,
-                [&](int i) { s_.cutters[thread_index()].evaluate(s_.faces, s_.cells[first + i]); });
+  for_each_task(count, alone ? 1 : thread_limit_, kEvaluateGrain, [&](int i) {
+    s_.cutters[thread_index()].evaluate(s_.faces, s_.cells[first + i], rough_above);
+  });
 }
 
 // New leaves: those without doubt are settled, the others pending.
@@ -272,35 +287,57 @@ void Octree::divide(int index) {
   }
 }
 
+bool Octree::precise() const {
+  return std::max(high_ - volume_, volume_ - low_) <= std::max(tolerance_ * volume_, rounding_);
+}
+
+// Works out the leaves that were left rough; their estimates take the place of the middle of their
+// bounds.
+void Octree::smooth() {
+  const int count = static_cast<int>(s_.pending.size());
+  for_each_task(count, threads_for(count), kEvaluateGrain, [&](int i) {
+    OctreeScratch::Pending& leaf = s_.pending[i];
+    Cell& cell = s_.cells[leaf.cell];
+    if (!cell.rough) return;
+    s_.cutters[thread_index()].evaluate(s_.faces, cell);
+    leaf.volume = cell.sums.volume;
+  });
+  s_.next_pending.swap(s_.pending);
+  s_.pending.clear();
+  take_up(0, 0);
+}
+
+// Divides the leaves with much doubt. False when the budget of cells does not allow it.
+bool Octree::divide_worst() {
+  const double least = threshold();
+  const int first = s_.cell_count;
+  int children = 0;
+  for (const auto& leaf : s_.pending) {
+    if (leaf.high - leaf.low >= least) children += 1 << std::popcount(s_.cells[leaf.cell].split);
+  }
+  if (first + children > kMostCells) return false;
+  for (const auto& leaf : s_.pending) {
+    if (leaf.high - leaf.low >= least) {
+      divide(leaf.cell);
+    } else {
+      s_.next_pending.push_back(leaf);
+    }
+  }
+  evaluate(first, s_.cell_count, kRoughShare * least);
+  take_up(first, s_.cell_count);
+  return true;
+}
+
 void Octree::refine() {
   s_.pending.clear();
   s_.next_pending.clear();
-  evaluate(0, s_.cell_count);
+  evaluate(0, s_.cell_count, 0.0);
   take_up(0, s_.cell_count);
-  while (true) {
-    const double error = std::max(high_ - volume_, volume_ - low_);
-    if (error <= std::max(tolerance_ * volume_, rounding_)) return;
-    const double least = threshold();
-    const int first = s_.cell_count;
-    int children = 0;
-    for (const auto& leaf : s_.pending) {
-      if (leaf.high - leaf.low < least) continue;
-      children += 1 << std::popcount(s_.cells[leaf.cell].split);
-    }
-    if (first + children > kMostCells) {
-      approximate_ = true;
-      return;
-    }
-    for (const auto& leaf : s_.pending) {
-      if (leaf.high - leaf.low < least) {
-        s_.next_pending.push_back(leaf);
-      } else {
-        divide(leaf.cell);
-      }
-    }
-    evaluate(first, s_.cell_count);
-    take_up(first, s_.cell_count);
-  }
+  do {
+    while (!precise() && !approximate_) approximate_ = !divide_worst();
+    smooth();
+  } while (!precise() && !approximate_);
+  approximate_ = !precise();
 }
 
 void Octree::list_leaves() {
@@ -407,7 +444,7 @@ VolumeMetrics Octree::metrics_of(int site) {
       (metrics.area == 0.0 && contained(t, b_, window_.X_BW, metrics))) {
     return metrics;
   }
-  add_depths(site, metrics);
+  add_depths(site, t, metrics);
   return metrics;
 }
 
@@ -415,9 +452,7 @@ VolumeMetrics Octree::metrics_of(int site) {
 // ---------------------------------------------------------------------------------------
 
 // The part of the line p + t e within the solid, for a point p of its surface or next to it.
-RayInterval Octree::chord(const SolidView& view, const Pose& X_SW, const Vec3& p,
-                          const Vec3& e) const {
-  const Vec3 p_S = X_SW * p, e_S = X_SW.rotation * e;
+RayInterval Octree::chord(const SolidView& view, const Vec3& p_S, const Vec3& e_S) const {
   if (view.ray) return view.ray(view.solid, p_S, e_S);
   // Steps of the signed distance, against e, from just below p to the far side.
   constexpr int kMostSteps = 100;
@@ -431,22 +466,49 @@ RayInterval Octree::chord(const SolidView& view, const Pose& X_SW, const Vec3& p
   return way > nudge ? RayInterval{-way, 0.0} : RayInterval{};
 }
 
-// What the leaf adds to int L^2/2 dA: the columns along e that end in its surface.
-double Octree::depth_moment(const Cell& leaf, const Vec3& e) {
+// What the columns along e that end in the leaf's surface add to int L dA and int L^2/2 dA.
+OctreeScratch::Columns Octree::columns(const Cell& leaf, const Vec3& e, int levels) {
+  const Vec3 e_A = window_.X_AW.rotation * e, e_B = window_.X_BW.rotation * e;
   Cell cell = leaf;
-  double sum = 0.0;
+  OctreeScratch::Columns sum;
   s_.cutters[thread_index()].for_each_surface_point(
-      s_.faces, cell, [&](const CellCut::SurfacePoint& point) {
+      s_.faces, cell, e, levels, [&](const CellCut::SurfacePoint& point) {
         const double area = e.dot(point.element);
         if (!(area * point.sign > 0.0)) return;
         const Vec3 p = cell.center + point.position;
-        const RayInterval in_a = chord(a_, window_.X_AW, p, e);
-        const RayInterval in_b = chord(b_, window_.X_BW, p, e);
+        const RayInterval in_a = chord(a_, window_.X_AW * p, e_A);
+        const RayInterval in_b = chord(b_, window_.X_BW * p, e_B);
         if (in_a.empty() || in_b.empty()) return;
         const double length = std::min(in_a.leave, in_b.leave) - std::max(in_a.enter, in_b.enter);
-        if (length > 0.0) sum += 0.5 * area * length * length;
+        if (length > 0.0) sum += {area * length, 0.5 * area * length * length};
       });
   return sum;
+}
+
+// int L^2/2 dA. L may have kinks where no leaf ends; the volume, known better, tells whether the
+// columns saw them. Columns are followed from one side, then from the other, then more densely.
+double Octree::depth_moment(int site, const Vec3& first_way, double volume) {
+  OctreeScratch::Columns best;
+  double least_error = kInfinity;
+  const double allowed = kColumnShare * std::max(tolerance_, kColumnTolerance) * volume + rounding_;
+  double patches = static_cast<double>(s_.leaves.size());
+  for (int levels = 0; levels == 0 || patches <= kMostPatches; ++levels, patches *= 4.0) {
+    for (const double side : {1.0, -1.0}) {
+      const auto sum = ordered_sum<OctreeScratch::Columns>(
+          static_cast<int>(s_.leaves.size()), thread_limit_, kSumGrain, s_.partial_columns,
+          [&](int i) {
+            return is_in(i, site) ? columns(s_.cells[s_.leaves[i]], side * first_way, levels)
+                                  : OctreeScratch::Columns{};
+          });
+      const double error = std::abs(sum.volume - volume);
+      if (error < least_error) {
+        least_error = error;
+        best = sum;
+      }
+      if (error <= allowed) return best.moment;
+    }
+  }
+  return best.moment;
 }
 
 // Height of the overlap over the origin of W along e, when a farthest point of one solid lies in
@@ -476,18 +538,18 @@ double Octree::farthest(int site, const Vec3& e) {
     const double center = e.dot(cell.center);
     if (center + e.cwiseAbs().dot(cell.half) <= height) continue;
     cutter.evaluate(s_.faces, cell);
-    cutter.for_each_corner(
-        e, [&](const Vec3& corner) { height = std::max(height, center + e.dot(corner)); });
+    cutter.for_each_corner(cell.half, e, [&](const Vec3& corner) {
+      height = std::max(height, center + e.dot(corner));
+    });
   }
   return height;
 }
 
-void Octree::add_depths(int site, VolumeMetrics& metrics) {
+void Octree::add_depths(int site, const OctreeScratch::Totals& totals, VolumeMetrics& metrics) {
   const Vec3 n = metrics.normal();
   if (n.isZero(0.0)) return;
-  metrics.depth_moment = ordered_sum<double>(
-      static_cast<int>(s_.leaves.size()), thread_limit_, kSumGrain, s_.partial_depths,
-      [&](int i) { return is_in(i, site) ? depth_moment(s_.cells[s_.leaves[i]], n) : 0.0; });
+  const Vec3 to_flatter = totals.doubt[0] <= totals.doubt[1] ? Vec3(-n) : n;
+  metrics.depth_moment = depth_moment(site, to_flatter, totals.volume);
   const double depth = farthest(site, n) + farthest(site, -n);
   metrics.depth = std::isfinite(depth) ? std::max(0.0, depth) : 0.0;
 }

@@ -26,6 +26,15 @@ struct OctreeScratch {
     Totals& operator+=(const Totals& other);
   };
 
+  struct Columns {
+    double volume = 0.0, moment = 0.0;
+    Columns& operator+=(const Columns& other) {
+      volume += other.volume;
+      moment += other.moment;
+      return *this;
+    }
+  };
+
   PieceList pieces_a, pieces_b;
   CutPolytope hull, part;
   std::vector<CellFace> faces;
@@ -35,7 +44,7 @@ struct OctreeScratch {
   std::vector<int> leaves;
   std::vector<CellCut> cutters;  ///< one per thread
   std::vector<Totals> partial_totals;
-  std::vector<double> partial_depths;
+  std::vector<Columns> partial_columns;
   std::vector<int> site_of, order;
 };
 

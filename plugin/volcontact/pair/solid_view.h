@@ -75,8 +75,8 @@ SolidView view_of(const S& solid) {
     };
   }
   view.own.volume = -1.0;
+  if constexpr (Solid<S>) view.own = solid.own_metrics();
   if constexpr (ConvexSolid<S>) {
-    view.own = solid.own_metrics();
     view.convex = true;
     view.support = [](const void* s, const Vec3& e) -> Vec3 {
       return static_cast<const S*>(s)->support(e);
