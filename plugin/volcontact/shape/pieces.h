@@ -52,6 +52,16 @@ struct Quadric {
     face.bend = Bend::kConvex;
     return face;
   }
+  /// Inside of x^2 + y^2 <= (radius + slope z)^2. It has two nappes: a piece with such a face must
+  /// have planes that keep it on the one where radius + slope z >= 0.
+  static Quadric cone(double radius, double slope) {
+    Quadric face;
+    face.hessian = Vec3(2.0, 2.0, -2.0 * slope * slope).asDiagonal();
+    face.linear = Vec3(0.0, 0.0, -2.0 * radius * slope);
+    face.constant = -radius * radius;
+    face.bend = Bend::kMixed;
+    return face;
+  }
   /// The solid outside of this face instead of inside.
   Quadric reversed() const {
     Quadric face = *this;

@@ -9,13 +9,16 @@
 #include "volcontact/shape/convex_polytope.h"
 #include "volcontact/shape/cylinder.h"
 #include "volcontact/shape/ellipsoid.h"
+#include "volcontact/shape/frustum.h"
 #include "volcontact/shape/half_space.h"
 #include "volcontact/shape/sphere.h"
+#include "volcontact/shape/torus.h"
 
 namespace volcontact {
 
 /// Every shape there is. A new one is added here and nowhere else.
-using Shapes = TypeList<HalfSpace, Sphere, Ellipsoid, Capsule, Cylinder, Box, ConvexPolytope>;
+using Shapes =
+    TypeList<HalfSpace, Sphere, Ellipsoid, Capsule, Cylinder, Frustum, Box, Torus, ConvexPolytope>;
 
 /// One solid of any shape, in its own frame.
 using Shape = Shapes::Variant;

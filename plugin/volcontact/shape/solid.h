@@ -28,27 +28,32 @@ struct RayInterval {
   bool empty() const { return !(enter < leave); }
 };
 
-/// What a convex solid must supply, all in its own frame. One header per shape; a shape knows no
-/// other shape.
-///  bounds()            smallest axis-aligned box that holds the solid
-///  support(e)          a point of the solid farthest along the direction e (any length but zero);
-///                      for unbounded solids in an unbounded direction: a point at infinity
-///  support_height(e)   max over the solid of e . x, +infinity where unbounded
+/// What a solid must supply, all in its own frame. One header per shape; a shape knows no other
+/// shape.
+///  bounds()            an axis-aligned box that holds the solid, the smallest for a single shape
+///  support_height(e)   max over the solid of e . x, or a bound of it; +infinity where unbounded
 ///  signed_distance(p)  negative inside; its magnitude never exceeds the distance to the surface
-///                      (so a ball of that radius holds no surface), zero on the surface only
+///                      (so a ball of that radius holds no surface)
 ///  gradient(p)         unit outward direction in which signed_distance grows at p
-///  ray(o, d)           the interval of the line o + t d inside the solid
-///  own_metrics()       volume, centroid and inertia of the whole solid (unbounded: infinite volume)
+///  own_metrics()       volume, centroid and inertia of the whole solid; infinite where unbounded
 template <typename S>
-concept ConvexSolid = requires(const S& solid, const Vec3& x) {
+concept Solid = requires(const S& solid, const Vec3& x) {
   { S::kName } -> std::convertible_to<const char*>;
   { solid.bounds() } -> std::same_as<Aabb>;
-  { solid.support(x) } -> std::same_as<Vec3>;
   { solid.support_height(x) } -> std::same_as<double>;
   { solid.signed_distance(x) } -> std::same_as<double>;
   { solid.gradient(x) } -> std::same_as<Vec3>;
-  { solid.ray(x, x) } -> std::same_as<RayInterval>;
   { solid.own_metrics() } -> std::same_as<VolumeMetrics>;
+};
+
+/// What a convex solid must supply as well; its signed distance is zero on the surface only.
+///  support(e)          a point of the solid farthest along the direction e (any length but zero);
+///                      for unbounded solids in an unbounded direction: a point at infinity
+///  ray(o, d)           the interval of the line o + t d inside the solid
+template <typename S>
+concept ConvexSolid = Solid<S> && requires(const S& solid, const Vec3& x) {
+  { solid.support(x) } -> std::same_as<Vec3>;
+  { solid.ray(x, x) } -> std::same_as<RayInterval>;
 };
 
 }  // namespace volcontact
