@@ -2,9 +2,10 @@
 #include "volcontact/pair/clip.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
+#include "volcontact/pair/box_faces.h"
+#include "volcontact/pair/region_sum.h"
 #include "volcontact/pair/separation.h"
 
 namespace volcontact {
@@ -18,17 +19,8 @@ constexpr double kNoDirection = 1e-14;
 
 // --- The two solids as planes normal . x <= offset, in A's axes about a local origin near both.
 
-// The half-space A; the local origin lies on its plane.
-struct Ground {
-  static constexpr bool kIsFlatSided = true;
-  int size() const { return 1; }
-  Vec3 normal(int) const { return Vec3::UnitZ(); }
-  double offset(int) const { return 0.0; }
-};
-
-// The box A. Face 2 i + 1 looks along +axis i, face 2 i against it.
-struct AlignedBox {
-  static constexpr bool kIsFlatSided = true;
+struct AlignedBox {  // the box A
+  static constexpr bool kHasUprightSides = true;
   Vec3 half;
   Vec3 origin;
   int size() const { return 6; }
@@ -36,32 +28,27 @@ struct AlignedBox {
   double offset(int f) const { return half[f >> 1] - (f & 1 ? origin[f >> 1] : -origin[f >> 1]); }
 };
 
-// The box B.
-struct PosedBox {
-  static constexpr bool kIsFlatSided = true;
+struct PosedBox {  // the box B
+  static constexpr bool kHasUprightSides = true;
   const Vec3& half;
   const Mat3& rotation;
   Vec3 center;
   int size() const { return 6; }
-  Vec3 normal(int f) const {
-    return f & 1 ? Vec3(rotation.col(f >> 1)) : Vec3(-rotation.col(f >> 1));
-  }
+  Vec3 normal(int f) const { return box_normal(f, rotation); }
   double offset(int f) const { return half[f >> 1] + normal(f).dot(center); }
 };
 
-// The polytope A.
-struct AlignedPolytope {
-  static constexpr bool kIsFlatSided = false;
+struct AlignedPolytope {  // the polytope A
+  static constexpr bool kHasUprightSides = false;
   const ConvexPolytope& solid;
   Vec3 origin;
   int size() const { return static_cast<int>(solid.faces().size()); }
-  Vec3 normal(int f) const { return solid.faces()[f].normal; }
+  const Vec3& normal(int f) const { return solid.faces()[f].normal; }
   double offset(int f) const { return solid.faces()[f].offset - normal(f).dot(origin); }
 };
 
-// The polytope B.
-struct PosedPolytope {
-  static constexpr bool kIsFlatSided = false;
+struct PosedPolytope {  // the polytope B
+  static constexpr bool kHasUprightSides = false;
   const ConvexPolytope& solid;
   const Mat3& rotation;
   Vec3 translation;
@@ -70,46 +57,39 @@ struct PosedPolytope {
   double offset(int f) const { return solid.faces()[f].offset + normal(f).dot(translation); }
 };
 
-const PolytopeGraph& box_graph() {
+void start(const PosedBox& b, ClipScratch& scratch) {
   static const PolytopeGraph graph = [] {
-    std::vector<Vec3> corners;
-    for (int i = 0; i < 8; ++i) {
-      corners.emplace_back(i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0);
-    }
+    std::vector<Vec3> corners(8);
+    place_corners(Vec3::Ones(), Mat3::Identity(), Vec3::Zero(), corners.data());
     std::vector<std::vector<int>> loops;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int up = 1 << axis, j = 1 << (axis + 1) % 3, k = 1 << (axis + 2) % 3;
-      loops.push_back({0, k, j | k, j});
-      loops.push_back({up, up | j, up | j | k, up | k});
-    }
+    for (const auto& loop : kBoxLoops) loops.emplace_back(std::begin(loop), std::end(loop));
     return make_polytope_graph(corners, loops);
   }();
-  return graph;
+  scratch.polytope.start(graph);
+  place_corners(b.half, b.rotation, b.center, scratch.polytope.points().data());
 }
 
-void start(const PosedBox& b, CutPolytope& polytope) {
-  const PolytopeGraph& graph = box_graph();
-  polytope.start(graph);
-  const Mat3 edges = b.rotation * b.half.asDiagonal();
-  for (int v = 0; v < 8; ++v) {
-    const Vec3& sign = graph.points[v];
-    polytope.points()[v] = b.center + (sign.x() * edges.col(0) + sign.y() * edges.col(1) +
-                                       sign.z() * edges.col(2));
+void start(const PosedPolytope& b, ClipScratch& scratch) {
+  scratch.corners.clear();
+  for (const Vec3& v : b.solid.vertices()) {
+    scratch.corners.push_back(b.rotation * v + b.translation);
   }
-}
-
-void start(const PosedPolytope& b, CutPolytope& polytope) {
   const PolytopeGraph& graph = b.solid.graph();
-  polytope.start(graph);
-  for (int v = 0; v < polytope.size(); ++v) {
-    polytope.points()[v] = b.rotation * graph.points[v] + b.translation;
-  }
+  scratch.polytope.start(graph);
+  const std::span<Vec3> points = scratch.polytope.points();
+  for (std::size_t v = 0; v < points.size(); ++v) points[v] = scratch.corners[graph.corner[v]];
 }
 
-// --- Cutting: false when nothing is left. A's faces are numbered after B's.
+// --- Cutting B by A's planes; false when nothing is left. A's faces are numbered after B's,
+// `middle` is a point in the middle of B.
 
-bool cut(const Ground&, int first_face, double rounding, CutPolytope& polytope) {
-  return polytope.cut([](const Vec3& p) { return p.z(); }, first_face, rounding);
+Aabb bounds_of(std::span<const Vec3> points) {
+  Aabb box{points[0], points[0]};
+  for (const Vec3& p : points) {
+    box.min = box.min.cwiseMin(p);
+    box.max = box.max.cwiseMax(p);
+  }
+  return box;
 }
 
 bool cut(const AlignedBox& a, int face, int first_face, double rounding, CutPolytope& polytope) {
@@ -121,17 +101,8 @@ bool cut(const AlignedBox& a, int face, int first_face, double rounding, CutPoly
                   : polytope.cut(below, first_face + face, rounding);
 }
 
-Aabb bounds_of(std::span<const Vec3> points) {
-  Aabb box{points[0], points[0]};
-  for (const Vec3& p : points) {
-    box.min = box.min.cwiseMin(p);
-    box.max = box.max.cwiseMax(p);
-  }
-  return box;
-}
-
-// The plane that leaves least of B first: the later cuts then find little to do.
-bool cut(const AlignedBox& a, int first_face, double rounding, CutPolytope& polytope) {
+// The plane that leaves least of B goes first: the later cuts then find little to do.
+bool cut(const AlignedBox& a, const Vec3&, int first_face, double rounding, CutPolytope& polytope) {
   const Aabb box = bounds_of(polytope.points());
   int deepest = 0;
   double least = kInfinity;
@@ -156,14 +127,14 @@ bool cut(const AlignedBox& a, int first_face, double rounding, CutPolytope& poly
 
 bool cut(const AlignedPolytope& a, int face, int first_face, double rounding,
          CutPolytope& polytope) {
-  const Vec3 normal = a.normal(face);
+  const Vec3& normal = a.normal(face);
   const double offset = a.offset(face);
   return polytope.cut([&](const Vec3& p) { return normal.dot(p) - offset; }, first_face + face,
                       rounding);
 }
 
-bool cut(const AlignedPolytope& a, int first_face, double rounding, CutPolytope& polytope) {
-  const Vec3 middle = bounds_of(polytope.points()).center();
+bool cut(const AlignedPolytope& a, const Vec3& middle, int first_face, double rounding,
+         CutPolytope& polytope) {
   int deepest = 0;
   double highest = -kInfinity;
   for (int f = 0; f < a.size(); ++f) {
@@ -177,347 +148,244 @@ bool cut(const AlignedPolytope& a, int first_face, double rounding, CutPolytope&
   const Aabb left = bounds_of(polytope.points());
   const Vec3 center = left.center(), half = left.half_sizes();
   for (int f = 0; f < a.size(); ++f) {
-    const Vec3 normal = a.normal(f);
-    const double reach = normal.dot(center) + normal.cwiseAbs().dot(half);
+    const double reach = a.normal(f).dot(center) + a.normal(f).cwiseAbs().dot(half);
     if (f == deepest || !(reach > a.offset(f))) continue;
     if (!cut(a, f, first_face, rounding, polytope)) return false;
   }
   return true;
 }
 
-// --- Sums over the faces of the region.
+// --- Measuring what is left.
 
-// Sums about a point of the region, and what each face contributes to them.
-struct RegionSum {
-  Vec3 origin;  // about which all is taken
-  double volume = 0.0;
-  Vec3 first = Vec3::Zero();
-  double xx = 0.0, xy = 0.0, xz = 0.0, yy = 0.0, yz = 0.0, zz = 0.0;
-  Vec3 area_vector = Vec3::Zero();
-  Vec3 area_moment = Vec3::Zero();
-  double area = 0.0;
-  double counter_area = 0.0;
-  // The faces with more than rounding noise, of A and of B: how many, and one of them.
-  int faces_a = 0, faces_b = 0;
-  int face_a = -1, face_b = -1;
-};
+// A region with its two solids. Everything about the local origin, but sum.origin is the origin of
+// the sums and of the depths.
+template <typename SolidA, typename SolidB>
+class Region {
+ public:
+  Region(const SolidA& a, const SolidB& b, double rounding, ClipScratch& scratch)
+      : a_(a),
+        b_(b),
+        rounding_(rounding),
+        polytope_(scratch.polytope),
+        overlay_(scratch.overlay),
+        outline_(scratch.outline),
+        neighbors_(scratch.neighbors),
+        faces_(scratch.polytope.faces()) {}
 
-// Area of a face, and the integrals over it: of x, and of x (x . normal), x x^T (x . normal), the
-// fluxes whose sums over the closed surface are 4 int x dV and 5 int x x^T dV.
-double add_face(std::span<const int> loop, std::span<const Vec3> points, const Vec3& normal,
-                double flat, RegionSum& sum, Vec3& first) {
-  const Vec3 a = points[loop[0]] - sum.origin;
-  const double distance = normal.dot(a);
-  Vec3 b = points[loop[1]] - sum.origin;
-  double area = 0.0, xx = 0.0, xy = 0.0, xz = 0.0, yy = 0.0, yz = 0.0, zz = 0.0;
-  first.setZero();
-  const bool in_plane = std::abs(distance) <= flat;  // the origin: no flux, only the area counts
-  for (std::size_t i = 2; i < loop.size(); ++i) {
-    const Vec3 c = points[loop[i]] - sum.origin;
-    const double twice_area = normal.dot((b - a).cross(c - a));
-    const Vec3 s = a + b + c;
-    area += twice_area;
-    first += twice_area * s;
-    if (!in_plane) {
-      xx += twice_area * (s.x() * s.x() + a.x() * a.x() + b.x() * b.x() + c.x() * c.x());
-      xy += twice_area * (s.x() * s.y() + a.x() * a.y() + b.x() * b.y() + c.x() * c.y());
-      xz += twice_area * (s.x() * s.z() + a.x() * a.z() + b.x() * b.z() + c.x() * c.z());
-      yy += twice_area * (s.y() * s.y() + a.y() * a.y() + b.y() * b.y() + c.y() * c.y());
-      yz += twice_area * (s.y() * s.z() + a.y() * a.z() + b.y() * b.z() + c.y() * c.z());
-      zz += twice_area * (s.z() * s.z() + a.z() * a.z() + b.z() * b.z() + c.z() * c.z());
+  // In A's axes, about A's origin given that of the local origin.
+  VolumeMetrics measure(const Vec3& local_origin) {
+    sum_faces();
+    const double surface = sum_.area + sum_.counter_area;
+    const double volume_error = 8.0 * kEpsilon * sum_.volume + 2.0 * rounding_ * surface;
+    if (!(sum_.volume > volume_error)) return VolumeMetrics{};
+    VolumeMetrics m = sum_.metrics();
+    m.volume_error = volume_error;
+    const Vec3 shift = local_origin + sum_.origin;
+    m.centroid += shift;
+    const Faces of_a = count_faces(true), of_b = count_faces(false);
+    if (of_a.count == 0 || of_b.count == 0) {
+      m.status = Status::kContained;
+      return m;
     }
-    b = c;
-  }
-  area *= 0.5;
-  first *= 1.0 / 6.0;
-  if (!in_plane) {
-    sum.volume += distance * area / 3.0;
-    sum.first += 0.25 * distance * first;
-    const double factor = distance / 120.0;
-    sum.xx += factor * xx;
-    sum.xy += factor * xy;
-    sum.xz += factor * xz;
-    sum.yy += factor * yy;
-    sum.yz += factor * yz;
-    sum.zz += factor * zz;
-  }
-  return area;
-}
-
-std::span<const int> loop_of(const FaceLoop& face, const CutPolytope& polytope) {
-  return {polytope.loop_vertices().data() + face.first, static_cast<std::size_t>(face.count)};
-}
-
-template <typename SolidA, typename SolidB>
-Vec3 normal_of(int face, const SolidA& a, const SolidB& b) {
-  return face < b.size() ? b.normal(face) : a.normal(face - b.size());
-}
-
-template <typename SolidA, typename SolidB>
-RegionSum sum_faces(std::span<FaceLoop> faces, const SolidA& a, const SolidB& b,
-                    const CutPolytope& polytope, double flat) {
-  RegionSum sum;
-  // A vertex of the last cut: on A's plane, so that depths under that plane do not cancel.
-  sum.origin = polytope.points()[0];
-  for (const FaceLoop& face : faces) {
-    if (face.face >= b.size()) sum.origin = polytope.points()[loop_of(face, polytope)[0]];
-  }
-  for (FaceLoop& face : faces) {
-    const Vec3 normal = normal_of(face.face, a, b);
-    Vec3 first;
-    face.area = add_face(loop_of(face, polytope), polytope.points(), normal, flat, sum, first);
-    if (face.face >= b.size()) {
-      sum.area += face.area;
-      sum.area_vector += face.area * normal;
-      sum.area_moment += first.cross(normal);
-    } else {
-      sum.counter_area += face.area;
-    }
-  }
-  const double no_face = kNoFace * (sum.area + sum.counter_area);
-  for (const FaceLoop& face : faces) {
-    if (!(face.area > no_face)) continue;
-    const bool is_a = face.face >= b.size();
-    int& count = is_a ? sum.faces_a : sum.faces_b;
-    int& last = is_a ? sum.face_a : sum.face_b;
-    if (last != face.face) ++count;
-    last = face.face;
-  }
-  return sum;
-}
-
-// --- Depth along the normal.
-
-double extent_along(const Vec3& direction, std::span<const Vec3> points) {
-  double low = kInfinity, high = -kInfinity;
-  for (const Vec3& p : points) {
-    const double height = direction.dot(p);
-    low = std::min(low, height);
-    high = std::max(high, height);
-  }
-  return high - low;
-}
-
-// int (distance below the plane of a face) dV.
-double depth_under(const Vec3& normal, const Vec3& point, const RegionSum& sum) {
-  return normal.dot(point - sum.origin) * sum.volume - normal.dot(sum.first);
-}
-
-// Whether a solid other than the one with that face looks along the face's normal somewhere: then
-// columns end before they reach the face.
-template <typename SolidA, typename SolidB>
-bool has_overhang(const Vec3& normal, bool face_is_a, std::span<const FaceLoop> faces,
-                  const SolidA& a, const SolidB& b) {
-  return std::any_of(faces.begin(), faces.end(), [&](const FaceLoop& face) {
-    const bool is_a = face.face >= b.size();
-    return is_a != face_is_a && normal_of(face.face, a, b).dot(normal) > kNoFace;
-  });
-}
-
-const Vec3& point_on(int face, std::span<const FaceLoop> faces, const CutPolytope& polytope) {
-  const auto found = std::find_if(faces.begin(), faces.end(),
-                                  [=](const FaceLoop& loop) { return loop.face == face; });
-  return polytope.points()[loop_of(*found, polytope)[0]];
-}
-
-// Height over the (u, v) plane of the plane normal . x = offset; all in the columns' frame.
-HeightPlane height_of(const Vec3& normal, double offset) {
-  return {offset / normal.z(), -normal.x() / normal.z(), -normal.y() / normal.z()};
-}
-
-// A face this steep along the columns has no shadow.
-bool is_steep(const Vec3& normal) { return std::abs(normal.z()) < kNoFace; }
-
-template <typename Solid>
-void add_planes(const Solid& solid, bool upper, const Mat3& R_AC, const Vec3& origin,
-                std::vector<HeightPlane>& planes) {
-  for (int f = 0; f < solid.size(); ++f) {
-    const Vec3 normal_A = solid.normal(f), normal = R_AC.transpose() * normal_A;
-    if (is_steep(normal) || (normal.z() > 0.0) != upper) continue;
-    planes.push_back(height_of(normal, solid.offset(f) - normal_A.dot(origin)));
-  }
-}
-
-// The general case: upper faces over lower faces. A lies on the side of the normal, above.
-template <typename SolidA, typename SolidB>
-double overlay_energy(const Vec3& normal, std::span<const FaceLoop> faces, const SolidA& a,
-                      const SolidB& b, const CutPolytope& polytope, const RegionSum& sum,
-                      ColumnScene& scene) {
-  const Mat3 R_AC = basis_with_z(normal);
-  scene.clear();
-  std::vector<Eigen::Vector2d>& outline = scene.work[0];
-  bool overhang = false;
-  for (const FaceLoop& face : faces) {
-    const Vec3 normal_C = R_AC.transpose() * normal_of(face.face, a, b);
-    if (is_steep(normal_C)) continue;
-    const bool upper = normal_C.z() > 0.0, is_a = face.face >= b.size();
-    outline.clear();
-    Vec3 point_C = Vec3::Zero();
-    for (int v : loop_of(face, polytope)) {
-      point_C = R_AC.transpose() * (polytope.points()[v] - sum.origin);
-      outline.push_back(point_C.head<2>());
-    }
-    if (!upper) std::reverse(outline.begin(), outline.end());
-    overhang |= upper == is_a;
-    scene.add_face(upper, height_of(normal_C, normal_C.dot(point_C)), upper == is_a, outline);
-  }
-  if (overhang) {
-    add_planes(b, true, R_AC, sum.origin, scene.ceiling);
-    add_planes(a, false, R_AC, sum.origin, scene.floor);
-  }
-  return column_energy(scene);
-}
-
-template <typename SolidA, typename SolidB>
-double depth_moment_of(const Vec3& normal, std::span<const FaceLoop> faces, const SolidA& a,
-                       const SolidB& b, const RegionSum& sum, ClipScratch& scratch) {
-  const CutPolytope& polytope = scratch.polytope;
-  // With one face of a solid in the region, columns reach to its plane. Sides of a polytope that
-  // lean inwards could end them earlier, but only where the other solid overhangs.
-  if (sum.faces_a == 1) {
-    const Vec3 n = normal_of(sum.face_a, a, b);
-    if (SolidA::kIsFlatSided || !has_overhang(n, true, faces, a, b)) {
-      return depth_under(n, point_on(sum.face_a, faces, polytope), sum);
-    }
-  }
-  if (sum.faces_b == 1) {
-    const Vec3 n = normal_of(sum.face_b, a, b);
-    if (SolidB::kIsFlatSided || !has_overhang(n, false, faces, a, b)) {
-      return depth_under(n, point_on(sum.face_b, faces, polytope), sum);
-    }
-  }
-  return overlay_energy(normal, faces, a, b, polytope, sum, scratch.columns);
-}
-
-VolumeMetrics metrics_of(const RegionSum& sum) {
-  VolumeMetrics m;
-  m.volume = sum.volume;
-  const Vec3 c = sum.first / sum.volume;
-  m.centroid = c;
-  const double xx = sum.xx - sum.first.x() * c.x(), yy = sum.yy - sum.first.y() * c.y(),
-               zz = sum.zz - sum.first.z() * c.z(), xy = sum.xy - sum.first.x() * c.y(),
-               xz = sum.xz - sum.first.x() * c.z(), yz = sum.yz - sum.first.y() * c.z();
-  m.inertia << yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy;
-  m.area = sum.area;
-  m.counter_area = sum.counter_area;
-  return m;
-}
-
-// Metrics of what the cuts have left, moved from the local origin to A's.
-template <typename SolidA, typename SolidB>
-VolumeMetrics measure(const SolidA& a, const SolidB& b, const Vec3& local_origin, double rounding,
-                      ClipScratch& scratch) {
-  const std::span<FaceLoop> faces = scratch.polytope.faces();
-  const RegionSum sum = sum_faces(faces, a, b, scratch.polytope, rounding);
-  const double volume_error =
-      8.0 * kEpsilon * sum.volume + 2.0 * rounding * (sum.area + sum.counter_area);
-  if (!(sum.volume > volume_error)) return VolumeMetrics{};
-
-  VolumeMetrics m = metrics_of(sum);
-  const Vec3 shift = local_origin + sum.origin;
-  m.centroid += shift;
-  m.volume_error = volume_error;
-  if (sum.faces_a == 0 || sum.faces_b == 0) {
-    m.status = Status::kContained;
+    m.area_moment = sum_.area_moment + shift.cross(sum_.area_vector);
+    const double length = sum_.area_vector.norm();
+    if (!(length > kNoDirection * surface)) return m;
+    m.area_vector = sum_.area_vector;
+    const Vec3 normal = -sum_.area_vector / length;
+    m.depth = extent_along(normal);
+    m.depth_moment = depth_moment(normal, of_a, of_b);
     return m;
   }
-  const double length = sum.area_vector.norm();
-  m.area_moment = sum.area_moment + shift.cross(sum.area_vector);
-  if (!(length > kNoDirection * (sum.area + sum.counter_area))) return m;
-  m.area_vector = sum.area_vector;
-  const Vec3 normal = -sum.area_vector / length;
-  m.depth = extent_along(normal, scratch.polytope.points());
-  m.depth_moment = depth_moment_of(normal, faces, a, b, sum, scratch);
-  return m;
+
+ private:
+  bool is_a(const FaceLoop& face) const { return face.face >= b_.size(); }
+  Vec3 normal(const FaceLoop& face) const {
+    return is_a(face) ? Vec3(a_.normal(face.face - b_.size())) : Vec3(b_.normal(face.face));
+  }
+  const Vec3& vertex(const FaceLoop& face, int i) const {
+    return polytope_.points()[polytope_.loop_vertices()[face.first + i]];
+  }
+
+  void sum_faces() {
+    // On a plane of A, so that depths under that plane do not cancel.
+    sum_.origin = vertex(faces_[0], 0);
+    for (const FaceLoop& face : faces_) {
+      if (is_a(face)) sum_.origin = vertex(face, 0);
+    }
+    const std::span<const Vec3> points = polytope_.points();
+    for (FaceLoop& face : faces_) {
+      const Vec3 n = normal(face);
+      const int* loop = polytope_.loop_vertices().data() + face.first;
+      const FaceIntegral integral = sum_.add_face(
+          face.count, [=](int i) -> const Vec3& { return points[loop[i]]; }, n, rounding_);
+      face.area = integral.area;
+      if (is_a(face)) {
+        sum_.area += integral.area;
+        sum_.area_vector += integral.area * n;
+        sum_.area_moment += integral.first.cross(n);
+      } else {
+        sum_.counter_area += integral.area;
+      }
+    }
+  }
+
+  // The faces of one solid that are more than rounding noise: how many, and one of them.
+  struct Faces {
+    int count = 0;
+    const FaceLoop* one = nullptr;
+  };
+  Faces count_faces(bool of_a) const {
+    const double no_face = kNoFace * (sum_.area + sum_.counter_area);
+    Faces faces;
+    for (const FaceLoop& face : faces_) {
+      if (is_a(face) != of_a || !(face.area > no_face)) continue;
+      if (faces.count == 0 || faces.one->face != face.face) ++faces.count;
+      faces.one = &face;
+    }
+    return faces;
+  }
+
+  double extent_along(const Vec3& direction) const {
+    double low = kInfinity, high = -kInfinity;
+    for (const Vec3& p : polytope_.points()) {
+      const double height = direction.dot(p);
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+    return high - low;
+  }
+
+  double depth_moment(const Vec3& normal, const Faces& of_a, const Faces& of_b) {
+    // With one face of a solid in the region, columns reach to its plane. The sides of a polytope
+    // may lean inwards and end them earlier, but that shows only where the other solid overhangs.
+    if (of_a.count == 1 && (SolidA::kHasUprightSides || !has_overhang(*of_a.one))) {
+      return depth_under(*of_a.one);
+    }
+    if (of_b.count == 1 && (SolidB::kHasUprightSides || !has_overhang(*of_b.one))) {
+      return depth_under(*of_b.one);
+    }
+    return overlay_energy(normal);
+  }
+
+  // int (distance below the plane of a face) dV.
+  double depth_under(const FaceLoop& face) const {
+    const Vec3 n = normal(face);
+    return n.dot(vertex(face, 0) - sum_.origin) * sum_.volume - n.dot(sum_.first);
+  }
+
+  // Whether the other solid looks along this face's normal somewhere.
+  bool has_overhang(const FaceLoop& of) const {
+    const Vec3 n = normal(of);
+    return std::any_of(faces_.begin(), faces_.end(), [&](const FaceLoop& face) {
+      return is_a(face) != is_a(of) && normal(face).dot(n) > kNoFace;
+    });
+  }
+
+  // Height of the plane normal . x = offset over the (u, v) plane, all in the columns' frame C.
+  static HeightPlane height_of(const Vec3& normal, double offset) {
+    return {offset / normal.z(), -normal.x() / normal.z(), -normal.y() / normal.z()};
+  }
+  // So steep along the columns that it has no shadow.
+  static bool is_steep(const Vec3& normal) { return std::abs(normal.z()) < kNoFace; }
+
+  // The general case. A lies on the side of the normal, above.
+  double overlay_energy(const Vec3& contact_normal) {
+    const Mat3 R_CA = basis_with_z(contact_normal).transpose();
+    overlay_.start(a_.size() + b_.size());
+    for (const FaceLoop& face : faces_) add_to_overlay(face, R_CA);
+    if (overlay_.has_overhang()) {
+      for_planes(b_, R_CA, true, [&](const HeightPlane& plane) { overlay_.add_ceiling(plane); });
+      for_planes(a_, R_CA, false, [&](const HeightPlane& plane) { overlay_.add_floor(plane); });
+    }
+    return overlay_.energy();
+  }
+
+  void add_to_overlay(const FaceLoop& face, const Mat3& R_CA) {
+    const Vec3 n = R_CA * normal(face);
+    if (is_steep(n)) return;
+    const bool upper = n.z() > 0.0;
+    outline_.clear();
+    neighbors_.clear();
+    Vec3 p = Vec3::Zero();
+    for (int i = 0; i < face.count; ++i) {
+      p = R_CA * (vertex(face, i) - sum_.origin);
+      outline_.push_back(p.head<2>());
+      neighbors_.push_back(polytope_.face_across(face.first + i));
+    }
+    const HeightPlane height = height_of(n, n.dot(p));
+    if (upper) {
+      overlay_.add_upper(height, is_a(face), outline_);
+    } else {
+      overlay_.add_lower(face.face, height, !is_a(face), outline_, neighbors_);
+    }
+  }
+
+  template <typename Solid, typename Visit>
+  void for_planes(const Solid& solid, const Mat3& R_CA, bool upper, Visit&& visit) const {
+    for (int f = 0; f < solid.size(); ++f) {
+      const Vec3 normal_A = solid.normal(f), n = R_CA * normal_A;
+      if (is_steep(n) || (n.z() > 0.0) != upper) continue;
+      visit(height_of(n, solid.offset(f) - normal_A.dot(sum_.origin)));
+    }
+  }
+
+  const SolidA& a_;
+  const SolidB& b_;
+  const double rounding_;
+  const CutPolytope& polytope_;
+  ColumnOverlay& overlay_;
+  std::vector<Eigen::Vector2d>& outline_;
+  std::vector<int>& neighbors_;
+  std::span<FaceLoop> faces_;
+  RegionSum sum_;
+};
+
+template <typename SolidA, typename SolidB>
+VolumeMetrics clip_solids(const SolidA& a, const SolidB& b, const Vec3& middle, double rounding,
+                          ClipScratch& scratch) {
+  start(b, scratch);
+  if (!cut(a, middle, b.size(), rounding, scratch.polytope)) return VolumeMetrics{};
+  return Region<SolidA, SolidB>(a, b, rounding, scratch).measure(a.origin);
 }
 
-// --- Cheap answers.
-
-// The whole of a solid, inside the other.
-VolumeMetrics contained(const VolumeMetrics& own, const Pose& pose, double surface, bool is_a,
-                        double rounding) {
-  VolumeMetrics m = transformed(own, pose);
+// The whole of a box, inside the other solid.
+VolumeMetrics contained(const Box& box, const Pose& X_AX, bool is_a, double rounding) {
+  VolumeMetrics m = transformed(box.own_metrics(), X_AX);
+  const double surface = surface_of(box);
   (is_a ? m.area : m.counter_area) = surface;
   m.volume_error = 8.0 * kEpsilon * m.volume + rounding * surface;
   m.status = Status::kContained;
   return m;
 }
 
-double surface_of(const Box& box) {
-  const Vec3& h = box.half_sizes();
-  return 8.0 * (h.x() * h.y() + h.y() * h.z() + h.z() * h.x());
+// Whether a box lies in another one; pose of its axes and centre in those of the outer one.
+bool lies_in(const Vec3& half, const Vec3& outer_half, const Mat3& R, const Vec3& p) {
+  return ((p.cwiseAbs() + R.cwiseAbs() * half).array() <= outer_half.array()).all();
 }
 
-// Rounding error of a position in the local frame, where coordinates reach this far.
-double rounding_at(double reach) { return 4.0 * kEpsilon * reach; }
-
-// Local origin for a pair: the point of A's bounds nearest to B's frame.
+// The point of A's bounds nearest to the middle of B: sums about the origin of A would lose digits
+// when A is large.
 Vec3 nearest_in(const Aabb& bounds, const Vec3& p) {
   return p.cwiseMax(bounds.min).cwiseMin(bounds.max);
 }
 
+// Rounding error of a position where coordinates reach this far.
+double rounding_at(double reach) { return 4.0 * kEpsilon * reach; }
+
 }  // namespace
-
-VolumeMetrics clip(const HalfSpace&, const Box& b, const Pose& X_AB,
-                   ClipScratch& scratch) noexcept {
-  const double height = X_AB.translation.z();
-  const double reach = X_AB.rotation.row(2).cwiseAbs().dot(b.half_sizes());
-  if (!(height < reach) || b.half_sizes().minCoeff() <= 0.0) return VolumeMetrics{};
-  const double rounding = rounding_at(std::abs(height) + b.half_sizes().sum());
-  if (height <= -reach) {
-    VolumeMetrics m = contained(b.own_metrics(), X_AB, surface_of(b), false, rounding);
-    m.depth = 2.0 * reach;
-    m.depth_moment = -height * m.volume;
-    return m;
-  }
-  const Vec3 origin(X_AB.translation.x(), X_AB.translation.y(), 0.0);
-  const PosedBox box{b.half_sizes(), X_AB.rotation, Vec3(0.0, 0.0, height)};
-  start(box, scratch.polytope);
-  if (!cut(Ground{}, box.size(), rounding, scratch.polytope)) return VolumeMetrics{};
-  return measure(Ground{}, box, origin, rounding, scratch);
-}
-
-VolumeMetrics clip(const HalfSpace&, const ConvexPolytope& b, const Pose& X_AB,
-                   ClipScratch& scratch) noexcept {
-  const Vec3 down_B = -X_AB.rotation.row(2).transpose();
-  const double height = X_AB.translation.z();
-  if (!(height < b.support_height(down_B))) return VolumeMetrics{};
-  const Aabb bounds = b.bounds();
-  const double size = bounds.min.cwiseAbs().cwiseMax(bounds.max.cwiseAbs()).sum();
-  const double rounding = rounding_at(std::abs(height) + size);
-  const double reach = b.support_height(-down_B);
-  if (height <= -reach) {
-    VolumeMetrics m = contained(b.own_metrics(), X_AB, b.surface_area(), false, rounding);
-    m.depth = reach + b.support_height(down_B);
-    m.depth_moment = -m.centroid.z() * m.volume;
-    return m;
-  }
-  const Vec3 origin(X_AB.translation.x(), X_AB.translation.y(), 0.0);
-  const PosedPolytope polytope{b, X_AB.rotation, Vec3(0.0, 0.0, height)};
-  start(polytope, scratch.polytope);
-  if (!cut(Ground{}, polytope.size(), rounding, scratch.polytope)) return VolumeMetrics{};
-  return measure(Ground{}, polytope, origin, rounding, scratch);
-}
 
 VolumeMetrics clip(const Box& a, const Box& b, const Pose& X_AB, ClipScratch& scratch) noexcept {
   const Vec3 &half_a = a.half_sizes(), &half_b = b.half_sizes(), &p_AB = X_AB.translation;
   const Mat3& R_AB = X_AB.rotation;
   if (boxes_apart(half_a, half_b, R_AB, p_AB)) return VolumeMetrics{};
   if (half_a.minCoeff() <= 0.0 || half_b.minCoeff() <= 0.0) return VolumeMetrics{};
-  const Vec3 origin = nearest_in(a.bounds(), p_AB);
-  const PosedBox box{half_b, R_AB, p_AB - origin};
+  const AlignedBox planes{half_a, nearest_in(a.bounds(), p_AB)};
+  const PosedBox box{half_b, R_AB, p_AB - planes.origin};
   const double rounding = rounding_at(box.center.lpNorm<1>() + half_b.sum());
-  if (((p_AB.cwiseAbs() + R_AB.cwiseAbs() * half_b).array() <= half_a.array()).all()) {
-    return contained(b.own_metrics(), X_AB, surface_of(b), false, rounding);
-  }
+  if (lies_in(half_b, half_a, R_AB, p_AB)) return contained(b, X_AB, false, rounding);
   const Mat3 R_BA = R_AB.transpose();
-  if ((((R_BA * p_AB).cwiseAbs() + R_BA.cwiseAbs() * half_a).array() <= half_b.array()).all()) {
-    return contained(a.own_metrics(), Pose{}, surface_of(a), true, rounding);
-  }
-  const AlignedBox planes{half_a, origin};
-  start(box, scratch.polytope);
-  if (!cut(planes, box.size(), rounding, scratch.polytope)) return VolumeMetrics{};
-  return measure(planes, box, origin, rounding, scratch);
+  if (lies_in(half_a, half_b, R_BA, R_BA * p_AB)) return contained(a, Pose{}, true, rounding);
+  return clip_solids(planes, box, box.center, rounding, scratch);
 }
 
 VolumeMetrics clip(const Box& a, const ConvexPolytope& b, const Pose& X_AB,
@@ -528,11 +396,9 @@ VolumeMetrics clip(const Box& a, const ConvexPolytope& b, const Pose& X_AB,
   if (a.half_sizes().minCoeff() <= 0.0) return VolumeMetrics{};
   const AlignedBox planes{a.half_sizes(), nearest_in(a.bounds(), p_AM)};
   const PosedPolytope polytope{b, X_AB.rotation, X_AB.translation - planes.origin};
-  const double rounding = rounding_at((p_AM - planes.origin).lpNorm<1>() +
-                                      bounds.center().lpNorm<1>() + half_b.sum());
-  start(polytope, scratch.polytope);
-  if (!cut(planes, polytope.size(), rounding, scratch.polytope)) return VolumeMetrics{};
-  return measure(planes, polytope, planes.origin, rounding, scratch);
+  const double rounding =
+      rounding_at((p_AM - planes.origin).lpNorm<1>() + bounds.center().lpNorm<1>() + half_b.sum());
+  return clip_solids(planes, polytope, p_AM - planes.origin, rounding, scratch);
 }
 
 VolumeMetrics clip(const ConvexPolytope& a, const ConvexPolytope& b, const Pose& X_AB,
@@ -546,9 +412,7 @@ VolumeMetrics clip(const ConvexPolytope& a, const ConvexPolytope& b, const Pose&
   const double rounding =
       rounding_at((p_AM - planes.origin).lpNorm<1>() + bounds_b.center().lpNorm<1>() +
                   half_b.sum() + bounds_a.center().lpNorm<1>() + half_a.sum());
-  start(polytope, scratch.polytope);
-  if (!cut(planes, polytope.size(), rounding, scratch.polytope)) return VolumeMetrics{};
-  return measure(planes, polytope, planes.origin, rounding, scratch);
+  return clip_solids(planes, polytope, p_AM - planes.origin, rounding, scratch);
 }
 
 }  // namespace volcontact

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "volcontact/metrics/volume_metrics.h"
-#include "volcontact/pair/column_energy.h"
+#include "volcontact/pair/column_overlay.h"
 #include "volcontact/pair/cut_polytope.h"
 #include "volcontact/shape/box.h"
 #include "volcontact/shape/convex_polytope.h"
@@ -13,7 +15,11 @@ namespace volcontact {
 /// Memory of clip(), reused from call to call.
 struct ClipScratch {
   CutPolytope polytope;
-  ColumnScene columns;
+  ColumnOverlay overlay;
+  std::vector<Eigen::Vector2d> outline;
+  std::vector<int> neighbors;
+  std::vector<Vec3> corners;
+  std::vector<Vec3> part;
 };
 
 /// Exact interference of two convex solids with plane faces: B is cut by A's planes and summed face
@@ -23,7 +29,8 @@ struct ClipScratch {
 /// other, and a solid pierced so evenly that S is rounding noise: S = 0, no normal, and no depth
 /// (but in a half-space depth is always along its axis). Faces of both solids in one plane, facing
 /// the same way, count as B's.
-VolumeMetrics clip(const HalfSpace& a, const Box& b, const Pose& X_AB, ClipScratch& scratch) noexcept;
+VolumeMetrics clip(const HalfSpace& a, const Box& b, const Pose& X_AB,
+                   ClipScratch& scratch) noexcept;
 VolumeMetrics clip(const HalfSpace& a, const ConvexPolytope& b, const Pose& X_AB,
                    ClipScratch& scratch) noexcept;
 VolumeMetrics clip(const Box& a, const Box& b, const Pose& X_AB, ClipScratch& scratch) noexcept;

@@ -13,6 +13,7 @@ void CutPolytope::reserve(int vertices) {
   twin_.resize(4 * vertices);
   face_.resize(4 * vertices);
   loop_vertices_.resize(3 * vertices);
+  loop_edges_.resize(3 * vertices);
   loops_.resize(3 * vertices);
 }
 
@@ -93,7 +94,8 @@ std::span<FaceLoop> CutPolytope::faces() {
       FaceLoop& loop = loops_[loops++] = {face_[start], end, 0, 0.0};
       int half_edge = start;
       do {
-        face_[half_edge] = -1;
+        face_[half_edge] = ~face_[half_edge];
+        loop_edges_[end] = half_edge;
         loop_vertices_[end++] = half_edge >> 2;
         half_edge = next_slot(twin_[half_edge]);
       } while (half_edge != start);

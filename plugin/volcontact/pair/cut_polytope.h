@@ -47,6 +47,11 @@ class CutPolytope {
   /// The faces of what is left. Ends the cutting: start() comes next.
   std::span<FaceLoop> faces();
   const std::vector<int>& loop_vertices() const { return loop_vertices_; }
+  /// The face on the other side of the edge from entry `i` of loop_vertices() to the next.
+  int face_across(int i) const {
+    const int face = face_[twin_[loop_edges_[i]]];
+    return face < 0 ? ~face : face;
+  }
 
  private:
   bool split(int face, double tolerance);
@@ -63,10 +68,11 @@ class CutPolytope {
   std::vector<Vec3> points_;
   std::vector<double> heights_;
   std::vector<int> twin_;   // as in PolytopeGraph
-  std::vector<int> face_;
+  std::vector<int> face_;   // the complement (~) once its loop is listed
   std::vector<int> outer_;  // half-edge, outside, that led to a new vertex
   std::vector<FaceLoop> loops_;
   std::vector<int> loop_vertices_;
+  std::vector<int> loop_edges_;
 };
 
 }  // namespace volcontact

@@ -15,8 +15,8 @@ inline bool boxes_apart(const Vec3& half_a, const Vec3& half_b, const Mat3& R_AB
   const Mat3 turn = R_AB.cwiseAbs();
   const Vec3 gap_a = p_AB.cwiseAbs() - half_a - turn * half_b;
   const Vec3 gap_b = (R_AB.transpose() * p_AB).cwiseAbs() - half_b - turn.transpose() * half_a;
-  const double slack = 8.0 * std::numeric_limits<double>::epsilon() *
-                       (p_AB.cwiseAbs() + half_a + half_b).sum();
+  const double slack =
+      8.0 * std::numeric_limits<double>::epsilon() * (p_AB.cwiseAbs() + half_a + half_b).sum();
   if (gap_a.maxCoeff() > slack || gap_b.maxCoeff() > slack) return true;
   // Edge against edge. The slack also covers parallel edges, whose cross product is noise.
   for (int i = 0; i < 3; ++i) {

@@ -85,9 +85,7 @@ class Quickhull {
   // Distance times twice the area: for choosing only, decisions are exact.
   double height(const Face& face, int p) const {
     const Vec3& a = points_[face.corners[0]];
-    return (points_[face.corners[1]] - a)
-        .cross(points_[face.corners[2]] - a)
-        .dot(points_[p] - a);
+    return (points_[face.corners[1]] - a).cross(points_[face.corners[2]] - a).dot(points_[p] - a);
   }
   bool sees(int p, const Face& face) const {
     return side_of_plane(points_[face.corners[0]], points_[face.corners[1]],
@@ -103,7 +101,8 @@ class Quickhull {
     return best;
   }
 
-  // The first tetrahedron: two points far apart, the farthest from their line, then from their plane.
+  // The first tetrahedron: two points far apart, the farthest from their line, then from their
+  // plane.
   void start() {
     const Vec3 first = points_[0];
     const int a = farthest([&](const Vec3& x) { return (x - first).norm(); });
@@ -201,10 +200,9 @@ int side_of_plane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 u = b - a, v = c - a, w = d - a;
   const double det = u.cross(v).dot(w);
   const Vec3 u_abs = u.cwiseAbs(), v_abs = v.cwiseAbs(), w_abs = w.cwiseAbs();
-  const double magnitude =
-      (u_abs.y() * v_abs.z() + u_abs.z() * v_abs.y()) * w_abs.x() +
-      (u_abs.z() * v_abs.x() + u_abs.x() * v_abs.z()) * w_abs.y() +
-      (u_abs.x() * v_abs.y() + u_abs.y() * v_abs.x()) * w_abs.z();
+  const double magnitude = (u_abs.y() * v_abs.z() + u_abs.z() * v_abs.y()) * w_abs.x() +
+                           (u_abs.z() * v_abs.x() + u_abs.x() * v_abs.z()) * w_abs.y() +
+                           (u_abs.x() * v_abs.y() + u_abs.y() * v_abs.x()) * w_abs.z();
   constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
   if (std::abs(det) > kRounding * magnitude) return det > 0.0 ? 1 : -1;
   // det(b-a, c-a, d-a) = [bcd] - [acd] + [abd] - [abc], without a difference that could round.
@@ -217,8 +215,8 @@ int side_of_plane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 }
 
 std::vector<std::array<int, 3>> convex_hull(const std::vector<Vec3>& points) {
-  require(points.size() >= 4, "convex_polytope: needs at least 4 vertices, got " +
-                                  std::to_string(points.size()));
+  require(points.size() >= 4,
+          "convex_polytope: needs at least 4 vertices, got " + std::to_string(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i) {
     require(points[i].allFinite(),
             "convex_polytope: vertex " + std::to_string(i) + " is not finite");

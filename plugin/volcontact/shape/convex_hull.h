@@ -8,10 +8,11 @@
 
 namespace volcontact {
 
-/// Triangles of the convex hull of `points`, as indices into it, counterclockwise seen from outside.
-/// Quickhull whose side tests are exact, so its topology is that of a sphere for every input; points
-/// on the hull but not at a corner may be left out. Throws std::invalid_argument on fewer than four
-/// points, on non-finite ones and on points that lie in a plane (to 1e-12 of their extent).
+/// Triangles of the convex hull of `points`, as indices into it, counterclockwise seen from
+/// outside. Quickhull whose side tests are exact, so its topology is that of a sphere for every
+/// input; points on the hull but not at a corner may be left out. Throws std::invalid_argument on
+/// fewer than four points, on non-finite ones and on points that lie in a plane (to 1e-12 of their
+/// extent).
 std::vector<std::array<int, 3>> convex_hull(const std::vector<Vec3>& points);
 
 /// Sign of det(b - a, c - a, d - a), exact: +1 when d lies on the side to which the triangle a b c

@@ -53,8 +53,8 @@ std::vector<std::vector<int>> coplanar_groups(const std::vector<Triangle>& trian
   for (int seed : order) {
     if (taken[seed]) continue;
     const Vec3 origin = points[triangles[seed][0]];
-    const Vec3 normal = twice_area_vector({triangles[seed].begin(), triangles[seed].end()}, points)
-                            .normalized();
+    const Vec3 normal =
+        twice_area_vector({triangles[seed].begin(), triangles[seed].end()}, points).normalized();
     const auto in_plane = [&](const Triangle& t) {
       return std::all_of(t.begin(), t.end(), [&](int corner) {
         return std::abs(normal.dot(points[corner] - origin)) <= tolerance;
@@ -152,8 +152,8 @@ VolumeMetrics metrics_of(const std::vector<Triangle>& triangles, const std::vect
     const Vec3 s = a + b + c;
     sum.volume += det / 6.0;
     sum.first += det / 24.0 * s;
-    sum.second += det / 120.0 * (s * s.transpose() + a * a.transpose() + b * b.transpose() +
-                                 c * c.transpose());
+    sum.second += det / 120.0 *
+                  (s * s.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
   }
   VolumeMetrics metrics = sum.metrics();
   metrics.centroid += origin;

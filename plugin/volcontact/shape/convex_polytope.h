@@ -22,8 +22,8 @@ class ConvexPolytope {
     std::vector<int> loop;
   };
 
-  /// The hull of `points` [m], shape (n, 3). Throws std::invalid_argument on fewer than four points,
-  /// non-finite ones and flat sets.
+  /// The hull of `points` [m], shape (n, 3). Throws std::invalid_argument on fewer than four
+  /// points, non-finite ones and flat sets.
   explicit ConvexPolytope(const std::vector<Vec3>& points);
 
   /// Corners of the hull.

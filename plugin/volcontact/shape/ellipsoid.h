@@ -35,8 +35,9 @@ class Ellipsoid {
   double support_height(const Vec3& e) const { return p_.semi_axes.cwiseProduct(e).norm(); }
 
   /// A bound, exact to first order at the surface. With f = |p/a| - 1, outside: f is convex, so
-  /// f / |grad f| cannot exceed the distance. Inside: the quadric |p/a|^2 - 1 has second derivatives
-  /// of at most 2 / min(a)^2, so it cannot reach zero nearer than the root of that parabola.
+  /// f / |grad f| cannot exceed the distance. Inside: the quadric |p/a|^2 - 1 has second
+  /// derivatives of at most 2 / min(a)^2, so it cannot reach zero nearer than the root of that
+  /// parabola.
   double signed_distance(const Vec3& p) const {
     const Vec3 scaled = p.cwiseProduct(inverse_);
     const double f = scaled.norm();

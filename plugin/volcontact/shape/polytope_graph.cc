@@ -53,8 +53,9 @@ class Builder {
   PolytopeGraph graph() && { return std::move(graph_); }
 
  private:
-  int add_vertex(const Vec3& point) {
+  int add_vertex(int corner, const Vec3& point) {
     graph_.points.push_back(point);
+    graph_.corner.push_back(corner);
     graph_.twin.resize(4 * graph_.points.size(), 0);
     graph_.face.resize(4 * graph_.points.size(), 0);
     return static_cast<int>(graph_.points.size()) - 1;
@@ -63,14 +64,14 @@ class Builder {
     half_edge_of_[edge] = half_edge;
     graph_.face[half_edge] = sides_.at(edge).face;
   }
-  // The corner's k edges, spread over a chain of k - 2 vertices: the first vertex has edges 0 and 1,
-  // the next ones 2, 3, ..., the last one k - 2 and k - 1; links join them.
+  // The corner's k edges, spread over a chain of k - 2 vertices: the first vertex has edges 0 and
+  // 1, the next ones 2, 3, ..., the last one k - 2 and k - 1; links join them.
   void add_corner(int corner, int first_end, const Vec3& point) {
     const std::vector<int> fan = fan_of(corner, first_end, sides_);
     const int last = static_cast<int>(fan.size()) - 2;
     int previous = -1;
     for (int j = 1; j <= last; ++j) {
-      const int v = add_vertex(point);
+      const int v = add_vertex(corner, point);
       if (j == 1) {
         put_edge(4 * v, {corner, fan[0]});
       } else {

@@ -15,8 +15,8 @@ namespace volcontact::test {
 
 // An oracle that shares nothing with the clip engine: solids are lists of half-spaces, the overlap
 // is integrated by nested Gauss quadrature over columns whose ends are exact. Between all places
-// where edges of a solid end, or cross in the view along the columns, the integrands are polynomials
-// of low degree, so that the quadrature is exact up to rounding.
+// where edges of a solid end, or cross in the view along the columns, the integrands are
+// polynomials of low degree, so that the quadrature is exact up to rounding.
 
 struct Plane {
   Vec3 normal;
@@ -59,7 +59,8 @@ inline RayInterval interval(const Planes& planes, const Vec3& o, const Vec3& d) 
   return span;
 }
 
-/// Calls add(weight, x) at the nodes of a Gauss rule exact to degree 7 on every interval of `breaks`.
+/// Calls add(weight, x) at the nodes of a Gauss rule exact to degree 7 on every interval of
+/// `breaks`.
 template <typename Add>
 void gauss(std::vector<double> breaks, Add&& add) {
   constexpr double kNodes[] = {0.3399810435848563, 0.8611363115940526};
@@ -184,9 +185,8 @@ VolumeMetrics oracle(const A& a, const B& b, const Pose& X_AB) {
   MomentSum sum;
   for (const Plane& face : planes_a) {
     Planes rest = both;
-    std::erase_if(rest, [&](const Plane& p) {
-      return p.normal == face.normal && p.offset == face.offset;
-    });
+    std::erase_if(
+        rest, [&](const Plane& p) { return p.normal == face.normal && p.offset == face.offset; });
     const FaceArea f = face_area(face, rest);
     sum.area += f.area;
     sum.area_vector += f.area * face.normal;
@@ -194,9 +194,8 @@ VolumeMetrics oracle(const A& a, const B& b, const Pose& X_AB) {
   }
   for (const Plane& face : planes_b) {
     Planes rest = both;
-    std::erase_if(rest, [&](const Plane& p) {
-      return p.normal == face.normal && p.offset == face.offset;
-    });
+    std::erase_if(
+        rest, [&](const Plane& p) { return p.normal == face.normal && p.offset == face.offset; });
     sum.counter_area += face_area(face, rest).area;
   }
   // Columns along the contact normal, from B to A.
@@ -204,17 +203,19 @@ VolumeMetrics oracle(const A& a, const B& b, const Pose& X_AB) {
   const Vec3 n = length > 0.0 ? Vec3(-sum.area_vector / length) : Vec3::UnitZ();
   const Mat3 R = basis_with_z(n);
   double depth_moment = 0.0, low = kInfinity, high = -kInfinity;
-  over_shadow(planes_a, planes_b, both, R, [&](double weight, const Vec3& p, const RayInterval& span) {
-    const double l = span.leave - span.enter, middle = 0.5 * (span.leave + span.enter);
-    const Vec3 x = p + middle * n;
-    sum.volume += weight * l;
-    sum.first += weight * l * x;
-    sum.second += weight * l * (x * x.transpose() + l * l / 12.0 * n * n.transpose());
-    const double top_b = interval(planes_b, p, n).leave, bottom_a = interval(planes_a, p, n).enter;
-    depth_moment += weight * l * ((top_b - bottom_a) - 0.5 * l);
-    low = std::min(low, span.enter);
-    high = std::max(high, span.leave);
-  });
+  over_shadow(planes_a, planes_b, both, R,
+              [&](double weight, const Vec3& p, const RayInterval& span) {
+                const double l = span.leave - span.enter, middle = 0.5 * (span.leave + span.enter);
+                const Vec3 x = p + middle * n;
+                sum.volume += weight * l;
+                sum.first += weight * l * x;
+                sum.second += weight * l * (x * x.transpose() + l * l / 12.0 * n * n.transpose());
+                const double top_b = interval(planes_b, p, n).leave,
+                             bottom_a = interval(planes_a, p, n).enter;
+                depth_moment += weight * l * ((top_b - bottom_a) - 0.5 * l);
+                low = std::min(low, span.enter);
+                high = std::max(high, span.leave);
+              });
   VolumeMetrics m = sum.metrics();
   m.depth_moment = depth_moment;
   m.depth = high - low;  // a lower bound: the extreme places are no quadrature nodes

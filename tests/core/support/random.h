@@ -7,7 +7,8 @@
 
 namespace volcontact::test {
 
-/// Seeded random numbers, the same on every machine (splitmix64; the standard distributions are not).
+/// Seeded random numbers, the same on every machine (splitmix64; the standard distributions are
+/// not).
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}

@@ -12,8 +12,9 @@ namespace volcontact {
 
 /// Ellipsoid B in half-space A, in A: the affine image of a cap of the unit ball. Fully immersed as
 /// with the ball. `area`, the flat cut, is exact. The curved `counter_area` has no closed form: it
-/// is an upper bound (Cauchy-Schwarz over the cap), sharp for a ball and for a thin cap; the smaller
-/// of the two, which flatness() uses, is always the exact one. docs/theory.md, "Ellipsoid cap".
+/// is an upper bound (Cauchy-Schwarz over the cap), sharp for a ball and for a thin cap; the
+/// smaller of the two, which flatness() uses, is always the exact one. docs/theory.md, "Ellipsoid
+/// cap".
 inline VolumeMetrics closed_form(const HalfSpace&, const Ellipsoid& b, const Pose& X_AB) noexcept {
   const Vec3& a = b.semi_axes();
   const Vec3& center = X_AB.translation;
@@ -35,8 +36,8 @@ inline VolumeMetrics closed_form(const HalfSpace&, const Ellipsoid& b, const Pos
   m.centroid = cut_center - cap.centroid_depth * axis;
   m.centroid.z() = immersed ? center.z() : -reach * cap.centroid_depth;
 
-  // Second moments: lateral (map (1 - up up^T) map^T) + axial (axis axis^T). The first matrix has no
-  // z entries; as products of the rows' parts across `up` it suffers no cancellation.
+  // Second moments: lateral (map (1 - up up^T) map^T) + axial (axis axis^T). The first matrix has
+  // no z entries; as products of the rows' parts across `up` it suffers no cancellation.
   const Vec3 row_x = map.row(0).transpose().cross(up), row_y = map.row(1).transpose().cross(up);
   const double lateral = scale * cap.lateral_second, axial = scale * cap.axial_second;
   Mat3 second = axial * axis * axis.transpose();
@@ -53,14 +54,14 @@ inline VolumeMetrics closed_form(const HalfSpace&, const Ellipsoid& b, const Pos
   m.depth_moment = immersed ? -center.z() * m.volume : reach * scale * cap.depth_moment;
   m.depth = h;
 
-  // Area factor of the map at the point u of the unit sphere: |cofactor u|; mean square over the cap.
-  const double cofactors = std::pow(a.y() * a.z(), 2) + std::pow(a.z() * a.x(), 2) +
-                           std::pow(a.x() * a.y(), 2);
+  // Area factor of the map at the point u of the unit sphere: |cofactor u|; mean square over the
+  // cap.
+  const double cofactors =
+      std::pow(a.y() * a.z(), 2) + std::pow(a.z() * a.x(), 2) + std::pow(a.x() * a.y(), 2);
   const double lateral_square = kPi * s * s * (3.0 - s) / 3.0;  // int (u . e)^2, e across `up`
   const double axial_square = cap.lateral_area - 2.0 * lateral_square;
-  m.counter_area =
-      std::sqrt(cap.lateral_area * (lateral_square * (cofactors - stretch * stretch) +
-                                    axial_square * stretch * stretch));
+  m.counter_area = std::sqrt(cap.lateral_area * (lateral_square * (cofactors - stretch * stretch) +
+                                                 axial_square * stretch * stretch));
   m.volume_error = std::numeric_limits<double>::epsilon() *
                    (16.0 * m.volume + 8.0 * m.area * (reach + std::abs(center.z())));
   m.status = immersed ? Status::kContained : Status::kOk;

@@ -10,8 +10,8 @@
 
 namespace volcontact {
 
-/// Ball B in half-space A, in A. Fully immersed: status kContained, S and T vanish, and depth_moment
-/// stays the potential of the buoyancy V. docs/theory.md, "Spherical cap".
+/// Ball B in half-space A, in A. Fully immersed: status kContained, S and T vanish, and
+/// depth_moment stays the potential of the buoyancy V. docs/theory.md, "Spherical cap".
 inline VolumeMetrics closed_form(const HalfSpace&, const Sphere& b, const Pose& X_AB) noexcept {
   const double r = b.radius();
   const Vec3& center = X_AB.translation;

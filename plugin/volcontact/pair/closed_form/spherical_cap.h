@@ -5,8 +5,8 @@
 
 namespace volcontact {
 
-/// Integrals over the cap of height h (0 to 2 R) cut from a ball of radius R by a plane. Every one is
-/// a product of sums without cancellation, so that thin caps keep full relative accuracy.
+/// Integrals over the cap of height h (0 to 2 R) cut from a ball of radius R by a plane. Every one
+/// is a product of sums without cancellation, so that thin caps keep full relative accuracy.
 /// docs/theory.md, "Spherical cap".
 struct SphericalCap {
   double volume;
@@ -22,16 +22,16 @@ inline SphericalCap spherical_cap(double radius, double h) {
   const double r = radius;
   const double area = kPi * h * h;
   const double three_r = 3.0 * r - h, four_r = 4.0 * r - h;
+  const double per_three_r = three_r > 0.0 ? 1.0 / three_r : 0.0;
   SphericalCap cap;
-  cap.volume = area * three_r / 3.0;
+  cap.volume = (1.0 / 3.0) * area * three_r;
   cap.cut_area = kPi * h * (2.0 * r - h);
   cap.lateral_area = 2.0 * kPi * r * h;
-  cap.centroid_depth = three_r > 0.0 ? 0.25 * h * four_r / three_r : 0.0;
-  cap.depth_moment = area * h * four_r / 12.0;
+  cap.centroid_depth = 0.25 * h * four_r * per_three_r;
+  cap.depth_moment = (1.0 / 12.0) * area * h * four_r;
   cap.axial_second =
-      three_r > 0.0 ? area * h * h * (r * (40.0 * r - 24.0 * h) + 3.0 * h * h) / (240.0 * three_r)
-                    : 0.0;
-  cap.lateral_second = area * h * (r * (20.0 * r - 15.0 * h) + 3.0 * h * h) / 60.0;
+      (1.0 / 240.0) * area * h * h * (r * (40.0 * r - 24.0 * h) + 3.0 * h * h) * per_three_r;
+  cap.lateral_second = (1.0 / 60.0) * area * h * (r * (20.0 * r - 15.0 * h) + 3.0 * h * h);
   return cap;
 }
 
