@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "volcontact/metrics/volume_metrics.h"
-#include "volcontact/pair/column_overlay.h"
+#include "volcontact/pair/column_energy.h"
 #include "volcontact/pair/cut_polytope.h"
 #include "volcontact/shape/box.h"
 #include "volcontact/shape/convex_polytope.h"
@@ -15,7 +15,7 @@ namespace volcontact {
 /// Memory of clip(), reused from call to call.
 struct ClipScratch {
   CutPolytope polytope;
-  ColumnOverlay overlay;
+  ColumnEnergy columns;
   std::vector<Eigen::Vector2d> outline;
   std::vector<int> neighbors;
   std::vector<Vec3> corners;

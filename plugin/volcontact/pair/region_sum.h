@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "volcontact/metrics/volume_metrics.h"
 
-namespace volcontact {
+namespace volcontact::clipping {
+
+inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// Area of a face and the integral of x over it, about the origin of its RegionSum.
 struct FaceIntegral {
@@ -66,10 +69,16 @@ struct RegionSum {
     return {0.5 * area2, sum / 6.0};
   }
 
-  /// Volume, areas, centroid and inertia; the centroid still relative to `origin`.
-  VolumeMetrics metrics() const {
+  /// Bound of the rounding in the volume, when positions are known to `rounding` [m].
+  double volume_error(double rounding) const {
+    return 8.0 * kEpsilon * volume + 2.0 * rounding * (area + counter_area);
+  }
+
+  /// Volume with its error, areas, centroid and inertia; the centroid still relative to `origin`.
+  VolumeMetrics metrics(double rounding) const {
     VolumeMetrics m;
     m.volume = volume;
+    m.volume_error = volume_error(rounding);
     const Vec3 c = first / volume;
     m.centroid = c;
     const double sxx = xx - first.x() * c.x(), syy = yy - first.y() * c.y(),
@@ -82,4 +91,4 @@ struct RegionSum {
   }
 };
 
-}  // namespace volcontact
+}  // namespace volcontact::clipping

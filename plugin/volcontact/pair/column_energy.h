@@ -26,7 +26,7 @@ struct HeightPlane {
 /// pressed together along the columns. The upper faces should belong to the solid below (its top,
 /// inside the one above) and the lower faces to the solid above; a face of the other solid is an
 /// overhang. Keeps its memory from one use to the next.
-class ColumnOverlay {
+class ColumnEnergy {
  public:
   using Point = Eigen::Vector2d;
 
@@ -47,7 +47,7 @@ class ColumnOverlay {
   /// solid below reaches over the column's top and the solid above under its bottom. Without
   /// overhang this is int L^2/2. Its derivative along the columns is V always, so it is the
   /// potential of f = V. docs/theory.md, "Volume metrics".
-  double energy();
+  double value();
 
  private:
   struct Upper {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "volcontact/pair/column_overlay.h"
+#include "volcontact/pair/column_energy.h"
 
 #include <algorithm>
 
 namespace volcontact {
 namespace {
 
-using Point = ColumnOverlay::Point;
+using Point = ColumnEnergy::Point;
 
 void bound(std::span<const Point> outline, Point& min, Point& max) {
   min = max = outline[0];
@@ -18,7 +18,7 @@ void bound(std::span<const Point> outline, Point& min, Point& max) {
 
 }  // namespace
 
-void ColumnOverlay::start(int face_count) {
+void ColumnEnergy::start(int face_count) {
   outlines_.clear();
   neighbors_.clear();
   upper_.clear();
@@ -29,8 +29,8 @@ void ColumnOverlay::start(int face_count) {
   has_overhang_ = false;
 }
 
-void ColumnOverlay::add_upper(const HeightPlane& height, bool overhang,
-                              std::span<const Point> outline) {
+void ColumnEnergy::add_upper(const HeightPlane& height, bool overhang,
+                             std::span<const Point> outline) {
   Upper upper{static_cast<int>(outlines_.size()),
               static_cast<int>(outline.size()),
               height,
@@ -43,8 +43,8 @@ void ColumnOverlay::add_upper(const HeightPlane& height, bool overhang,
   has_overhang_ |= overhang;
 }
 
-void ColumnOverlay::add_lower(int face, const HeightPlane& height, bool overhang,
-                              std::span<const Point> outline, std::span<const int> neighbors) {
+void ColumnEnergy::add_lower(int face, const HeightPlane& height, bool overhang,
+                             std::span<const Point> outline, std::span<const int> neighbors) {
   Lower lower{face,
               static_cast<int>(neighbors_.size()),
               static_cast<int>(neighbors.size()),
@@ -65,7 +65,7 @@ void ColumnOverlay::add_lower(int face, const HeightPlane& height, bool overhang
   has_overhang_ |= overhang;
 }
 
-void ColumnOverlay::Polygon::assign(std::span<const Point> from, int most_cuts) {
+void ColumnEnergy::Polygon::assign(std::span<const Point> from, int most_cuts) {
   count = static_cast<int>(from.size());
   const std::size_t room = from.size() + most_cuts;
   if (points.size() < room) {
@@ -76,7 +76,7 @@ void ColumnOverlay::Polygon::assign(std::span<const Point> from, int most_cuts) 
   std::copy(from.begin(), from.end(), points.begin());
 }
 
-void ColumnOverlay::Polygon::cut(const HeightPlane& side) {
+void ColumnEnergy::Polygon::cut(const HeightPlane& side) {
   int outside = 0;
   for (int i = 0; i < count; ++i) {
     sides[i] = side(points[i]);
@@ -96,7 +96,7 @@ void ColumnOverlay::Polygon::cut(const HeightPlane& side) {
 }
 
 // int (a b) of two linear functions, clamped to be >= 0 against rounding.
-double ColumnOverlay::Polygon::integral(const HeightPlane& a, const HeightPlane& b) const {
+double ColumnEnergy::Polygon::integral(const HeightPlane& a, const HeightPlane& b) const {
   if (count < 3) return 0.0;
   const auto value = [](const HeightPlane& f, const Point& p) { return std::max(0.0, f(p)); };
   const Point& origin = points[0];
@@ -118,7 +118,7 @@ double ColumnOverlay::Polygon::integral(const HeightPlane& a, const HeightPlane&
 // The part of the upper face's outline over which `bottom` is the lowest face. Cut by the heights
 // of the planes around it and not by its edges: cells of neighbours then fit together, however
 // short and noisy the edge between them is.
-void ColumnOverlay::cut_cell(const Upper& top, const Lower& bottom) {
+void ColumnEnergy::cut_cell(const Upper& top, const Lower& bottom) {
   cell_.assign({outlines_.data() + top.first, static_cast<std::size_t>(top.count)}, bottom.count);
   for (int i = bottom.first; i < bottom.first + bottom.count && cell_.count > 0; ++i) {
     const int other = lower_of_face_[neighbors_[i]];
@@ -128,8 +128,8 @@ void ColumnOverlay::cut_cell(const Upper& top, const Lower& bottom) {
 
 // The heights of planes over `from` (sign = 1) or of `from` over planes (-1), without those that
 // are nowhere in the cell the least: at its corners another one is lower throughout.
-void ColumnOverlay::list_reaches(const HeightPlane& from, std::span<const HeightPlane> planes,
-                                 double sign) {
+void ColumnEnergy::list_reaches(const HeightPlane& from, std::span<const HeightPlane> planes,
+                                double sign) {
   const auto below_in_cell = [&](const HeightPlane& a, const HeightPlane& b) {
     for (int i = 0; i < cell_.count; ++i) {
       if (a(cell_.points[i]) > b(cell_.points[i])) return false;
@@ -149,7 +149,7 @@ void ColumnOverlay::list_reaches(const HeightPlane& from, std::span<const Height
 }
 
 // int (length * least of the reaches) over the cell.
-double ColumnOverlay::overhang_energy(const HeightPlane& length) {
+double ColumnEnergy::overhang_energy(const HeightPlane& length) {
   double sum = 0.0;
   const int count = static_cast<int>(reaches_.size());
   for (int j = 0; j < count; ++j) {
@@ -162,7 +162,7 @@ double ColumnOverlay::overhang_energy(const HeightPlane& length) {
   return sum;
 }
 
-double ColumnOverlay::energy() {
+double ColumnEnergy::value() {
   double sum = 0.0;
   for (const Upper& top : upper_) {
     for (const Lower& bottom : lower_) {
