@@ -8,9 +8,16 @@
 namespace volcontact::adaptor {
 namespace {
 
+// "c1_rubber" for "c1_volcontact/material/rubber".
+std::string short_name(const KeyedValues& material) {
+  const std::string middle = "volcontact/material/";
+  const std::size_t at = material.key.find(middle);
+  return material.key.substr(0, at) + material.key.substr(at + middle.size());
+}
+
 std::string material_of(const SceneKeys& keys, int geom) {
   const int index = keys.material_of_geom[static_cast<std::size_t>(geom)];
-  return index < 0 ? "default" : keys.materials[static_cast<std::size_t>(index)].key;
+  return index < 0 ? "default" : short_name(keys.materials[static_cast<std::size_t>(index)]);
 }
 
 void write_options(const SceneOptions& options, JsonText& json) {
@@ -61,7 +68,7 @@ void write_materials(const mjModel* m, const SceneContact& contact, JsonText& js
   json.name("materials").begin_object();
   for (std::size_t i = 0; i < keys.materials.size(); ++i) {
     const KeyedValues& material = keys.materials[i];
-    json.name(material.key.substr(material.key.rfind('/') + 1)).begin_object();
+    json.name(short_name(material)).begin_object();
     json.member("key", material.key);
     write_values(material, json);
     write_geoms(static_cast<int>(i), true);

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <vector>
 
+#include "adaptor/collision_claims.h"
 #include "volcontact/base/check.h"
 
 namespace volcontact::adaptor {
@@ -25,6 +26,10 @@ struct Variant {
       : content(m, made->keys().numerics), contact(std::move(made)), error(std::move(why)) {}
 };
 using VariantPointer = std::shared_ptr<const Variant>;
+
+// Set in the flags of an attached model, where MuJoCo has no flag, so that its copies are known
+// from a second load of the same file.
+constexpr int kAttachedMark = 1 << 30;
 
 // Simulations of a batch may have numbers of their own, in turn: keep a good many.
 constexpr std::size_t kVariantsKept = 64;
@@ -86,10 +91,8 @@ VariantPointer variant_for(AttachedScene& scene, const mjModel* m) {
   return scene.variants.back();
 }
 
-// A copy of an attached model has its content and, like it, native contact off; so a second load of
-// the same file, or the model that MuJoCo makes while it compiles one, is not taken for a copy.
 bool is_copy_of(const AttachedScene& scene, const mjModel* m) {
-  return (m->opt.disableflags & mjDSBL_CONTACT) != 0 &&
+  return (m->opt.disableflags & kAttachedMark) != 0 &&
          scene.variants.back()->content.is_same_model(m);
 }
 
@@ -145,7 +148,12 @@ std::string attach_scene(mjModel* m) {
   require(find_scene(m) == registry().end(), "the model is attached already");
   const bool was_disabled = (m->opt.disableflags & mjDSBL_CONTACT) != 0;
   registry().push_back({m, was_disabled, {first}, contact});
-  m->opt.disableflags |= mjDSBL_CONTACT;
+  m->opt.disableflags |= kAttachedMark;
+  if (contact->options().pairs == PairRule::kListed) {
+    claim_listed_pairs();
+  } else {
+    m->opt.disableflags |= mjDSBL_CONTACT;
+  }
   generation.fetch_add(1, std::memory_order_release);
   return skipped_warning(m);
 }
@@ -154,7 +162,12 @@ bool detach_scene(mjModel* m) {
   const std::lock_guard lock(registry_mutex);
   const auto scene = find_scene(m);
   if (scene == registry().end()) return false;
-  if (!scene->contact_was_disabled) m->opt.disableflags &= ~mjDSBL_CONTACT;
+  m->opt.disableflags &= ~kAttachedMark;
+  if (scene->last_valid->options().pairs == PairRule::kListed) {
+    unclaim_listed_pairs();
+  } else if (!scene->contact_was_disabled) {
+    m->opt.disableflags &= ~mjDSBL_CONTACT;
+  }
   registry().erase(scene);
   generation.fetch_add(1, std::memory_order_release);
   return true;

@@ -20,8 +20,7 @@ std::atomic<bool> is_forked_child{false};
 
 }  // namespace
 
-EvaluationGuard::EvaluationGuard(int wanted) noexcept
-    : restored_threads_(omp_get_max_threads()) {
+EvaluationGuard::EvaluationGuard(int wanted) noexcept : restored_threads_(omp_get_max_threads()) {
   const bool alone = evaluations_in_flight.fetch_add(1) == 0 && !is_forked_child;
   threads_ = !alone ? 1 : wanted > 0 ? wanted : restored_threads_;
   if (threads_ != restored_threads_) omp_set_num_threads(threads_);

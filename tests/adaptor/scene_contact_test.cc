@@ -276,7 +276,7 @@ TEST(SceneContact, CopyOfTheModelHasContactToo) {
   EXPECT_GT(d->qpos[2], 0.0);
 }
 
-TEST(SceneContact, OtherModelKeepsNativeContact) {
+TEST(SceneContact, SecondLoadOfTheSceneKeepsNativeContact) {
   const ModelPointer m = testing::load(testing::ball_scene(0.0499, ""));
   const ModelPointer other = testing::load(testing::ball_scene(0.0499, ""));
   const Attached attached(m);
