@@ -109,9 +109,9 @@ class Octree {
   bool contained(const OctreeScratch::Totals& t, const SolidView& inner, const Pose& X_IW,
                  VolumeMetrics& metrics) const;
   void add_depths(int site, const OctreeScratch::Totals& totals, VolumeMetrics& metrics);
-  RayInterval chord(const SolidView& view, const Vec3& p_S, const Vec3& e_S) const;
-  OctreeScratch::Columns columns(const Cell& leaf, const Vec3& e, int levels);
-  double depth_moment(int site, const Vec3& first_way, double volume);
+  RayInterval chord(const SolidView& view, const Vec3& p_S, const Vec3& n_S, double side) const;
+  OctreeScratch::Columns columns(const Cell& leaf, const Vec3& n, double side, int levels);
+  double depth_moment(int site, const Vec3& n, double first_side, double volume);
   double farthest(int site, const Vec3& e);
   bool farthest_support(const Vec3& e, double& height) const;
 
@@ -451,53 +451,60 @@ VolumeMetrics Octree::metrics_of(int site) {
 // ---- depth
 // ---------------------------------------------------------------------------------------
 
-// The part of the line p + t e within the solid, for a point p of its surface or next to it.
-RayInterval Octree::chord(const SolidView& view, const Vec3& p_S, const Vec3& e_S) const {
-  if (view.ray) return view.ray(view.solid, p_S, e_S);
-  // Steps of the signed distance, against e, from just below p to the far side.
+// The part of the line p + t n within the solid, for a point p of a surface on the side `side` n.
+RayInterval Octree::chord(const SolidView& view, const Vec3& p_S, const Vec3& n_S,
+                          double side) const {
+  if (view.ray) return view.ray(view.solid, p_S, n_S);
+  // Steps of the signed distance from just below p to the far side.
   constexpr int kMostSteps = 100;
   const double nudge = kNudge * scale_;
   double way = nudge;
   for (int i = 0; i < kMostSteps; ++i) {
-    const double step = -view.signed_distance(view.solid, p_S - way * e_S);
+    const double step = -view.signed_distance(view.solid, p_S - way * side * n_S);
     if (!(step > 0.01 * nudge)) break;
     way += step;
   }
-  return way > nudge ? RayInterval{-way, 0.0} : RayInterval{};
+  if (!(way > nudge)) return {};
+  return side > 0.0 ? RayInterval{-way, 0.0} : RayInterval{0.0, way};
 }
 
-// What the columns along e that end in the leaf's surface add to int L dA and int L^2/2 dA.
-OctreeScratch::Columns Octree::columns(const Cell& leaf, const Vec3& e, int levels) {
-  const Vec3 e_A = window_.X_AW.rotation * e, e_B = window_.X_BW.rotation * e;
+// What the columns along n that end on the side `side` n in the leaf's surface add to the volume
+// and to the depth moment.
+OctreeScratch::Columns Octree::columns(const Cell& leaf, const Vec3& n, double side, int levels) {
+  const Vec3 n_A = window_.X_AW.rotation * n, n_B = window_.X_BW.rotation * n;
   Cell cell = leaf;
   OctreeScratch::Columns sum;
   s_.cutters[thread_index()].for_each_surface_point(
-      s_.faces, cell, e, levels, [&](const CellCut::SurfacePoint& point) {
-        const double area = e.dot(point.element);
+      s_.faces, cell, side * n, levels, [&](const CellCut::SurfacePoint& point) {
+        const double area = side * n.dot(point.element);
         if (!(area * point.sign > 0.0)) return;
         const Vec3 p = cell.center + point.position;
-        const RayInterval in_a = chord(a_, window_.X_AW * p, e_A);
-        const RayInterval in_b = chord(b_, window_.X_BW * p, e_B);
+        const RayInterval in_a = chord(a_, window_.X_AW * p, n_A, side);
+        const RayInterval in_b = chord(b_, window_.X_BW * p, n_B, side);
         if (in_a.empty() || in_b.empty()) return;
         const double length = std::min(in_a.leave, in_b.leave) - std::max(in_a.enter, in_b.enter);
-        if (length > 0.0) sum += {area * length, 0.5 * area * length * length};
+        if (!(length > 0.0)) return;
+        // Where A ends inside of B the column keeps its length under a push, and its force.
+        const double pushed = in_b.leave - in_a.enter;
+        const double lever = std::isfinite(pushed) ? pushed - 0.5 * length : 0.5 * length;
+        sum += {area * length, area * length * lever};
       });
   return sum;
 }
 
 // int L^2/2 dA. L may have kinks where no leaf ends; the volume, known better, tells whether the
 // columns saw them. Columns are followed from one side, then from the other, then more densely.
-double Octree::depth_moment(int site, const Vec3& first_way, double volume) {
+double Octree::depth_moment(int site, const Vec3& n, double first_side, double volume) {
   OctreeScratch::Columns best;
   double least_error = kInfinity;
   const double allowed = kColumnShare * std::max(tolerance_, kColumnTolerance) * volume + rounding_;
   double patches = static_cast<double>(s_.leaves.size());
   for (int levels = 0; levels == 0 || patches <= kMostPatches; ++levels, patches *= 4.0) {
-    for (const double side : {1.0, -1.0}) {
+    for (const double side : {first_side, -first_side}) {
       const auto sum = ordered_sum<OctreeScratch::Columns>(
           static_cast<int>(s_.leaves.size()), thread_limit_, kSumGrain, s_.partial_columns,
           [&](int i) {
-            return is_in(i, site) ? columns(s_.cells[s_.leaves[i]], side * first_way, levels)
+            return is_in(i, site) ? columns(s_.cells[s_.leaves[i]], n, side, levels)
                                   : OctreeScratch::Columns{};
           });
       const double error = std::abs(sum.volume - volume);
@@ -548,8 +555,9 @@ double Octree::farthest(int site, const Vec3& e) {
 void Octree::add_depths(int site, const OctreeScratch::Totals& totals, VolumeMetrics& metrics) {
   const Vec3 n = metrics.normal();
   if (n.isZero(0.0)) return;
-  const Vec3 to_flatter = totals.doubt[0] <= totals.doubt[1] ? Vec3(-n) : n;
-  metrics.depth_moment = depth_moment(site, to_flatter, totals.volume);
+  // First from the surface of the flatter body, whose edges are edges of the leaves' surfaces.
+  const double side = totals.doubt[0] <= totals.doubt[1] ? -1.0 : 1.0;
+  metrics.depth_moment = depth_moment(site, n, side, totals.volume);
   const double depth = farthest(site, n) + farthest(site, -n);
   metrics.depth = std::isfinite(depth) ? std::max(0.0, depth) : 0.0;
 }
