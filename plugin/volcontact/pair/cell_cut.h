@@ -6,7 +6,7 @@
 
 #include "volcontact/pair/cell.h"
 #include "volcontact/pair/convex_polygon.h"
-#include "volcontact/pair/cut_polytope.h"
+#include "volcontact/shape/cut_polytope.h"
 
 namespace volcontact {
 

@@ -5,9 +5,9 @@
 
 #include "volcontact/metrics/volume_metrics.h"
 #include "volcontact/pair/column_energy.h"
-#include "volcontact/pair/cut_polytope.h"
 #include "volcontact/shape/box.h"
 #include "volcontact/shape/convex_polytope.h"
+#include "volcontact/shape/cut_polytope.h"
 #include "volcontact/shape/half_space.h"
 
 namespace volcontact {

@@ -183,19 +183,6 @@ bool bounds_apart(const SolidView& a, const SolidView& b, const Pose& X_AB) {
 
 }  // namespace
 
-const PolytopeGraph& box_graph() {
-  static const PolytopeGraph graph = [] {
-    std::vector<Vec3> corners;
-    for (int i = 0; i < 8; ++i) {
-      corners.emplace_back(i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0);
-    }
-    return make_polytope_graph(
-        corners,
-        {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}});
-  }();
-  return graph;
-}
-
 OverlapWindow find_window(const SolidView& a, const SolidView& b, const Pose& X_AB,
                           CutPolytope& hull_W, CutPolytope& scratch) {
   OverlapWindow window;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "volcontact/pair/cut_polytope.h"
 #include "volcontact/pair/solid_view.h"
+#include "volcontact/shape/cut_polytope.h"
 
 namespace volcontact {
 
@@ -20,8 +20,5 @@ struct OverlapWindow {
 /// missed. At least one solid must be bounded. docs/theory.md, "Octree".
 OverlapWindow find_window(const SolidView& a, const SolidView& b, const Pose& X_AB,
                           CutPolytope& hull_W, CutPolytope& scratch);
-
-/// Graph of a box; its vertex i has the signs of the bits of i (x, y, z).
-const PolytopeGraph& box_graph();
 
 }  // namespace volcontact

@@ -26,4 +26,7 @@ struct PolytopeGraph {
 PolytopeGraph make_polytope_graph(const std::vector<Vec3>& corners,
                                   const std::vector<std::vector<int>>& loops);
 
+/// Graph of a box; its vertex i has the signs of the bits of i (x, y, z).
+const PolytopeGraph& box_graph();
+
 }  // namespace volcontact

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "volcontact/pair/cut_polytope.h"
+#include "volcontact/shape/cut_polytope.h"
 
 #include <algorithm>
 
