@@ -34,9 +34,11 @@ inline std::string camel_case(std::string_view name) {
 template <typename Component>
 std::string describe_fields() {
   std::string text;
-  for (const auto& field : Component::kFields) {
-    text += std::string("\n    ") + field.name + " [" + field.unit + "]: " + field.meaning +
-            (field.size() == 3 ? ", shape (3,)" : "") + "; " + field.range.text;
+  if constexpr (requires { Component::kFields; }) {
+    for (const auto& field : Component::kFields) {
+      text += std::string("\n    ") + field.name + " [" + field.unit + "]: " + field.meaning +
+              (field.size() == 3 ? ", shape (3,)" : "") + "; " + field.range.text;
+    }
   }
   if constexpr (kHasChoices<Component>) {
     for (const auto& choice : Component::kChoices) {
@@ -136,13 +138,15 @@ void def_properties(Class& type) {
              .c_str()),
      ...);
   }(std::make_index_sequence<Component::kFields.size()>{});
-  [&]<std::size_t... C>(std::index_sequence<C...>) {
-    (type.def_prop_ro(
-         Component::kChoices[C].name,
-         [](const Component& self) { return detail::word_of<Component, C>(self.params()); },
-         Component::kChoices[C].meaning),
-     ...);
-  }(std::make_index_sequence<detail::choice_count<Component>()>{});
+  if constexpr (kHasChoices<Component>) {
+    [&]<std::size_t... C>(std::index_sequence<C...>) {
+      (type.def_prop_ro(
+           Component::kChoices[C].name,
+           [](const Component& self) { return detail::word_of<Component, C>(self.params()); },
+           Component::kChoices[C].meaning),
+       ...);
+    }(std::make_index_sequence<detail::choice_count<Component>()>{});
+  }
 }
 
 }  // namespace volcontact::python
