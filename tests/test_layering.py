@@ -52,7 +52,7 @@ def fault(source: str, included: str) -> str | None:
 
 def include_faults() -> list[str]:
     """All includes under plugin/ that point up, one line each."""
-    sources = sorted(p for p in PLUGIN.rglob("*") if p.suffix in {".h", ".cc"})
+    sources = sorted(p for p in PLUGIN.rglob("*") if p.suffix in {".h", ".cc", ".inc"})
     assert sources, f"no sources in {PLUGIN}"
     found = (
         fault(path.relative_to(PLUGIN).as_posix(), included)
