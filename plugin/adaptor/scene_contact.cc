@@ -13,23 +13,18 @@
 namespace volcontact::adaptor {
 namespace {
 
-// Time of one pair in contact, for sharing work among threads [s].
-double typical_time(Engine engine) {
-  switch (engine) {
-    case Engine::kClosedForm:
-      return 0.1e-6;
-    case Engine::kClip:
-      return 1e-6;
-    default:
-      return 1e-3;
-  }
-}
+// The octree shares the cells of one pair among threads; the other engines are too quick for that,
+// and their pairs are shared instead.
+bool shares_its_own_work(Engine engine) { return engine == Engine::kOctree; }
 
 // An engine may use the threads that are free: the guard of the evaluation sets how many there are.
 constexpr int kInnerThreads = 0;
 
-// Below this OpenMP costs more than it saves, also on a busy machine [s].
+// Typical time of a pair of the quick engines, and the time from which OpenMP saves more than it
+// costs, also on a busy machine [s].
+constexpr double kPairTime = 1e-6;
 constexpr double kWorthSharing = 200e-6;
+constexpr int kPairsPerTask = 16;
 
 std::vector<Shape> solids_of(const mjModel* m, const std::vector<GeomPair>& pairs) {
   std::vector<Shape> solids(static_cast<std::size_t>(m->ngeom), Shape(HalfSpace()));
@@ -144,19 +139,6 @@ UserdataBlock SceneContact::block(const mjModel* m, const mjData* d) const {
   return {d->userdata + m->nuserdata, layout(m)};
 }
 
-int SceneContact::threads_for(const Scratch& scratch) const noexcept {
-  if (scratch.cull.near.size() < 2) return 1;
-  double work = 0.0, longest = 0.0;
-  for (const int i : scratch.cull.near) {
-    const double time = typical_time(pairs_[static_cast<std::size_t>(i)].engine);
-    work += time;
-    longest = std::max(longest, time);
-  }
-  // One long pair among short ones is better shared by its own engine.
-  if (work < kWorthSharing || work < 2.0 * longest) return 1;
-  return static_cast<int>(std::min<double>(work / (0.25 * kWorthSharing), 1024.0));
-}
-
 void SceneContact::evaluate(const mjModel* m, const mjData* d, const LawState& states,
                             Scratch& scratch) const noexcept {
   cull_.run(d, scratch.cull);
@@ -168,12 +150,14 @@ void SceneContact::evaluate(const mjModel* m, const mjData* d, const LawState& s
   std::fill_n(states.pending, states_, 0.0);
 
   const EvaluationGuard guard(keys_.options.threads);
-  const int threads = std::min(guard.threads(), threads_for(scratch));
+  const int count = static_cast<int>(near.size());
+  const int threads = count * kPairTime < kWorthSharing ? 1 : guard.threads();
   if (scratch.workspaces.size() < static_cast<std::size_t>(threads)) {
     scratch.workspaces.resize(static_cast<std::size_t>(threads));
   }
-  const auto evaluate_one = [&](std::size_t k, int thread) {
+  const auto evaluate_one = [&](std::size_t k, int thread, bool long_ones) {
     const PairContact& pair = pairs_[static_cast<std::size_t>(near[k])];
+    if (shares_its_own_work(pair.engine) != long_ones) return;
     const BodyMotion motion{pose_of_geom(d, pair.geoms.a), pose_of_geom(d, pair.geoms.b),
                             twist_of_geom(m, d, pair.geoms.a), twist_of_geom(m, d, pair.geoms.b)};
     const LawState state{states.committed + pair.first_state, states.pending + pair.first_state,
@@ -189,14 +173,10 @@ void SceneContact::evaluate(const mjModel* m, const mjData* d, const LawState& s
     report.power = {};
     std::fill_n(state.pending, pair.model.state_size(), 0.0);
   };
-  const int count = static_cast<int>(near.size());
-  if (threads == 1) {
-    for (int k = 0; k < count; ++k) evaluate_one(static_cast<std::size_t>(k), 0);
-    return;
-  }
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
+  for (int k = 0; k < count; ++k) evaluate_one(static_cast<std::size_t>(k), 0, true);
+#pragma omp parallel for schedule(dynamic, kPairsPerTask) num_threads(threads) if (threads > 1)
   for (int k = 0; k < count; ++k) {
-    evaluate_one(static_cast<std::size_t>(k), omp_get_thread_num());
+    evaluate_one(static_cast<std::size_t>(k), threads > 1 ? omp_get_thread_num() : 0, false);
   }
 }
 

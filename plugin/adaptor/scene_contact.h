@@ -72,7 +72,6 @@ class SceneContact {
   void warn_once(const std::string& warning);
   void evaluate(const mjModel* m, const mjData* d, const LawState& states,
                 Scratch& scratch) const noexcept;
-  int threads_for(const Scratch& scratch) const noexcept;
   void write_forces(const mjModel* m, mjData* d, Scratch& scratch) const noexcept;
 
   SceneKeys keys_;

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <mutex>
+#include <stdexcept>
 #include <vector>
 
 #include "adaptor/collision_claims.h"
@@ -62,6 +63,11 @@ void require_room(const mjModel* m, const SceneContact& contact) {
 std::vector<AttachedScene>::iterator find_scene(const mjModel* m) {
   return std::find_if(registry().begin(), registry().end(),
                       [m](const AttachedScene& scene) { return scene.model == m; });
+}
+
+void forget(std::vector<AttachedScene>::iterator scene) {
+  if (scene->last_valid->options().pairs == PairRule::kListed) unclaim_listed_pairs();
+  registry().erase(scene);
 }
 
 // What may not change in an attached model.
@@ -145,8 +151,16 @@ std::string attach_scene(mjModel* m) {
   require_room(m, *contact);
   const auto first = std::make_shared<const Variant>(m, contact, "");
   const std::lock_guard lock(registry_mutex);
-  require(find_scene(m) == registry().end(), "the model is attached already");
-  const bool was_disabled = (m->opt.disableflags & mjDSBL_CONTACT) != 0;
+  const auto present = find_scene(m);
+  if (present != registry().end()) {
+    if (present->variants.back()->content.is_same_model(m)) {
+      throw std::logic_error("the model is attached already");
+    }
+    forget(present);  // deleted without a detach; this is another model at its address
+  }
+  // In a copy of an attached model the flag is ours.
+  const bool was_disabled =
+      (m->opt.disableflags & mjDSBL_CONTACT) != 0 && (m->opt.disableflags & kAttachedMark) == 0;
   registry().push_back({m, was_disabled, {first}, contact});
   m->opt.disableflags |= kAttachedMark;
   if (contact->options().pairs == PairRule::kListed) {
@@ -163,12 +177,8 @@ bool detach_scene(mjModel* m) {
   const auto scene = find_scene(m);
   if (scene == registry().end()) return false;
   m->opt.disableflags &= ~kAttachedMark;
-  if (scene->last_valid->options().pairs == PairRule::kListed) {
-    unclaim_listed_pairs();
-  } else if (!scene->contact_was_disabled) {
-    m->opt.disableflags &= ~mjDSBL_CONTACT;
-  }
-  registry().erase(scene);
+  if (!scene->contact_was_disabled) m->opt.disableflags &= ~mjDSBL_CONTACT;
+  forget(scene);
   generation.fetch_add(1, std::memory_order_release);
   return true;
 }

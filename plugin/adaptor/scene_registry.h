@@ -10,7 +10,8 @@
 namespace volcontact::adaptor {
 
 /// Makes the contact of `m` volumetric, in all its mjData. Throws std::invalid_argument with a
-/// message for the author of the scene. Returns warnings, one a line.
+/// message for the author of the scene, and std::logic_error when `m` is attached already. Returns
+/// a warning or nothing.
 std::string attach_scene(mjModel* m);
 
 /// Undoes attach_scene; returns whether `m` was attached. To be called before `m` is deleted.

@@ -46,6 +46,9 @@ int guarded(char* message, int message_size, Function&& function) noexcept {
   } catch (const std::invalid_argument& error) {
     copy_text(error.what(), message, message_size);
     return VOLCONTACT_ERROR_SCENE;
+  } catch (const std::logic_error& error) {
+    copy_text(error.what(), message, message_size);
+    return VOLCONTACT_ERROR_STATE;
   } catch (const std::exception& error) {
     copy_text(error.what(), message, message_size);
     return VOLCONTACT_ERROR_INTERNAL;
@@ -110,10 +113,6 @@ int volcontact_reserve(mjModel* m, char* message, int message_size) {
 
 int volcontact_attach(mjModel* m, char* message, int message_size) {
   return guarded(message, message_size, [&] {
-    if (is_attached(m)) {
-      copy_text("the model is attached already", message, message_size);
-      return static_cast<int>(VOLCONTACT_ERROR_STATE);
-    }
     copy_text(attach_scene(m), message, message_size);
     install_callback();
     return 0;
@@ -122,10 +121,7 @@ int volcontact_attach(mjModel* m, char* message, int message_size) {
 
 int volcontact_detach(mjModel* m, char* message, int message_size) {
   return guarded(message, message_size, [&] {
-    if (!detach_scene(m)) {
-      copy_text("the model is not attached", message, message_size);
-      return static_cast<int>(VOLCONTACT_ERROR_STATE);
-    }
+    if (!detach_scene(m)) throw std::logic_error("the model is not attached");
     if (attached_scenes() == 0) uninstall_callback();
     return 0;
   });

@@ -110,27 +110,5 @@ TEST_F(PassiveCallback, ModelsCompileWhileItIsInstalled) {
   detach();
 }
 
-TEST_F(PassiveCallback, AddressOfADeletedModelMeansNothing) {
-  // Another scene at the address of one that was deleted while attached, which is the caller's
-  // mistake, must not get the old one's contact.
-  const std::string two_balls =
-      "<mujoco><option><flag contact=\"disable\"/></option><worldbody>"
-      "<geom type=\"plane\" size=\"1 1 1\"/><body pos=\"0 0 .04\"><freejoint/>"
-      "<geom type=\"sphere\" size=\".05\"/></body></worldbody></mujoco>";
-  mjModel* address = m.get();
-  attach();
-  const ModelPointer other = testing::load(two_balls);
-  const DataPointer of_other = testing::make_data(other);
-  // The registry knows `address`; give the callback a model of other content there.
-  std::vector<unsigned char> kept(reinterpret_cast<unsigned char*>(address),
-                                  reinterpret_cast<unsigned char*>(address) + sizeof(mjModel));
-  *address = *other;
-  volcontact_passive(address, of_other.get());
-  mj_forward(address, of_other.get());
-  EXPECT_EQ(of_other->qfrc_applied[2], 0.0);
-  std::copy(kept.begin(), kept.end(), reinterpret_cast<unsigned char*>(address));
-  detach();
-}
-
 }  // namespace
 }  // namespace volcontact::adaptor

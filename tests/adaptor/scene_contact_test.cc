@@ -265,25 +265,37 @@ TEST(SceneContact, ThreadsOnTheirOwnDataEqualASingleRun) {
   for (const DataPointer& d : data) expect_equal_states(m, single, d);
 }
 
-TEST(SceneContact, CopyOfTheModelHasContactToo) {
-  const ModelPointer m = testing::load(kPile);
-  const Attached attached(m);
-  const ModelPointer copy(mj_copyModel(nullptr, m.get()));
-  const DataPointer d = testing::make_data(m), of_copy = testing::make_data(copy);
-  step(m, d, 300);
-  step(copy, of_copy, 300);
-  expect_equal_states(m, d, of_copy);
-  EXPECT_GT(d->qpos[2], 0.0);
+// Some pairs for the octree, and so many quick ones that they are shared among threads.
+std::string many_bodies() {
+  std::string bodies;
+  for (int i = 0; i < 230; ++i) {
+    const bool quick = i >= 4;
+    bodies += "<body pos=\"" + std::to_string(0.5 * (i % 20)) + " " +
+              std::to_string(0.5 * (i / 20)) +
+              " .099\" euler=\"3 2 1\"><freejoint/><geom size=\".1 .1 .1\" type=\"" +
+              (quick   ? "box"
+               : i % 2 ? "cylinder"
+                       : "capsule") +
+              "\"/></body>";
+  }
+  return "<mujoco><option timestep=\"1e-3\"/><default><geom contype=\"1\" conaffinity=\"2\"/>"
+         "</default><worldbody><geom type=\"box\" size=\"20 20 .1\" pos=\"0 0 -.1\" "
+         "contype=\"2\" conaffinity=\"1\"/>" +
+         bodies + "</worldbody>" + testing::numeric("volcontact/option/tolerance", "0.02");
 }
 
-TEST(SceneContact, SecondLoadOfTheSceneKeepsNativeContact) {
-  const ModelPointer m = testing::load(testing::ball_scene(0.0499, ""));
-  const ModelPointer other = testing::load(testing::ball_scene(0.0499, ""));
-  const Attached attached(m);
-  const DataPointer d = testing::make_data(other);
-  step(other, d, 2);
-  EXPECT_GT(d->ncon, 0);
-  EXPECT_EQ(d->qfrc_applied[2], 0.0);
+TEST(SceneContact, NumberOfThreadsChangesNoBit) {
+  std::vector<std::vector<double>> states;
+  for (const char* threads : {"1", "2", "4", "0"}) {
+    const ModelPointer m = testing::load(
+        many_bodies() + testing::numeric("volcontact/option/threads", threads) + "</mujoco>");
+    const DataPointer d = testing::make_data(m);
+    const Attached attached(m);
+    step(m, d, 5);
+    EXPECT_EQ(volcontact_sites(m.get(), d.get(), nullptr, 0), 230);
+    states.emplace_back(d->qvel, d->qvel + m->nv);
+  }
+  for (const std::vector<double>& state : states) EXPECT_EQ(state, states[0]);
 }
 
 TEST(SceneContact, ForceThatIsNoNumberIsLeftOutAndCounted) {
@@ -325,71 +337,6 @@ TEST(SceneContact, ReadingChangesNothing) {
     energy(m, read);
   }
   expect_equal_states(m, read, plain);
-}
-
-// Live numbers.
-
-double ball_force(const ModelPointer& m, const DataPointer& d) {
-  mj_forward(m.get(), d.get());
-  return d->qfrc_applied[2];
-}
-
-TEST(LiveNumbers, ChangeActsInTheNextEvaluation) {
-  const ModelPointer m = testing::load(testing::ball_scene(0.049, both("2e8", "0", "ball")));
-  const DataPointer d = testing::make_data(m);
-  const Attached attached(m);
-  const double before = ball_force(m, d);
-  m->numeric_data[0] = 4e8;  // both sides have this material
-  EXPECT_NEAR(ball_force(m, d), 2.0 * before, 1e-9 * before);
-  m->numeric_data[0] = 2e8;
-  EXPECT_EQ(ball_force(m, d), before);
-}
-
-TEST(LiveNumbers, SizesFrictionAndMasksAreFollowed) {
-  const ModelPointer m = testing::load(testing::ball_scene(0.049, both("2e8", "0", "ball")));
-  const DataPointer d = testing::make_data(m);
-  const Attached attached(m);
-  const double before = ball_force(m, d);
-  m->geom_size[3] = 0.051;
-  EXPECT_GT(ball_force(m, d), 2.0 * before);
-  m->geom_contype[1] = m->geom_conaffinity[1] = 0;
-  EXPECT_EQ(ball_force(m, d), 0.0);
-}
-
-TEST(LiveNumbers, InvalidOnesLeaveTheLastValidInForce) {
-  const ModelPointer m = testing::load(testing::ball_scene(0.049, both("2e8", "0", "ball")));
-  const DataPointer d = testing::make_data(m);
-  const Attached attached(m);
-  m->numeric_data[0] = 3e8;
-  const double valid = ball_force(m, d);
-  static int warnings;
-  warnings = 0;
-  mju_user_warning = [](const char*) { ++warnings; };
-  m->numeric_data[0] = -1.0;
-  EXPECT_EQ(ball_force(m, d), valid);
-  EXPECT_EQ(ball_force(m, d), valid);
-  mju_user_warning = nullptr;
-  EXPECT_EQ(warnings, 1);
-  char text[500];
-  EXPECT_GT(volcontact_live_error(m.get(), text, sizeof text), 0);
-  EXPECT_TRUE(testing::contains(text, "stiffness = -1 [N/m^3] is out of range: must be > 0"));
-  m->numeric_data[0] = 2e8;
-  EXPECT_LT(ball_force(m, d), valid);
-  EXPECT_EQ(volcontact_live_error(m.get(), text, sizeof text), 0);
-}
-
-TEST(LiveNumbers, TargetCannotChangeWhileAttached) {
-  const ModelPointer m = testing::load(
-      testing::ball_scene(0.049, testing::numeric("volcontact/option/target/passive", "0")));
-  const DataPointer d = testing::make_data(m);
-  const Attached attached(m);
-  mju_user_warning = [](const char*) {};
-  m->numeric_data[0] = 1.0;
-  EXPECT_GT(ball_force(m, d), 0.0);
-  mju_user_warning = nullptr;
-  char text[500];
-  volcontact_live_error(m.get(), text, sizeof text);
-  EXPECT_TRUE(testing::contains(text, "volcontact/option/target cannot change"));
 }
 
 }  // namespace
