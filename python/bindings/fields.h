@@ -3,8 +3,10 @@
 
 #include <nanobind/eigen/dense.h>
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>
 
+#include <array>
 #include <cctype>
 #include <string>
 #include <utility>
@@ -52,7 +54,8 @@ std::string describe_fields() {
 namespace detail {
 
 template <typename Component, std::size_t I>
-using FieldType = std::conditional_t<Component::kFields[I].scalar != nullptr, double, Vec3>;
+using FieldType = std::conditional_t<Component::kFields[I].scalar != nullptr, double,
+                                     std::array<double, 3>>;  // a tuple will do
 
 template <typename Component, std::size_t I>
 void assign(typename Component::Params& params, const FieldType<Component, I>& value) {
@@ -60,7 +63,7 @@ void assign(typename Component::Params& params, const FieldType<Component, I>& v
   if constexpr (field.scalar != nullptr) {
     params.*(field.scalar) = value;
   } else {
-    params.*(field.vector) = value;
+    params.*(field.vector) = Vec3(value[0], value[1], value[2]);
   }
 }
 

@@ -174,9 +174,11 @@ TEST(ContactModel, BooksEveryJoule) {
   for (int i = 0; i < 100000; ++i) {  // leapfrog, 0.1 s: falls, slides, bounces, leaves
     motion.X_WA.translation += 0.5 * dt * motion.V_WA.linear;
     model.evaluate(motion, {}, workspace, report);
-    dissipated += dt * report.power.sum();
+    dissipated += 0.5 * dt * report.power.sum();
     motion.V_WA.linear += dt * (report.wrench_on_A.force / mass - Vec3(0.0, 0.0, g));
     motion.V_WA.angular += dt / inertia * report.wrench_on_A.torque;
+    model.evaluate(motion, {}, workspace, report);  // power by the trapezoidal rule
+    dissipated += 0.5 * dt * report.power.sum();
     motion.X_WA.translation += 0.5 * dt * motion.V_WA.linear;
   }
   model.evaluate(motion, {}, workspace, report);
