@@ -105,7 +105,9 @@ def check_layers(result: Run, expected: dict[str, Any]) -> None:
     for height in (result.data.xpos[b][2] for b in free):
         nearest = min(abs(height - layer) for layer in expected["layer_heights"])
         assert nearest < expected["layer_height_tolerance"]
-    support = result.model.geom(expected["support_geom"]).id
+    support = mujoco.mj_name2id(
+        result.model, mujoco.mjtObj.mjOBJ_GEOM, expected["support_geom"]
+    )
     on_a = result.sites[result.sites["geom_a"] == support]["force"][:, 2].sum()
     on_b = result.sites[result.sites["geom_b"] == support]["force"][:, 2].sum()
     assert on_b - on_a == pytest.approx(
