@@ -31,9 +31,9 @@ PyReport evaluate(const ContactModel& model, const std::optional<Matrix4>& X_WA,
                   const std::optional<Vector6>& V_WB, const std::optional<Eigen::VectorXd>& state,
                   double elapsed) {
   const Eigen::Index size = model.state_size();
-  require(!state || state->size() == size,
-          "evaluate: state has " + std::to_string(state ? state->size() : 0) +
-              " numbers, the model needs " + std::to_string(size));
+  require(!state || state->size() == size, "evaluate: state has " +
+                                               std::to_string(state ? state->size() : 0) +
+                                               " numbers, the model needs " + std::to_string(size));
   require(elapsed >= 0.0, "evaluate: elapsed must be >= 0 s");
   const BodyMotion motion{pose_from(X_WA, "X_WA"), pose_from(X_WB, "X_WB"),
                           twist_from(V_WA, "V_WA"), twist_from(V_WB, "V_WB")};
@@ -119,8 +119,8 @@ void bind_model(nb::module_& m) {
       .def(
           "__init__",
           [](ContactModel* self, const std::vector<GeometricPair>& pairs, const NormalPtr& normal,
-             const FrictionPtr& friction, bool rolling, double tolerance,
-             const std::string& engine, int threads) {
+             const FrictionPtr& friction, bool rolling, double tolerance, const std::string& engine,
+             int threads) {
             new (self) ContactModel(
                 make_model(pairs, normal, friction, rolling, tolerance, engine, threads));
           },
@@ -129,8 +129,8 @@ void bind_model(nb::module_& m) {
           nb::arg("threads") = 1)
       .def_prop_ro("state_size", &ContactModel::state_size, "Doubles of law state")
       .def("evaluate", &evaluate, nb::kw_only(), nb::arg("X_WA") = nb::none(),
-           nb::arg("X_WB") = nb::none(), nb::arg("V_WA") = nb::none(),
-           nb::arg("V_WB") = nb::none(), nb::arg("state") = nb::none(), nb::arg("elapsed") = 0.0,
+           nb::arg("X_WB") = nb::none(), nb::arg("V_WA") = nb::none(), nb::arg("V_WB") = nb::none(),
+           nb::arg("state") = nb::none(), nb::arg("elapsed") = 0.0,
            R"(Wrenches on both bodies from their poses and twists.
 
 Args:

@@ -123,8 +123,7 @@ void def_law_init(nb::class_<Component, Base>& type, std::index_sequence<I...>,
         set_choices<Component>(params, choices);
         new (self) Component(params);
       },
-      nb::kw_only(),
-      (nb::arg(Component::kFields[I].name) = value_of<Component, I>(defaults))...,
+      nb::kw_only(), (nb::arg(Component::kFields[I].name) = value_of<Component, I>(defaults))...,
       (nb::arg(Component::kChoices[C].name) = word_of<Component, C>(defaults))...);
 }
 

@@ -86,12 +86,11 @@ def check_design_pose(result: Run, expected: dict[str, Any]) -> None:
     body = result.data.body(expected["body"])
     offset = body.xpos - np.array(expected["design_position"])
     assert np.linalg.norm(offset) < expected["position_tolerance"]
-    assert tilt_degrees(body.xquat, expected["design_quaternion"]) < (
-        expected["angle_tolerance_degrees"]
+    assert (
+        tilt_degrees(body.xquat, expected["design_quaternion"])
+        < (expected["angle_tolerance_degrees"])
     )
-    assert -offset[2] == pytest.approx(
-        expected["rest_drop"], abs=expected["rest_drop_tolerance"]
-    )
+    assert -offset[2] == pytest.approx(expected["rest_drop"], abs=expected["rest_drop_tolerance"])
     # Every run within half the spread of the one equilibrium: all agree within the spread, over
     # time steps and MuJoCo releases.
     equilibrium = np.array([0.0, 0.0, -expected["rest_drop"]])
@@ -105,9 +104,7 @@ def check_layers(result: Run, expected: dict[str, Any]) -> None:
     for height in (result.data.xpos[b][2] for b in free):
         nearest = min(abs(height - layer) for layer in expected["layer_heights"])
         assert nearest < expected["layer_height_tolerance"]
-    support = mujoco.mj_name2id(
-        result.model, mujoco.mjtObj.mjOBJ_GEOM, expected["support_geom"]
-    )
+    support = mujoco.mj_name2id(result.model, mujoco.mjtObj.mjOBJ_GEOM, expected["support_geom"])
     on_a = result.sites[result.sites["geom_a"] == support]["force"][:, 2].sum()
     on_b = result.sites[result.sites["geom_b"] == support]["force"][:, 2].sum()
     assert on_b - on_a == pytest.approx(

@@ -34,7 +34,7 @@ def test_defaults_come_from_the_table() -> None:
         ),
     ],
 )
-def test_bad_value_is_a_value_error(call, message) -> None:  # noqa: ANN001
+def test_bad_value_is_a_value_error(call, message) -> None:
     with pytest.raises(ValueError, match=message):
         call()
 

@@ -176,7 +176,7 @@ def test_contained_is_flagged() -> None:
         ),
     ],
 )
-def test_bad_input_is_named(call, message) -> None:  # noqa: ANN001
+def test_bad_input_is_named(call, message) -> None:
     with pytest.raises(ValueError, match=message):
         call()
 

@@ -16,9 +16,9 @@ enum class Coupling : int {
 /// Generalised slip of a patch: the speed on which the friction law acts and, per unit of friction
 /// force, the force vector and the spin torque. docs/theory.md, "Friction".
 struct GeneralizedSlip {
-  double speed;            ///< sqrt(|v|^2 + (r_g w)^2) [m/s]
-  Vec3 force_direction;    ///< -v / speed [-]
-  double torque_arm;       ///< -r_g^2 w / speed [m]
+  double speed;          ///< sqrt(|v|^2 + (r_g w)^2) [m/s]
+  Vec3 force_direction;  ///< -v / speed [-]
+  double torque_arm;     ///< -r_g^2 w / speed [m]
 };
 
 inline GeneralizedSlip generalized_slip(Coupling coupling, const Vec3& slip, double spin,

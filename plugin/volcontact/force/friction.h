@@ -16,10 +16,10 @@ struct FrictionInput {
 };
 
 struct FrictionOutput {
-  Vec3 force = Vec3::Zero();  ///< on A, tangential [N]
-  double torque = 0.0;        ///< on A, about the normal [N m]
-  double slide_power = 0.0;   ///< dissipated by sliding, >= 0 [W]
-  double spin_power = 0.0;    ///< dissipated by spinning, >= 0 [W]
+  Vec3 force = Vec3::Zero();    ///< on A, tangential [N]
+  double torque = 0.0;          ///< on A, about the normal [N m]
+  double slide_power = 0.0;     ///< dissipated by sliding, >= 0 [W]
+  double spin_power = 0.0;      ///< dissipated by spinning, >= 0 [W]
   double elastic_energy = 0.0;  ///< stored in tangential deflection [J]
 };
 

@@ -5,8 +5,8 @@ namespace volcontact {
 namespace {
 
 template <typename Base, typename List>
-std::shared_ptr<const Base> make(const char* kind, std::string_view name,
-                                 const FieldValues& values, const ChoiceValues& choices) {
+std::shared_ptr<const Base> make(const char* kind, std::string_view name, const FieldValues& values,
+                                 const ChoiceValues& choices) {
   std::shared_ptr<const Base> made;
   std::vector<std::string> names;
   for_each_type(List{}, [&](auto tag) {

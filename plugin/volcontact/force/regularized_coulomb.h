@@ -30,8 +30,7 @@ class RegularizedCoulomb final : public Friction {
                                   {"ellipsoid", "none"},
                                   "how sliding and spinning share the friction"}};
 
-  explicit RegularizedCoulomb(const Params& params)
-      : p_(validated<RegularizedCoulomb>(params)) {}
+  explicit RegularizedCoulomb(const Params& params) : p_(validated<RegularizedCoulomb>(params)) {}
   const Params& params() const { return p_; }
   const char* name() const noexcept override { return kName; }
 

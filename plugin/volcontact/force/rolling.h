@@ -12,11 +12,11 @@ namespace volcontact {
 /// K = int (r x n)(r x n)^T dV are the second moments of the volume projected on the contact plane.
 /// docs/theory.md, "Rolling resistance".
 struct RollingInput {
-  double rolling_damping = 0.0;       ///< k_v a [N s/m^4]
-  double normal_force = 0.0;          ///< f_n [N]
-  double volume = 0.0;                ///< V [m^3]
-  Vec3 normal = Vec3::UnitZ();        ///< unit
-  Mat3 second_moment = Mat3::Zero();  ///< int r r^T dV about the centroid [m^5]
+  double rolling_damping = 0.0;          ///< k_v a [N s/m^4]
+  double normal_force = 0.0;             ///< f_n [N]
+  double volume = 0.0;                   ///< V [m^3]
+  Vec3 normal = Vec3::UnitZ();           ///< unit
+  Mat3 second_moment = Mat3::Zero();     ///< int r r^T dV about the centroid [m^5]
   Vec3 angular_velocity = Vec3::Zero();  ///< of A against B [rad/s]
 };
 

@@ -7,9 +7,7 @@ namespace volcontact {
 namespace {
 
 // (tr M) 1 - M: inertia tensor from second moments.
-Mat3 inertia_from_second(const Mat3& second) {
-  return second.trace() * Mat3::Identity() - second;
-}
+Mat3 inertia_from_second(const Mat3& second) { return second.trace() * Mat3::Identity() - second; }
 
 }  // namespace
 
@@ -99,8 +97,8 @@ VolumeMetrics MomentSum::metrics() const {
 bool is_finite(const VolumeMetrics& m) {
   return std::isfinite(m.volume) && m.centroid.allFinite() && m.inertia.allFinite() &&
          m.area_vector.allFinite() && m.area_moment.allFinite() && std::isfinite(m.area) &&
-         std::isfinite(m.counter_area) && std::isfinite(m.depth_moment) &&
-         std::isfinite(m.depth) && std::isfinite(m.volume_error);
+         std::isfinite(m.counter_area) && std::isfinite(m.depth_moment) && std::isfinite(m.depth) &&
+         std::isfinite(m.volume_error);
 }
 
 }  // namespace volcontact

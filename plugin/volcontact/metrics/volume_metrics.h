@@ -19,16 +19,16 @@ const char* to_string(Status status);
 /// Metrics of the interference volume Omega = A intersect B, expressed in one frame and about its
 /// origin. docs/theory.md, "Volume metrics".
 struct VolumeMetrics {
-  double volume = 0.0;               ///< V [m^3]
-  Vec3 centroid = Vec3::Zero();      ///< of Omega [m]
-  Mat3 inertia = Mat3::Zero();       ///< about the centroid, unit density [m^5]
-  Vec3 area_vector = Vec3::Zero();   ///< S = int n_A dS over A's surface inside B = dV/dx_A [m^2]
-  Vec3 area_moment = Vec3::Zero();   ///< T = int x cross n_A dS, same surface = dV/dtheta_A [m^3]
-  double area = 0.0;                 ///< of A's surface inside B [m^2]
-  double counter_area = 0.0;         ///< of B's surface inside A [m^2]
-  double depth_moment = 0.0;         ///< int L^2/2 dA, L = column length along the normal [m^4]
-  double depth = 0.0;                ///< extent of Omega along the normal [m]
-  double volume_error = 0.0;         ///< bound (or estimate, see the engine) of |error of V| [m^3]
+  double volume = 0.0;              ///< V [m^3]
+  Vec3 centroid = Vec3::Zero();     ///< of Omega [m]
+  Mat3 inertia = Mat3::Zero();      ///< about the centroid, unit density [m^5]
+  Vec3 area_vector = Vec3::Zero();  ///< S = int n_A dS over A's surface inside B = dV/dx_A [m^2]
+  Vec3 area_moment = Vec3::Zero();  ///< T = int x cross n_A dS, same surface = dV/dtheta_A [m^3]
+  double area = 0.0;                ///< of A's surface inside B [m^2]
+  double counter_area = 0.0;        ///< of B's surface inside A [m^2]
+  double depth_moment = 0.0;        ///< int L^2/2 dA, L = column length along the normal [m^4]
+  double depth = 0.0;               ///< extent of Omega along the normal [m]
+  double volume_error = 0.0;        ///< bound (or estimate, see the engine) of |error of V| [m^3]
   Status status = Status::kOk;
 
   bool touching() const { return volume > 0.0; }
@@ -39,8 +39,8 @@ struct VolumeMetrics {
     return length > 0.0 ? Vec3(-area_vector / length) : Vec3::Zero();
   }
 
-  /// |S| / area of the smaller of the two surfaces, 1 for a flat patch; when small, the normal means
-  /// little (a plate pierced by a peg).
+  /// |S| / area of the smaller of the two surfaces, 1 for a flat patch; when small, the normal
+  /// means little (a plate pierced by a peg).
   double flatness() const;
 
   /// int (x - c)(x - c)^T dV about the centroid [m^5].

@@ -22,8 +22,8 @@ LawState slice(const LawState& state, int offset) {
 // The relative motion of A against B at the centroid, split along and across the normal.
 void split_motion(const BodyMotion& motion, SiteReport& site) {
   const Vec3& c = site.metrics.centroid;
-  const Vec3 velocity = motion.V_WA.at(c - motion.X_WA.translation) -
-                        motion.V_WB.at(c - motion.X_WB.translation);
+  const Vec3 velocity =
+      motion.V_WA.at(c - motion.X_WA.translation) - motion.V_WB.at(c - motion.X_WB.translation);
   site.approach_speed = -velocity.dot(site.normal);
   site.slip = velocity + site.approach_speed * site.normal;
 }
@@ -50,16 +50,14 @@ SiteReport evaluate_site(const VolumeMetrics& metrics_W, const BodyMotion& motio
 
   if (laws.rolling) {
     const Vec3 rolling = rotation - site.spin * site.normal;
-    site.torque_on_A =
-        rolling_torque({normal.rolling_damping, normal.magnitude, metrics_W.volume, site.normal,
-                        metrics_W.second_moment(), rolling});
+    site.torque_on_A = rolling_torque({normal.rolling_damping, normal.magnitude, metrics_W.volume,
+                                       site.normal, metrics_W.second_moment(), rolling});
     site.power.roll = -site.torque_on_A.dot(rolling);
   }
   if (laws.friction) {
     const double polar = std::max(0.0, site.normal.dot(metrics_W.inertia * site.normal));
     const FrictionOutput friction = laws.friction->evaluate(
-        {normal.magnitude, site.normal, site.slip, site.spin,
-         std::sqrt(polar / metrics_W.volume)},
+        {normal.magnitude, site.normal, site.slip, site.spin, std::sqrt(polar / metrics_W.volume)},
         slice(state, laws.normal->state_size()));
     site.force_on_A += friction.force;
     site.torque_on_A += friction.torque * site.normal;

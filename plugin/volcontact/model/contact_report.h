@@ -27,17 +27,17 @@ struct ByChannel {
 
 /// One contact site: what was measured and what follows. World frame.
 struct SiteReport {
-  int pair = 0;                 ///< index of the geometric pair in its contact model
-  VolumeMetrics metrics;        ///< about the world origin
-  Vec3 normal = Vec3::Zero();   ///< on A, from B to A
-  double normal_force = 0.0;    ///< f_n [N]
+  int pair = 0;                     ///< index of the geometric pair in its contact model
+  VolumeMetrics metrics;            ///< about the world origin
+  Vec3 normal = Vec3::Zero();       ///< on A, from B to A
+  double normal_force = 0.0;        ///< f_n [N]
   Vec3 force_on_A = Vec3::Zero();   ///< normal force and friction, at the centroid [N]
   Vec3 torque_on_A = Vec3::Zero();  ///< rolling and spin torque, about the centroid [N m]
-  double approach_speed = 0.0;  ///< > 0 while approaching [m/s]
-  Vec3 slip = Vec3::Zero();     ///< tangential velocity of A against B at the centroid [m/s]
-  double spin = 0.0;            ///< of A against B about the normal [rad/s]
-  double elastic_energy = 0.0;  ///< [J]
-  ByChannel power;              ///< dissipated [W]
+  double approach_speed = 0.0;      ///< > 0 while approaching [m/s]
+  Vec3 slip = Vec3::Zero();         ///< tangential velocity of A against B at the centroid [m/s]
+  double spin = 0.0;                ///< of A against B about the normal [rad/s]
+  double elastic_energy = 0.0;      ///< [J]
+  ByChannel power;                  ///< dissipated [W]
 };
 
 /// What an evaluation of a contact model returns.

@@ -26,15 +26,14 @@ namespace {
 // An engine serves a pair when its function is found by overload for the shapes in this order; the
 // other order is then the mirror image.
 template <typename A, typename B>
-constexpr bool has_closed_form = requires(const A& a, const B& b, const Pose& X_AB) {
-  closed_form(a, b, X_AB);
-};
+constexpr bool has_closed_form =
+    requires(const A& a, const B& b, const Pose& X_AB) { closed_form(a, b, X_AB); };
 template <typename A, typename B>
 constexpr bool has_clip = requires(const A& a, const B& b, const Pose& X_AB, ClipScratch& scratch) {
   clip(a, b, X_AB, scratch);
 };
 template <typename A, typename B>
-constexpr bool both_unbounded = std::is_same_v<A, HalfSpace>&& std::is_same_v<B, HalfSpace>;
+constexpr bool both_unbounded = std::is_same_v<A, HalfSpace> && std::is_same_v<B, HalfSpace>;
 
 template <typename A, typename B>
 constexpr bool serves_pair(Engine engine) {

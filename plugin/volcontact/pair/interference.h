@@ -11,9 +11,9 @@
 namespace volcontact {
 
 struct InterferenceOptions {
-  double tolerance = 1e-3;         ///< relative error asked of V [-]
-  Engine engine = Engine::kAuto;   ///< kAuto picks per pair
-  int threads = 1;                 ///< for one pair; 0 = decide by work; never changes a bit
+  double tolerance = 1e-3;        ///< relative error asked of V [-]
+  Engine engine = Engine::kAuto;  ///< kAuto picks per pair
+  int threads = 1;                ///< for one pair; 0 = decide by work; never changes a bit
 };
 
 /// Scratch memory of the engines, reused from call to call so that a warm evaluation allocates

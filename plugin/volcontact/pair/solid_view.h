@@ -33,8 +33,10 @@ inline void add_pieces(const ConvexPolytope& solid, PieceList& list) {
   list.end_piece();
 }
 template <typename S>
-requires requires(const S& solid, PieceList& list) { solid.pieces(list); }
-void add_pieces(const S& solid, PieceList& list) { solid.pieces(list); }
+  requires requires(const S& solid, PieceList& list) { solid.pieces(list); }
+void add_pieces(const S& solid, PieceList& list) {
+  solid.pieces(list);
+}
 
 /// A solid of any type through one table of functions, so that the octree is compiled once. It
 /// refers to the solid and must not outlive it. A function that the solid lacks is null.
@@ -69,7 +71,7 @@ SolidView view_of(const S& solid) {
       return static_cast<const S*>(s)->curvature_bound(p, reach);
     };
   }
-  if constexpr (requires(PieceList & list) { add_pieces(solid, list); }) {
+  if constexpr (requires(PieceList& list) { add_pieces(solid, list); }) {
     view.pieces = [](const void* s, PieceList& list) {
       add_pieces(*static_cast<const S*>(s), list);
     };

@@ -41,8 +41,9 @@ TEST(HuntCrossley, OnlyDissipates) {
   }
 }
 
-// Head-on impact with any V(h); here V = area h. Semi-analytic truth: docs/theory.md, "Restitution":
-// ln((1 + A)/(1 - e A)) = A (1 + e), A = a v_i; the values of e below solve it to six digits.
+// Head-on impact with any V(h); here V = area h. Semi-analytic truth: docs/theory.md,
+// "Restitution": ln((1 + A)/(1 - e A)) = A (1 + e), A = a v_i; the values of e below solve it to
+// six digits.
 double restitution_by_integration(double damping, double impact_speed) {
   const double area = 1e-4, mass = 1.0;
   const HuntCrossley law({.stiffness = 1e9, .damping = damping});
@@ -64,13 +65,12 @@ double restitution_by_integration(double damping, double impact_speed) {
 
 TEST(HuntCrossley, RealisesTheLambertRestitution) {
   constexpr double kIntegration = 2e-6;  // six digits of the table, plus the last step's overshoot
-  const std::pair<double, double> table[] = {
-      {0.01, 0.993377}, {0.05, 0.967739}, {0.1, 0.937476}, {0.2, 0.882190}, {0.5, 0.748435},
-      {1.0, 0.593624},  {2.0, 0.410720},  {5.0, 0.196980}, {10.0, 0.099982}};
+  const std::pair<double, double> table[] = {{0.01, 0.993377}, {0.05, 0.967739}, {0.1, 0.937476},
+                                             {0.2, 0.882190},  {0.5, 0.748435},  {1.0, 0.593624},
+                                             {2.0, 0.410720},  {5.0, 0.196980},  {10.0, 0.099982}};
   for (const auto& [a_times_speed, restitution] : table) {
     const double speed = 0.7;
-    EXPECT_NEAR(restitution_by_integration(a_times_speed / speed, speed), restitution,
-                kIntegration)
+    EXPECT_NEAR(restitution_by_integration(a_times_speed / speed, speed), restitution, kIntegration)
         << "a v = " << a_times_speed;
   }
 }

@@ -19,18 +19,20 @@ Pose pose(const Vec3& axis_angle, const Vec3& translation) {
 }
 
 ContactModel sphere_on_plane(double stiffness, double damping, double friction = 0.3) {
-  return ContactModel({{Sphere({.radius = 0.05}), HalfSpace(), {}, {}}},
-                      {make_normal("hunt_crossley",
-                                   {{"stiffness", {stiffness}}, {"damping", {damping}}}),
-                       make_friction("regularized_coulomb", {{"friction", {friction}}}), true});
+  return ContactModel(
+      {{Sphere({.radius = 0.05}), HalfSpace(), {}, {}}},
+      {make_normal("hunt_crossley", {{"stiffness", {stiffness}}, {"damping", {damping}}}),
+       make_friction("regularized_coulomb", {{"friction", {friction}}}), true});
 }
 
 ContactModel two_boxes() {
   return ContactModel(
       {{Box({.half_sizes = {0.1, 0.2, 0.15}}), Box({.half_sizes = {0.3, 0.1, 0.2}}),
         pose({0.1, 0.0, 0.3}, {0.01, 0.02, 0.0}), pose({0.0, 0.2, 0.0}, {0.0, 0.0, 0.05})},
-       {Sphere({.radius = 0.12}), Box({.half_sizes = {0.3, 0.1, 0.2}}),
-        pose({0.0, 0.0, 0.0}, {0.0, 0.15, 0.1}), {}}},
+       {Sphere({.radius = 0.12}),
+        Box({.half_sizes = {0.3, 0.1, 0.2}}),
+        pose({0.0, 0.0, 0.0}, {0.0, 0.15, 0.1}),
+        {}}},
       {make_normal("hunt_crossley", {{"stiffness", {1e7}}, {"damping", {0.2}}}),
        make_friction("regularized_coulomb", {{"friction", {0.4}}}), true},
       {.tolerance = 1e-2});
@@ -193,10 +195,10 @@ TEST(ContactModel, RefusesNoPairsNoLawAndAnEngineThatDoesNotServe) {
                std::invalid_argument);
   EXPECT_THROW(ContactModel({{Sphere({.radius = 1.0}), HalfSpace(), {}, {}}}, {}),
                std::invalid_argument);
-  EXPECT_THROW(ContactModel({{Sphere({.radius = 1.0}), HalfSpace(), {}, {}}},
-                            {make_normal("hunt_crossley", {}), nullptr, true},
-                            {.engine = Engine::kClip}),
-               std::invalid_argument);
+  EXPECT_THROW(
+      ContactModel({{Sphere({.radius = 1.0}), HalfSpace(), {}, {}}},
+                   {make_normal("hunt_crossley", {}), nullptr, true}, {.engine = Engine::kClip}),
+      std::invalid_argument);
 }
 
 }  // namespace

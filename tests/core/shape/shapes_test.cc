@@ -46,16 +46,12 @@ TEST(Shapes, VectorParameterIsRead) {
 TEST(Shapes, ErrorsNameTheWordAndTheNearestValidOne) {
   EXPECT_NE(message_of([] { make_shape("cylindre", {}); }).find("did you mean 'cylinder'"),
             std::string::npos);
-  EXPECT_NE(message_of([] {
-              make_shape("sphere", {{"radis", {1.0}}});
-            }).find("'radius'"),
+  EXPECT_NE(message_of([] { make_shape("sphere", {{"radis", {1.0}}}); }).find("'radius'"),
             std::string::npos);
   const std::string range = message_of([] { make_shape("sphere", {{"radius", {-1.0}}}); });
   EXPECT_NE(range.find("radius = -1 [m]"), std::string::npos) << range;
   EXPECT_NE(range.find(">= 0"), std::string::npos) << range;
-  EXPECT_NE(message_of([] {
-              make_shape("box", {{"half_sizes", {1.0}}});
-            }).find("takes 3 numbers"),
+  EXPECT_NE(message_of([] { make_shape("box", {{"half_sizes", {1.0}}}); }).find("takes 3 numbers"),
             std::string::npos);
 }
 
