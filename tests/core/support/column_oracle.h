@@ -76,14 +76,13 @@ void gauss(std::vector<double> breaks, Add&& add) {
   }
 }
 
-/// An edge of a solid seen along the columns.
-struct Segment {
-  double u_0, v_0, u_1, v_1;
-  double at(double u) const { return v_0 + (u - u_0) / (u_1 - u_0) * (v_1 - v_0); }
+struct Edge {
+  Vec3 from, to;
 };
 
-/// Edges of the intersection of half-spaces, in the frame `R` (its axes as columns).
-inline void add_edges(const Planes& solid, const Mat3& R, std::vector<Segment>& segments) {
+/// Edges of the intersection of half-spaces, those of finite length.
+inline std::vector<Edge> edges_of(const Planes& solid) {
+  std::vector<Edge> edges;
   for (std::size_t i = 0; i < solid.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const Vec3 &n_i = solid[i].normal, &n_j = solid[j].normal;
@@ -97,20 +96,30 @@ inline void add_edges(const Planes& solid, const Mat3& R, std::vector<Segment>& 
         if (k != i && k != j) others.push_back(solid[k]);
       }
       const RayInterval span = interval(others, o, along);
-      if (span.empty()) continue;
-      const Vec3 p = R.transpose() * (o + span.enter * along);
-      const Vec3 q = R.transpose() * (o + span.leave * along);
-      if (p.allFinite() && q.allFinite()) segments.push_back({p.x(), p.y(), q.x(), q.y()});
+      if (span.empty() || !std::isfinite(span.leave - span.enter)) continue;
+      edges.push_back({o + span.enter * along, o + span.leave * along});
     }
   }
+  return edges;
 }
+
+/// An edge seen along the columns.
+struct Segment {
+  double u_0, v_0, u_1, v_1;
+  double at(double u) const { return v_0 + (u - u_0) / (u_1 - u_0) * (v_1 - v_0); }
+};
 
 /// Calls add(weight, p, span) at quadrature nodes over the shadow of A and B along the columns
 /// p + t z of the frame `R`. Integrands may change where an edge of A, B or their overlap passes.
 template <typename Add>
 void over_shadow(const Planes& a, const Planes& b, const Planes& both, const Mat3& R, Add&& add) {
   std::vector<Segment> segments;
-  for (const Planes* solid : {&a, &b, &both}) add_edges(*solid, R, segments);
+  for (const Planes* solid : {&a, &b, &both}) {
+    for (const Edge& edge : edges_of(*solid)) {
+      const Vec3 p = R.transpose() * edge.from, q = R.transpose() * edge.to;
+      segments.push_back({p.x(), p.y(), q.x(), q.y()});
+    }
+  }
   std::vector<double> u_breaks, v_breaks;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const Segment& s = segments[i];
@@ -177,6 +186,25 @@ inline FaceArea face_area(const Plane& face, const Planes& inside) {
   return sum;
 }
 
+/// Ends of all edges of the intersection of half-spaces.
+inline std::vector<Vec3> corners_of(const Planes& solid) {
+  std::vector<Vec3> corners;
+  for (const Edge& edge : edges_of(solid)) corners.insert(corners.end(), {edge.from, edge.to});
+  return corners;
+}
+inline Vec3 corner_of(const Planes& solid) {
+  const std::vector<Vec3> corners = corners_of(solid);
+  return corners.empty() ? Vec3(Vec3::Zero()) : corners[0];
+}
+inline double extent_along(const Planes& solid, const Vec3& n) {
+  double low = kInfinity, high = -kInfinity;
+  for (const Vec3& p : corners_of(solid)) {
+    low = std::min(low, n.dot(p));
+    high = std::max(high, n.dot(p));
+  }
+  return std::max(0.0, high - low);
+}
+
 /// Metrics of the overlap of A with B at X_AB, for solids with plane faces in general position.
 template <typename A, typename B>
 VolumeMetrics oracle(const A& a, const B& b, const Pose& X_AB) {
@@ -202,23 +230,23 @@ VolumeMetrics oracle(const A& a, const B& b, const Pose& X_AB) {
   const double length = sum.area_vector.norm();
   const Vec3 n = length > 0.0 ? Vec3(-sum.area_vector / length) : Vec3::UnitZ();
   const Mat3 R = basis_with_z(n);
-  double depth_moment = 0.0, low = kInfinity, high = -kInfinity;
-  over_shadow(planes_a, planes_b, both, R,
-              [&](double weight, const Vec3& p, const RayInterval& span) {
-                const double l = span.leave - span.enter, middle = 0.5 * (span.leave + span.enter);
-                const Vec3 x = p + middle * n;
-                sum.volume += weight * l;
-                sum.first += weight * l * x;
-                sum.second += weight * l * (x * x.transpose() + l * l / 12.0 * n * n.transpose());
-                const double top_b = interval(planes_b, p, n).leave,
-                             bottom_a = interval(planes_a, p, n).enter;
-                depth_moment += weight * l * ((top_b - bottom_a) - 0.5 * l);
-                low = std::min(low, span.enter);
-                high = std::max(high, span.leave);
-              });
+  const Vec3 origin = corner_of(both);  // near the overlap: sums from afar would lose digits
+  double depth_moment = 0.0;
+  const auto add_column = [&](double weight, const Vec3& p, const RayInterval& span) {
+    const double l = span.leave - span.enter, middle = 0.5 * (span.leave + span.enter);
+    const Vec3 x = p + middle * n - origin;
+    sum.volume += weight * l;
+    sum.first += weight * l * x;
+    sum.second += weight * l * (x * x.transpose() + l * l / 12.0 * n * n.transpose());
+    const double top_b = interval(planes_b, p, n).leave;
+    const double bottom_a = interval(planes_a, p, n).enter;
+    depth_moment += weight * l * ((top_b - bottom_a) - 0.5 * l);
+  };
+  over_shadow(planes_a, planes_b, both, R, add_column);
   VolumeMetrics m = sum.metrics();
+  m.centroid += origin;
   m.depth_moment = depth_moment;
-  m.depth = high - low;  // a lower bound: the extreme places are no quadrature nodes
+  m.depth = extent_along(both, n);
   return m;
 }
 
