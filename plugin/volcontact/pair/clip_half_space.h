@@ -66,7 +66,7 @@ VolumeMetrics measure_below(std::span<const Vec3> corners, int faces, Loop&& loo
   m.area_moment = Vec3(sum.area_moment.x() + moved.y() * sum.area,
                        sum.area_moment.y() - moved.x() * sum.area, 0.0);
   m.depth = -lowest;
-  m.depth_moment = -sum.first.z();
+  m.depth_moment = std::max(0.0, -sum.first.z());
   return m;
 }
 

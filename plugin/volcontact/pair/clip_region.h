@@ -128,7 +128,7 @@ class Region {
   // int (distance below the plane of a face) dV.
   double depth_under(const FaceLoop& face) const {
     const Vec3 n = normal(face);
-    return n.dot(vertex(face, 0) - sum_.origin) * sum_.volume - n.dot(sum_.first);
+    return std::max(0.0, n.dot(vertex(face, 0) - sum_.origin) * sum_.volume - n.dot(sum_.first));
   }
 
   // Whether the other solid looks along this face's normal somewhere.
