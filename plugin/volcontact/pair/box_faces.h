@@ -2,11 +2,16 @@
 #pragma once
 
 #include "volcontact/shape/box.h"
-#include "volcontact/shape/polytope_graph.h"
 
 namespace volcontact {
 
-/// Corners of a box turned by `rotation` about its centre, numbered as in kBoxLoops.
+// Corners and faces of a box. Corner i lies at +half where bit k of i is set, k the axis. Face
+// 2 k + 1 looks along +axis k, face 2 k against it; loops go counterclockwise seen from outside.
+
+inline constexpr int kBoxLoops[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                        {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+
+/// Corners of a box turned by `rotation` about its centre.
 inline void place_corners(const Vec3& half, const Mat3& rotation, const Vec3& center,
                           Vec3* corners) {
   const Vec3 x = half.x() * rotation.col(0), y = half.y() * rotation.col(1),
@@ -17,7 +22,7 @@ inline void place_corners(const Vec3& half, const Mat3& rotation, const Vec3& ce
   }
 }
 
-/// Outward normal of a face, as in kBoxLoops, of a box turned by `rotation`.
+/// Outward normal of a face of a box turned by `rotation`.
 inline Vec3 box_normal(int face, const Mat3& rotation) {
   return face & 1 ? Vec3(rotation.col(face >> 1)) : Vec3(-rotation.col(face >> 1));
 }

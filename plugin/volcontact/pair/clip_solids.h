@@ -51,7 +51,14 @@ struct PosedPolytope {  // the polytope B
 };
 
 inline void start(const PosedBox& b, ClipScratch& scratch) {
-  scratch.polytope.start(box_graph());
+  static const PolytopeGraph graph = [] {
+    std::vector<Vec3> corners(8);
+    place_corners(Vec3::Ones(), Mat3::Identity(), Vec3::Zero(), corners.data());
+    std::vector<std::vector<int>> loops;
+    for (const auto& loop : kBoxLoops) loops.emplace_back(std::begin(loop), std::end(loop));
+    return make_polytope_graph(corners, loops);
+  }();
+  scratch.polytope.start(graph);
   place_corners(b.half, b.rotation, b.center, scratch.polytope.points().data());
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/shape/polytope_graph.h"
 
-#include <iterator>
 #include <map>
 #include <utility>
 
@@ -109,9 +108,9 @@ const PolytopeGraph& box_graph() {
     for (int i = 0; i < 8; ++i) {
       corners.emplace_back(i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0);
     }
-    std::vector<std::vector<int>> loops;
-    for (const auto& loop : kBoxLoops) loops.emplace_back(std::begin(loop), std::end(loop));
-    return make_polytope_graph(corners, loops);
+    return make_polytope_graph(
+        corners,
+        {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}});
   }();
   return graph;
 }

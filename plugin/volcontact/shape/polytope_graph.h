@@ -26,12 +26,7 @@ struct PolytopeGraph {
 PolytopeGraph make_polytope_graph(const std::vector<Vec3>& corners,
                                   const std::vector<std::vector<int>>& loops);
 
-/// Faces of a box: corner i lies on the positive side of axis k where bit k of i is set; face
-/// 2 k + 1 looks along axis k, face 2 k against it.
-inline constexpr int kBoxLoops[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                        {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-
-/// Graph of a box with these corners and faces, its vertices the corners in order.
+/// Graph of a box; its vertex i has the signs of the bits of i (x, y, z).
 const PolytopeGraph& box_graph();
 
 }  // namespace volcontact
