@@ -26,7 +26,8 @@ struct PolytopeGraph {
 PolytopeGraph make_polytope_graph(const std::vector<Vec3>& corners,
                                   const std::vector<std::vector<int>>& loops);
 
-/// Graph of a box; its vertex i has the signs of the bits of i (x, y, z).
+/// Graph of a box; its vertex i has the signs of the bits of i (x, y, z). Its faces 0 to 5 look
+/// along -z, +z, -y, +y, -x and +x.
 const PolytopeGraph& box_graph();
 
 }  // namespace volcontact

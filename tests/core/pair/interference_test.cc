@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/interference.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <limits>
+#include <new>
+
+#include "core/support/gradient.h"
+#include "core/support/matchers.h"
+#include "core/support/random_shapes.h"
+#include "volcontact/pair/geometric_pair.h"
+
+namespace {
+thread_local long allocations = 0;
+}
+
+// Counts what the code under test asks of the heap. Not inlined: the compiler would take the free()
+// here for a mismatch with the new there.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* p = std::malloc(size)) return p;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+
+namespace volcontact {
+namespace {
+
+using test::Random;
+
+Shape some_polytope() {
+  Random random(1);
+  return test::random_polytope(12, random);
+}
+
+// One of each shape that an exact engine serves, and one that none serves.
+const Shape kGround = HalfSpace();
+const Shape kBall = Sphere({.radius = 0.5});
+const Shape kEgg = Ellipsoid({.semi_axes = Vec3(0.5, 0.4, 0.3)});
+const Shape kBox = Box({.half_sizes = Vec3(0.5, 0.4, 0.3)});
+const Shape kGem = some_polytope();
+const Shape kCan = Cylinder({.radius = 0.3, .half_length = 0.4});
+
+struct Served {
+  Shape a, b;
+  Engine engine;
+};
+const std::vector<Served> kServed{
+    {kGround, kBall, Engine::kClosedForm}, {kGround, kEgg, Engine::kClosedForm},
+    {kBall, kBall, Engine::kClosedForm},   {kGround, kBox, Engine::kClip},
+    {kGround, kGem, Engine::kClip},        {kBox, kBox, Engine::kClip},
+    {kBox, kGem, Engine::kClip},           {kGem, kGem, Engine::kClip}};
+
+Interference evaluated(const Shape& a, const Shape& b, const Pose& X_AB,
+                       const InterferenceOptions& options = {}) {
+  InterferenceWorkspace workspace;
+  Interference result;
+  interference(a, b, X_AB, options, workspace, result);
+  return result;
+}
+
+Pose touching_pose(Random& random) { return {random.rotation(), random.in_box(0.35)}; }
+
+TEST(Interference, AutoTakesTheFirstEngineThatServes) {
+  Random random(2);
+  for (const Served& pair : kServed) {
+    EXPECT_EQ(engine_for(pair.a, pair.b), pair.engine);
+    EXPECT_EQ(engine_for(pair.b, pair.a), pair.engine);
+    EXPECT_EQ(evaluated(pair.a, pair.b, touching_pose(random)).engine, pair.engine);
+    EXPECT_EQ(evaluated(pair.b, pair.a, touching_pose(random)).engine, pair.engine);
+  }
+  EXPECT_EQ(engine_for(kBox, kCan), Engine::kOctree);
+  EXPECT_EQ(evaluated(kBox, kCan, touching_pose(random)).engine, Engine::kOctree);
+}
+
+TEST(Interference, ServesSaysWhichEnginesCan) {
+  EXPECT_TRUE(serves(Engine::kClosedForm, kGround, kBall));
+  EXPECT_TRUE(serves(Engine::kClosedForm, kBall, kGround));
+  EXPECT_FALSE(serves(Engine::kClosedForm, kBox, kBall));
+  EXPECT_FALSE(serves(Engine::kClip, kGround, kBall));
+  EXPECT_TRUE(serves(Engine::kClip, kGem, kBox));
+  EXPECT_TRUE(serves(Engine::kOctree, kGround, kBall));
+  EXPECT_FALSE(serves(Engine::kOctree, kGround, kGround));
+  for (const Served& pair : kServed) EXPECT_TRUE(serves(Engine::kAuto, pair.a, pair.b));
+}
+
+TEST(Interference, AnEngineThatDoesNotServeFallsBack) {
+  Random random(3);
+  const Pose X = touching_pose(random);
+  const Interference forced = evaluated(kBox, kBox, X, {.engine = Engine::kClosedForm});
+  EXPECT_EQ(forced.engine, Engine::kClip);
+  EXPECT_EQ(forced.total.volume, evaluated(kBox, kBox, X).total.volume);
+}
+
+TEST(Interference, AForcedEngineIsUsed) {
+  Random random(4);
+  const Pose X = touching_pose(random);
+  const Interference exact = evaluated(kBall, kBall, X);
+  const Interference cells =
+      evaluated(kBall, kBall, X, {.tolerance = 1e-2, .engine = Engine::kOctree});
+  EXPECT_EQ(cells.engine, Engine::kOctree);
+  EXPECT_NEAR(cells.total.volume, exact.total.volume, 1e-2 * exact.total.volume);
+}
+
+TEST(Interference, SwapIsTheMirror) {
+  Random random(5);
+  int directed = 0;
+  for (const Served& pair : kServed) {
+    for (int i = 0; i < 100; ++i) {
+      const Pose X{random.rotation(), random.in_box(0.9)};
+      const VolumeMetrics m = evaluated(pair.a, pair.b, X).total;
+      const VolumeMetrics swapped = evaluated(pair.b, pair.a, X.inverse()).total;
+      EXPECT_EQ(m.touching(), swapped.touching());
+      if (m.volume < 1e-6) continue;
+      directed += m.status == Status::kOk;
+      EXPECT_TRUE(test::same(reversed(transformed(swapped, X)), m, {1e-9, 1.0}));
+    }
+  }
+  EXPECT_GT(directed, 300);
+}
+
+TEST(Interference, MovingBothSolidsTogetherMovesTheMetrics) {
+  Random random(6);
+  InterferenceWorkspace workspace;
+  for (const Served& shapes : kServed) {
+    const GeometricPair pair{shapes.a, shapes.b, random.pose(0.2), random.pose(0.2)};
+    for (int i = 0; i < 20; ++i) {
+      const Pose X_WA = random.pose(0.3), X_WB = random.pose(0.3), X_VW = random.pose(1.0);
+      Interference here, there;
+      interference_W(pair, X_WA, X_WB, {}, workspace, here);
+      interference_W(pair, X_VW * X_WA, X_VW * X_WB, {}, workspace, there);
+      EXPECT_EQ(here.sites.size(), there.sites.size());
+      if (here.total.volume < 1e-6) continue;
+      EXPECT_TRUE(test::same(there.total, transformed(here.total, X_VW), {1e-9, 1.0}));
+    }
+  }
+}
+
+TEST(Interference, AreaVectorOfTheMirrorIsAGradientToo) {
+  Random random(7);
+  for (const Served& pair : kServed) {
+    for (int i = 0; i < 10; ++i) {
+      const Pose X{random.rotation(), random.in_box(0.5)};
+      const auto volume = [&](const Pose& pose) {
+        return evaluated(pair.b, pair.a, pose).total.volume;
+      };
+      const VolumeMetrics m = evaluated(pair.b, pair.a, X).total;
+      if (m.volume < 1e-6 || m.status != Status::kOk) continue;
+      const test::Gradient gradient = test::gradient_of_A(volume, X, 2e-5);
+      EXPECT_LT((m.area_vector - gradient.shift).norm(), 1e-7);
+      EXPECT_LT((m.area_moment - gradient.turn).norm(), 1e-7);
+    }
+  }
+}
+
+TEST(Interference, ExactEnginesGiveOneSiteAndItIsTheTotal) {
+  Random random(8);
+  for (const Served& pair : kServed) {
+    const Interference result = evaluated(pair.a, pair.b, touching_pose(random));
+    ASSERT_EQ(result.sites.size(), 1u);
+    EXPECT_EQ(result.sites[0].volume, result.total.volume);
+    EXPECT_EQ(result.sites[0].area_vector, result.total.area_vector);
+  }
+}
+
+TEST(Interference, ApartIsAValueWithoutSites) {
+  for (const Served& pair : kServed) {
+    for (const auto& [a, b, z] : {std::tuple{pair.a, pair.b, 5.0}, {pair.b, pair.a, -5.0}}) {
+      const Interference result = evaluated(a, b, Pose{Mat3::Identity(), Vec3(0, 0, z)});
+      EXPECT_FALSE(result.total.touching());
+      EXPECT_TRUE(result.sites.empty());
+      EXPECT_EQ(result.total.status, Status::kOk);
+      EXPECT_EQ(result.total.centroid, Vec3(Vec3::Zero()));
+    }
+  }
+}
+
+TEST(Interference, ANonFinitePoseIsInvalidAndLeavesNothingBehind) {
+  Random random(9);
+  InterferenceWorkspace workspace;
+  Interference result;
+  for (const Served& pair : kServed) {
+    for (double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+      interference(pair.a, pair.b, touching_pose(random), {}, workspace, result);
+      EXPECT_TRUE(result.total.touching());
+      Pose X = touching_pose(random);
+      X.translation.y() = bad;
+      interference(pair.a, pair.b, X, {}, workspace, result);
+      EXPECT_EQ(result.total.status, Status::kInvalid);
+      EXPECT_FALSE(result.total.touching());
+      EXPECT_TRUE(is_finite(result.total));
+      EXPECT_TRUE(result.sites.empty());
+      X = touching_pose(random);
+      X.rotation(1, 1) = bad;
+      interference(pair.a, pair.b, X, {}, workspace, result);
+      EXPECT_EQ(result.total.status, Status::kInvalid);
+    }
+  }
+}
+
+TEST(Interference, TwoHalfSpacesAreUnbounded) {
+  Random random(10);
+  for (Engine engine : kEngines) {
+    const Interference result =
+        evaluated(kGround, kGround, touching_pose(random), {.engine = engine});
+    EXPECT_EQ(result.total.status, Status::kUnbounded);
+    EXPECT_FALSE(result.total.touching());
+    EXPECT_TRUE(result.sites.empty());
+  }
+}
+
+TEST(Interference, AWarmEvaluationAllocatesNothing) {
+  Random random(11);
+  InterferenceWorkspace workspace;
+  Interference result;
+  for (const Served& pair : kServed) {
+    for (const auto& [a, b] : {std::pair{pair.a, pair.b}, std::pair{pair.b, pair.a}}) {
+      std::vector<Pose> poses;
+      for (int i = 0; i < 50; ++i) poses.push_back({random.rotation(), random.in_box(0.9)});
+      for (const Pose& X : poses) interference(a, b, X, {}, workspace, result);
+      const long before = allocations;
+      for (const Pose& X : poses) interference(a, b, X, {}, workspace, result);
+      EXPECT_EQ(allocations - before, 0) << name_of(a) << " and " << name_of(b);
+    }
+  }
+}
+
+TEST(Interference, TheValueHasNoHistory) {
+  Random random(12);
+  InterferenceWorkspace used;
+  Interference result;
+  std::vector<Pose> poses;
+  for (int i = 0; i < 20; ++i) poses.push_back(touching_pose(random));
+  for (const Served& pair : kServed) {
+    for (const Pose& X : poses) {
+      interference(pair.a, pair.b, X, {}, used, result);
+      const Interference fresh = evaluated(pair.a, pair.b, X);
+      EXPECT_EQ(result.total.volume, fresh.total.volume);
+      EXPECT_EQ(result.total.inertia, fresh.total.inertia);
+      EXPECT_EQ(result.total.area_moment, fresh.total.area_moment);
+      EXPECT_EQ(result.total.depth_moment, fresh.total.depth_moment);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace volcontact
