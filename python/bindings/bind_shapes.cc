@@ -38,7 +38,7 @@ void def_init(nb::class_<Solid>& type) {
 }  // namespace
 
 void bind_shapes(nb::module_& m) {
-  for_each_type(Shapes{}, [&](auto tag) {
+  for_each_type(SimpleShapes{}, [&](auto tag) {
     using Solid = typename decltype(tag)::Type;
     nb::class_<Solid> type(m, camel_case(Solid::kName).c_str(), shape_doc<Solid>().c_str());
     def_init<Solid>(type);

@@ -11,6 +11,9 @@ template <typename... Ts>
 struct TypeList {
   static constexpr std::size_t kSize = sizeof...(Ts);
   using Variant = std::variant<Ts...>;
+  /// The list with more types at its end.
+  template <typename... More>
+  using With = TypeList<Ts..., More...>;
 };
 
 /// Names a type without making a value of it.

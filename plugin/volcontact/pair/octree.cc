@@ -180,7 +180,7 @@ bool Octree::cut_by_seams(int first_face) {
   s_.part = s_.hull;
   for (std::size_t i = first_face; i < s_.faces.size(); ++i) {
     const Quadric& face = s_.faces[i].quadric;
-    if (!face.seam) continue;
+    if (!face.seam || face.bend != Bend::kFlat) continue;
     const auto height = [&face](const Vec3& p) { return face.linear.dot(p) + face.constant; };
     if (!s_.part.cut(height, 0, 0.0)) return false;
   }

@@ -21,23 +21,6 @@ concept DistanceField = requires(const S& solid, const Vec3& x) {
   { solid.gradient(x) } -> std::same_as<Vec3>;
 };
 
-// Pieces of the shapes that do not write them themselves.
-inline void add_pieces(const Ellipsoid& solid, PieceList& list) {
-  list.add(Quadric::round(solid.semi_axes().cwiseAbs2().cwiseInverse(), Vec3::Zero(), 1.0));
-  list.end_piece();
-}
-inline void add_pieces(const ConvexPolytope& solid, PieceList& list) {
-  for (const ConvexPolytope::Face& face : solid.faces()) {
-    list.add(Quadric::plane(face.normal, face.offset));
-  }
-  list.end_piece();
-}
-template <typename S>
-  requires requires(const S& solid, PieceList& list) { solid.pieces(list); }
-void add_pieces(const S& solid, PieceList& list) {
-  solid.pieces(list);
-}
-
 /// A solid of any type through one table of functions, so that the octree is compiled once. It
 /// refers to the solid and must not outlive it. A function that the solid lacks is null.
 struct SolidView {

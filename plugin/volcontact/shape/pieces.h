@@ -18,7 +18,7 @@ enum class Bend : signed char {
 };
 
 /// One face of a solid: the solid lies where F(x) = 1/2 x^T H x + g . x + k <= 0. F may have any
-/// scale. A seam is a flat face between two pieces of one solid: it bounds the piece, but it is not
+/// scale. A seam is a face between two pieces of one solid: it bounds the piece, but it is not
 /// surface.
 struct Quadric {
   Mat3 hessian = Mat3::Zero();

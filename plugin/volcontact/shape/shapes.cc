@@ -2,6 +2,7 @@
 #include "volcontact/shape/shapes.h"
 
 #include <optional>
+#include <type_traits>
 
 namespace volcontact {
 
@@ -18,6 +19,18 @@ Shape make_shape(std::string_view name, const FieldValues& values) {
   require(made.has_value(),
           "unknown shape '" + std::string(name) + "'" + did_you_mean(name, names));
   return *made;
+}
+
+Csg composed(const Shape& shape) {
+  return std::visit(
+      [](const auto& solid) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(solid)>, Csg>) {
+          return solid;
+        } else {
+          return Csg(solid);
+        }
+      },
+      shape);
 }
 
 }  // namespace volcontact

@@ -3,22 +3,13 @@
 
 #include <string_view>
 
-#include "volcontact/base/type_list.h"
-#include "volcontact/shape/box.h"
-#include "volcontact/shape/capsule.h"
-#include "volcontact/shape/convex_polytope.h"
-#include "volcontact/shape/cylinder.h"
-#include "volcontact/shape/ellipsoid.h"
-#include "volcontact/shape/frustum.h"
-#include "volcontact/shape/half_space.h"
-#include "volcontact/shape/sphere.h"
-#include "volcontact/shape/torus.h"
+#include "volcontact/shape/csg.h"
+#include "volcontact/shape/simple_shapes.h"
 
 namespace volcontact {
 
-/// Every shape there is. A new one is added here and nowhere else.
-using Shapes =
-    TypeList<HalfSpace, Sphere, Ellipsoid, Capsule, Cylinder, Frustum, Box, Torus, ConvexPolytope>;
+/// Every shape there is. A new one is added to the simple shapes and nowhere else.
+using Shapes = SimpleShapes::With<Csg>;
 
 /// One solid of any shape, in its own frame.
 using Shape = Shapes::Variant;
@@ -34,7 +25,11 @@ inline VolumeMetrics own_metrics_of(const Shape& shape) {
 }
 
 /// A shape from its name and parameters. Throws std::invalid_argument on an unknown name, unknown
-/// parameter or value out of range. Convex polytopes are made from vertices, not from numbers.
+/// parameter or value out of range. Convex polytopes are made from vertices, not from numbers, and
+/// composed solids from solids.
 Shape make_shape(std::string_view name, const FieldValues& values);
+
+/// The shape as a composed solid: itself, or a solid of one member.
+Csg composed(const Shape& shape);
 
 }  // namespace volcontact
