@@ -7,6 +7,8 @@ function(volcontact_target name)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # Guesses that depend on what was inlined, often wrong; the sanitizers look for the real thing.
     target_compile_options(${name} PRIVATE -Wno-maybe-uninitialized -Wno-stringop-overflow)
+    # Vectors of eight are passed only between functions compiled for one machine, or inlined.
+    target_compile_options(${name} PRIVATE -Wno-psabi)
   endif()
   set_target_properties(${name} PROPERTIES
     CXX_EXTENSIONS OFF

@@ -17,6 +17,8 @@ const char* to_string(Engine engine) {
       return "closed_form";
     case Engine::kClip:
       return "clip";
+    case Engine::kLines:
+      return "lines";
     case Engine::kOctree:
       return "octree";
   }

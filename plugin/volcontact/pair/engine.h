@@ -10,11 +10,12 @@ enum class Engine : int {
   kAuto = 0,        ///< the fastest that serves the pair to its tolerance
   kClosedForm = 1,  ///< formulas: half-space with sphere and ellipsoid, sphere-sphere
   kClip = 2,        ///< exact clipping of half-space, box and convex polytope
-  kOctree = 3,      ///< recursive cells with certified bounds; serves every pair
+  kLines = 3,       ///< quadrature of exact columns: convex solids of plane and round faces
+  kOctree = 4,      ///< recursive cells with certified bounds; serves every pair
 };
 
 inline constexpr Engine kEngines[] = {Engine::kAuto, Engine::kClosedForm, Engine::kClip,
-                                      Engine::kOctree};
+                                      Engine::kLines, Engine::kOctree};
 
 const char* to_string(Engine engine);
 

@@ -7,12 +7,14 @@
 #include "volcontact/pair/closed_form/half_space_ellipsoid.h"
 #include "volcontact/pair/closed_form/half_space_sphere.h"
 #include "volcontact/pair/closed_form/sphere_sphere.h"
+#include "volcontact/pair/lines.h"
 #include "volcontact/pair/octree.h"
 
 namespace volcontact {
 
 struct InterferenceWorkspace::Scratch {
   ClipScratch clip;
+  LinesScratch lines;
   OctreeScratch octree;
 };
 
@@ -33,6 +35,8 @@ constexpr bool has_clip = requires(const A& a, const B& b, const Pose& X_AB, Cli
   clip(a, b, X_AB, scratch);
 };
 template <typename A, typename B>
+constexpr bool has_lines = HasFaces<A> && HasFaces<B> && (HasRoundFaces<A> || HasRoundFaces<B>);
+template <typename A, typename B>
 constexpr bool both_unbounded = std::is_same_v<A, HalfSpace> && std::is_same_v<B, HalfSpace>;
 
 template <typename A, typename B>
@@ -44,6 +48,8 @@ constexpr bool serves_pair(Engine engine) {
       return has_closed_form<A, B> || has_closed_form<B, A>;
     case Engine::kClip:
       return has_clip<A, B> || has_clip<B, A>;
+    case Engine::kLines:
+      return has_lines<A, B>;
     case Engine::kOctree:
       return !both_unbounded<A, B>;
   }
@@ -52,7 +58,7 @@ constexpr bool serves_pair(Engine engine) {
 
 template <typename A, typename B>
 constexpr Engine engine_for_pair() {
-  for (Engine engine : {Engine::kClosedForm, Engine::kClip, Engine::kOctree}) {
+  for (Engine engine : {Engine::kClosedForm, Engine::kClip, Engine::kLines, Engine::kOctree}) {
     if (serves_pair<A, B>(engine)) return engine;
   }
   return Engine::kAuto;
@@ -133,6 +139,13 @@ void interference(const Shape& a, const Shape& b, const Pose& X_AB,
     if constexpr (serves_pair<A, B>(Engine::kClip)) {
       if (out.engine == Engine::kClip) {
         return set_one_site(clip_metrics(solid_a, solid_b, X_AB, workspace.scratch().clip), out);
+      }
+    }
+    if constexpr (serves_pair<A, B>(Engine::kLines)) {
+      if (out.engine == Engine::kLines) {
+        lines_interference(a, b, X_AB, options, workspace.scratch().lines, out);
+        if (is_finite(out.total)) return;
+        out.engine = Engine::kOctree;
       }
     }
     octree_interference(a, b, X_AB, options, workspace.scratch().octree, out);

@@ -74,8 +74,10 @@ class Frustum {
     // x^2 + y^2 <= (mean_radius + slope z)^2 along the line: a t^2 + 2 b t + c <= 0, with t counted
     // from the point nearest the axis (or the middle of the slab) against cancellation.
     const double across = d.x() * d.x() + d.y() * d.y();
-    const double shift =
-        across > 0.0 ? -(o.x() * d.x() + o.y() * d.y()) / across : 0.5 * (span.enter + span.leave);
+    double shift = 0.5 * (span.enter + span.leave);
+    if (across > 0.0) {
+      shift = std::clamp(-(o.x() * d.x() + o.y() * d.y()) / across, span.enter, span.leave);
+    }
     const Vec3 q = o + shift * d;
     const double radius = mean_radius_ + slope_ * q.z(), growth = slope_ * d.z();
     const double a = across - growth * growth;

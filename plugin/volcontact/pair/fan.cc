@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/fan.h"
+
+#include <algorithm>
+
+#include "volcontact/pair/gauss.h"
+
+namespace volcontact {
+namespace {
+
+constexpr double kFar = 1e30;     // stands for "no bound"
+constexpr double kSteep = 1e-9;   // a plane whose normal is this normal to the columns is a wall
+constexpr double kOnFace = 1e-9;  // a crossing this close to the envelope counts, per height
+constexpr double kOnSilhouette = 1e-6;  // a root this small is zero, per the largest one
+constexpr double kWallTilt = 1e-7;      // a tube tilted less against the columns is a wall [rad]
+constexpr double kLeastTilt = 3e-9;     // of columns against a tube [rad]
+constexpr int kNodes = 5;               // Gauss nodes on each piece of a half-plane
+constexpr int kKnotParts = 3;           // of a half-plane, each with one knot of two round faces
+constexpr int kRootSteps = 8;           // at most; each of them squares the error
+using InnerRule = GaussRule<kNodes>;
+
+}  // namespace
+}  // namespace volcontact
+
+#define VOLCONTACT_SIMD_KERNEL "volcontact/pair/fan_kernel.inc"
+#include "volcontact/base/simd_paths.inc"
+
+namespace volcontact {
+
+void Fan::clear(FanSums& sums, std::vector<FanSums::OnPlane>& planes, int count) {
+  sums = FanSums{};
+  sums.low = kFar;
+  sums.high = -kFar;
+  planes.assign(count, FanSums::OnPlane{});
+  sums.planes = planes.data();
+}
+
+void Fan::accept_batch() {
+  for (int i = 0; i < 10; ++i) total_.moments[i] += batch_.moments[i];
+  total_.depth_moment += batch_.depth_moment;
+  total_.low = std::min(total_.low, batch_.low);
+  total_.high = std::max(total_.high, batch_.high);
+  for (int i = 0; i < faces_.active_planes; ++i) {
+    for (int k = 0; k < 4; ++k) total_.planes[i].sums[k] += batch_.planes[i].sums[k];
+  }
+  for (int i = 0; i < faces_.round_count; ++i) {
+    for (int k = 0; k < 10; ++k) total_.rounds[i].sums[k] += batch_.rounds[i].sums[k];
+    total_.rounds[i].area += batch_.rounds[i].area;
+  }
+}
+
+namespace {
+
+// Which group a plane face belongs to; kGroups: none.
+int group_of(double n_t, Owner owner, bool idle) {
+  const bool upper = n_t > 0.0, a = owner == Owner::kA, wall = std::abs(n_t) < kSteep;
+  if (idle) {
+    if (wall || a == upper) return FanFaces::kGroups;
+    return a ? FanFaces::kIdleLowerA : FanFaces::kIdleUpperB;
+  }
+  if (wall) return FanFaces::kWall;
+  if (a) return upper ? FanFaces::kUpperA : FanFaces::kLowerA;
+  return upper ? FanFaces::kUpperB : FanFaces::kLowerB;
+}
+
+void put(const Vec3& x, double* out) {
+  for (int i = 0; i < 3; ++i) out[i] = x[i];
+}
+
+// Columns along a tube never leave it: then the image `d` of their direction is tilted as little as
+// the digits allow, towards the image `u` of another direction.
+Vec3 leaving(const RoundFace& face, const Vec3& d, const Vec3& u) {
+  const double least = kLeastTilt * face.map.norm(), length = d.norm();
+  if (face.cone || length >= least) return d;
+  return length > 0.0 ? Vec3(d * (least / length)) : Vec3(u * (least / u.norm()));
+}
+
+FanRound seen_from(const RoundFace& face, const FanFrame& frame) {
+  const Vec3 o = face.map * (frame.center - face.center);
+  const Vec3 u = face.map * frame.u, v = face.map * frame.v;
+  const Vec3 d = leaving(face, face.map * frame.t, u);
+  const Vec3 dj = face.weighted(d);
+  const double a = d.dot(dj);
+  FanRound r;
+  r.mid = -o.dot(dj) / a;
+  r.mid_u = -u.dot(dj) / a;
+  r.mid_v = -v.dot(dj) / a;
+  put(d.cross(o) / a, r.x);
+  put(d.cross(u) / a, r.x_u);
+  put(d.cross(v) / a, r.x_v);
+  r.sign[0] = r.sign[1] = face.cone ? -1.0 : 1.0;
+  r.sign[2] = 1.0;
+  r.reach = face.level() / a;
+  const Mat3 back = face.map.transpose();
+  put(back * face.weighted(o), r.g);
+  put(back * face.weighted(u), r.g_u);
+  put(back * face.weighted(v), r.g_v);
+  put(back * dj, r.g_t);
+  r.weight = 1.0 / std::abs(a);
+  r.wall = !face.cone && a < kWallTilt * kWallTilt * face.map.squaredNorm();
+  r.lower = a > 0.0 ? -1 : d.z() > 0.0 ? 1 : 0;
+  r.upper = a > 0.0 ? 1 : d.z() < 0.0 ? -1 : 0;
+  r.owner = index(face.owner);
+  r.part = face.part;
+  return r;
+}
+
+}  // namespace
+
+void Fan::set(const FaceSet& faces, const std::vector<PlaneFace>& idle, const FanFrame& frame) {
+  planes_.clear();
+  for (int group = 0; group < FanFaces::kGroups; ++group) {
+    faces_.first[group] = static_cast<int>(planes_.size());
+    const bool idle_group = group >= FanFaces::kIdleLowerA;
+    const std::vector<PlaneFace>& list = idle_group ? idle : faces.planes;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const Vec3& n = list[i].normal;
+      const double n_t = n.dot(frame.t);
+      if (group_of(n_t, list[i].owner, idle_group) != group) continue;
+      planes_.push_back({n.dot(frame.u), n.dot(frame.v), n_t, list[i].offset - n.dot(frame.center),
+                         static_cast<int>(i)});
+    }
+  }
+  faces_.first[FanFaces::kGroups] = static_cast<int>(planes_.size());
+  faces_.active_planes = faces_.first[FanFaces::kIdleLowerA];
+  faces_.planes = planes_.data();
+
+  faces_.round_count = 0;
+  faces_.rounding = 0.0;
+  for (const RoundFace& face : faces.rounds) {
+    const FanRound r = seen_from(face, frame);
+    faces_.rounds[faces_.round_count++] = r;
+    faces_.rounding =
+        std::max(faces_.rounding, 1e-14 * (std::abs(r.mid) + std::sqrt(std::abs(r.reach))));
+  }
+  faces_.two_round = faces.has_rounds(Owner::kA) && faces.has_rounds(Owner::kB);
+  for (int w = 0; w < 2; ++w) {
+    const Segment& segment = faces.capsule[w];
+    faces_.seams[w] = {segment.present,           segment.along(frame.center),
+                       segment.axis.dot(frame.u), segment.axis.dot(frame.v),
+                       segment.axis.dot(frame.t), segment.half_length};
+  }
+  faces_.area_scale = frame.area_scale();
+  clear();
+  const std::size_t on_planes = faces_.active_planes * sizeof(portable::FanBatch::OnPlane);
+  const std::size_t size = portable::FanSlices::work_size(faces_) + on_planes / sizeof(Vec8);
+  if (work_.size() < size) work_.resize(size);
+}
+
+void Fan::clear() { clear(total_, total_planes_, faces_.active_planes); }
+
+void Fan::ends(SimdPath path, const double* u, const double* v, double* rho, double* height) {
+  VOLCONTACT_SIMD_CALL(path, ends, faces_, reinterpret_cast<Vec8*>(work_.data()), u, v, rho,
+                       height);
+}
+
+void Fan::integrate(SimdPath path, const double* u, const double* v, const double* weight,
+                    double* section) {
+  clear(batch_, batch_planes_, faces_.active_planes);
+  VOLCONTACT_SIMD_CALL(path, integrate, faces_, reinterpret_cast<Vec8*>(work_.data()), u, v, weight,
+                       batch_, section);
+}
+
+}  // namespace volcontact

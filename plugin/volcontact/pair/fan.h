@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "volcontact/base/simd.h"
+#include "volcontact/pair/face_set.h"
+
+namespace volcontact {
+
+/// Axes of a fan in A's frame: columns run along the unit vector `t`; a half-plane of the fan is
+/// spanned by t and u cos + v sin, from the axis through `center` outwards. u and v are normal to
+/// t, of any length and angle. A place is x = center + rho (u cos + v sin) + height t.
+struct FanFrame {
+  Vec3 center;
+  Vec3 u, v, t;
+
+  double area_scale() const { return u.cross(v).dot(t); }
+};
+
+/// A plane face in a fan: n_t height + rho (n_u cos + n_v sin) <= gap, with gap >= 0.
+struct FanPlane {
+  double n_u, n_v, n_t, gap;
+  int face;  ///< in FaceSet::planes
+};
+
+/// A round face in a fan: the height on it is mid -+ root, where mid = mid + rho (mid_u cos + mid_v
+/// sin) and root^2 = reach - sum_i sign_i x_i^2, x_i = x_i + rho (x_u_i cos + x_v_i sin).
+struct FanRound {
+  double mid, mid_u, mid_v;
+  double x[3], x_u[3], x_v[3], sign[3];
+  double reach;
+  // Half the gradient at a place, and 1 / |its t component * root|.
+  double g[3], g_u[3], g_v[3], g_t[3];
+  double weight;
+  bool wall;         ///< parallel to the columns: no root bounds them in reach
+  int lower, upper;  ///< which root bounds the solid below and above: -1, +1, or 0 for neither
+  int owner;
+  CapsulePart part;
+};
+
+/// Ends of a capsule's tube in a fan: |along| <= half_length is the tube.
+struct FanSeam {
+  bool present = false;
+  double along, along_u, along_v, along_t;
+  double half_length;
+};
+
+/// Faces of both solids in a fan, in the order of use: group g of planes is [first[g], first[g +
+/// 1]). Plain data, as is all that the kernels touch: a kernel must not make an inline function of
+/// a class for its own machine that the linker might then take for every machine.
+struct FanFaces {
+  enum Group { kLowerA, kUpperA, kLowerB, kUpperB, kWall, kIdleLowerA, kIdleUpperB, kGroups };
+  static constexpr int kMaxRounds = 6;  ///< a capsule has three
+
+  const FanPlane* planes = nullptr;
+  int first[kGroups + 1] = {};
+  int active_planes = 0;  ///< those before the idle ones
+  FanRound rounds[kMaxRounds];
+  int round_count = 0;
+  FanSeam seams[2];
+  bool two_round = false;   ///< both solids have round faces
+  double rounding = 0.0;    ///< of a height [m]
+  double area_scale = 0.0;  ///< of the frame
+};
+
+/// Sums over the columns of a fan, in its own coordinates: x = rho cos, y = rho sin, height.
+struct FanSums {
+  /// int dS times 1, x, y, h over a plane face.
+  struct OnPlane {
+    double sums[4];
+  };
+  /// int weight times 1, x, y, h, xx, xy, yy, xh, yh, hh over a round face, where weight times half
+  /// the gradient is the area vector, and its area. The integrals only when both solids have round
+  /// faces.
+  struct OnRound {
+    double sums[10];
+    double area;
+  };
+  /// int dV times 1, x, y, h, xx, xy, yy, xh, yh, hh.
+  double moments[10];
+  double depth_moment;
+  double low, high;  ///< least and largest height seen
+  OnRound rounds[FanFaces::kMaxRounds];
+  OnPlane* planes;  ///< as many as there are active planes
+};
+
+/// Both solids seen from the axis of a fan, which must pass through their overlap: `center` inside
+/// of every face. Integrates columns over half-planes of the fan, eight at a time.
+///
+/// In one half-plane every face is a line or an arc, height over rho, and the overlap is what lies
+/// above the lower and below the upper ones. Where it ends, and where one face takes over from
+/// another, are crossings of two of them: between those places Gauss quadrature converges fast.
+/// docs/theory.md, "Lines".
+class Fan {
+ public:
+  /// `idle` planes cannot touch the overlap; they only say how far the solids reach over it.
+  void set(const FaceSet& faces, const std::vector<PlaneFace>& idle, const FanFrame& frame);
+  const FanFaces& faces() const { return faces_; }
+
+  /// Largest rho of the overlap in eight directions (u, v), of any length but zero, and the height
+  /// of the middle of the column there.
+  void ends(SimdPath path, const double* u, const double* v, double* rho, double* height);
+
+  /// Sums over eight half-planes, lane i standing for directions (u, v) within `weight`: it counts
+  /// weight int rho d rho. `section` gets the volume of each per weight.
+  void integrate(SimdPath path, const double* u, const double* v, const double* weight,
+                 double* section);
+
+  /// What the last integrate() summed up, and the sum of all that was accepted.
+  const FanSums& batch() const { return batch_; }
+  const FanSums& total() const { return total_; }
+  void accept_batch();
+  /// Forgets what was accepted.
+  void clear();
+
+ private:
+  static void clear(FanSums& sums, std::vector<FanSums::OnPlane>& planes, int count);
+
+  FanFaces faces_;
+  std::vector<FanPlane> planes_;
+  FanSums batch_, total_;
+  std::vector<FanSums::OnPlane> batch_planes_, total_planes_;
+  // A template argument loses the alignment of Vec8.
+  struct alignas(64) Lane {
+    double x[kLanes];
+  };
+  std::vector<Lane> work_;
+};
+
+}  // namespace volcontact

@@ -1,0 +1,437 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/lines.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "volcontact/pair/gauss.h"
+
+namespace volcontact {
+namespace {
+
+using Vec2 = Eigen::Vector2d;
+using OuterRule = GaussRule<kLanes>;
+
+constexpr double kClear = 0.02;       // |S| / area below which S gives no direction to look along
+constexpr double kSameCorner = 1e-7;  // squared distance of directions that count as one
+constexpr double kTarget = 1e-2;      // share of the tolerance at which an arc is no longer divided
+constexpr int kMaxDepth = 4;          // of divisions of an arc
+constexpr int kMaxRecenterings = 6;
+constexpr double kRoundRim = 2.0;  // longest by shortest way to the rim; then one step is enough
+constexpr double kMostTurn = 0.5;  // of the columns towards the normal of the rim; more: no normal
+constexpr double kAligned = 0.1;   // a turn after which the next one would be too small to matter
+constexpr double kWhole = 0.999;   // share of a solid in the overlap, that is all of it
+constexpr double kInnerError = 3e-6;  // of the rule along a half-plane, per V; as measured
+constexpr double kWidestAngle = 1.8;  // of an arc between corners [rad]
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+class LinesRun {
+ public:
+  LinesRun(const Shape& a, const Shape& b, const Pose& X_AB, const InterferenceOptions& options,
+           LinesScratch& scratch)
+      : a_(a), b_(b), X_AB_(X_AB), options_(options), s_(scratch) {}
+
+  VolumeMetrics run() {
+    window_ = find_lines_window(a_, b_, X_AB_, s_.path, s_.faces);
+    switch (window_.kind) {
+      case LinesWindow::Kind::kApart:
+        return {};
+      case LinesWindow::Kind::kAInB:
+        return contained(own_metrics_of(a_));
+      case LinesWindow::Kind::kBInA:
+        return contained(transformed(own_metrics_of(b_), X_AB_));
+      case LinesWindow::Kind::kOverlap:
+        break;
+    }
+    choose_frame();
+    s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
+    recenter();
+    find_breaks(s_.faces.active, frame_, tolerance(), s_.breaks);
+    const bool smooth = s_.breaks.complete && s_.breaks.directions.empty();
+    if (!smooth || !integrate_smooth()) integrate_arcs();
+    return metrics();
+  }
+
+ private:
+  static VolumeMetrics contained(VolumeMetrics metrics) {
+    metrics.status = Status::kContained;
+    return metrics;
+  }
+
+  bool is_flat(Owner owner) const { return !s_.faces.active.has_rounds(owner); }
+
+  // Length to which places are known.
+  double tolerance() const { return 1e-9 * (window_.spread.transpose() * frame_.t).norm(); }
+
+  // The normal of the one plane that a flat solid turns towards the other, from B to A; zero if
+  // there is none or more than one.
+  Vec3 only_plane() const {
+    for (Owner owner : {Owner::kB, Owner::kA}) {
+      if (!is_flat(owner)) continue;
+      const PlaneFace* only = nullptr;
+      int count = 0;
+      for (const PlaneFace& plane : s_.faces.active.planes) {
+        if (plane.owner != owner) continue;
+        only = &plane;
+        ++count;
+      }
+      if (count == 1) return owner == Owner::kB ? only->normal : Vec3(-only->normal);
+    }
+    return Vec3::Zero();
+  }
+
+  // Columns along the contact normal; across them, axes in which the overlap is about round.
+  void choose_frame() {
+    Vec3 t = only_plane();
+    along_normal_ = t.isZero(0.0);
+    if (along_normal_) t = -window_.area_vector;
+    if (!(t.norm() > 0.0)) t = -X_AB_.translation;
+    if (!(t.norm() > 0.0)) t = Vec3::UnitZ();
+    t.normalize();
+    const Mat3 basis = basis_with_z(t);
+    const Mat3 seen = basis.transpose() * window_.spread;
+    const Eigen::Matrix2d square = (seen * seen.transpose()).topLeftCorner<2, 2>();
+    const Eigen::Matrix2d l = Eigen::LLT<Eigen::Matrix2d>(square).matrixL();
+    frame_.center = window_.center;
+    frame_.t = t;
+    frame_.u = basis.col(0) * l(0, 0) + basis.col(1) * l(1, 0);
+    frame_.v = basis.col(1) * l(1, 1);
+  }
+
+  // Eight ways to the rim tell its center and its shape, in which it is rounder.
+  void recenter() {
+    double u[kLanes], v[kLanes], rho[kLanes], height[kLanes];
+    set_directions(0, u, v);
+    for (int step = 0; step < kMaxRecenterings; ++step) {
+      s_.fan.ends(s_.path, u, v, rho, height);
+      const bool aligned = !along_normal_ || align(u, v, rho, height);
+      recenter(u, v, rho);
+      const auto [shortest, longest] = std::minmax_element(rho, rho + kLanes);
+      if (aligned && *longest < kRoundRim * *shortest) return;
+    }
+  }
+
+  // Turns the columns to the area vector of the rim, which is that of the faces if these meet
+  // there. Whether they were about so before.
+  bool align(const double* u, const double* v, const double* rho, const double* height) {
+    Vec3 rim[kLanes], sum = Vec3::Zero();
+    for (int i = 0; i < kLanes; ++i) {
+      rim[i] = rho[i] * (u[i] * frame_.u + v[i] * frame_.v) + height[i] * frame_.t;
+    }
+    for (int i = 0; i < kLanes; ++i) sum += rim[i].cross(rim[(i + 1) % kLanes]);
+    sum.normalize();
+    const double turn = (sum - frame_.t).norm();
+    if (!(turn < kMostTurn)) return true;
+    const Mat3 turned = Eigen::Quaterniond::FromTwoVectors(frame_.t, sum).toRotationMatrix();
+    frame_.u = turned * frame_.u;
+    frame_.v = turned * frame_.v;
+    frame_.t = sum;
+    return turn < kAligned;
+  }
+
+  // Every second one of 16 directions, evenly spread.
+  static void set_directions(int first, double* u, double* v) {
+    for (int i = 0; i < kLanes; ++i) {
+      const double angle = kPi * (2 * i + first) / kLanes;
+      u[i] = std::cos(angle);
+      v[i] = std::sin(angle);
+    }
+  }
+
+  void recenter(const double* u, const double* v, const double* rho) {
+    double area = 0.0;
+    Vec2 first = Vec2::Zero();
+    Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
+    for (int i = 0; i < kLanes; ++i) {
+      const Vec2 direction(u[i], v[i]);
+      const double r2 = rho[i] * rho[i];
+      area += r2 / 2.0;
+      first += r2 * rho[i] / 3.0 * direction;
+      second += r2 * r2 / 4.0 * direction * direction.transpose();
+    }
+    const Vec2 shift = first / area;
+    const Eigen::LLT<Eigen::Matrix2d> factor(4.0 * (second / area - shift * shift.transpose()));
+    if (factor.info() != Eigen::Success) return;
+    FanFrame frame = frame_;
+    frame.center += frame_.u * shift.x() + frame_.v * shift.y();
+    const Eigen::Matrix2d l = factor.matrixL();
+    frame.u = frame_.u * l(0, 0) + frame_.v * l(1, 0);
+    frame.v = frame_.v * l(1, 1);
+    double low, high;
+    if (!column(frame.center, low, high)) return;
+    frame.center += 0.5 * (low + high) * frame.t;
+    frame_ = frame;
+    s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
+  }
+
+  // Without corners the rim is smooth and nearly round: equal steps of the angle converge fastest.
+  // False when they do not, as a corner was overlooked.
+  bool integrate_smooth() {
+    double u[kLanes], v[kLanes], weight[kLanes], section[kLanes], volume[2];
+    std::fill_n(weight, kLanes, kPi / kLanes);
+    for (int half = 0; half < 2; ++half) {
+      set_directions(half, u, v);
+      s_.fan.integrate(s_.path, u, v, weight, section);
+      s_.fan.accept_batch();
+      volume[half] = s_.fan.batch().moments[0];
+    }
+    // Twice the lines square the error of a smooth rim.
+    const double sum = volume[0] + volume[1];
+    const double relative = std::abs(volume[0] - volume[1]) / sum;
+    error_ = relative * std::sqrt(relative) * sum;
+    return error_ <= kTarget * options_.tolerance * sum;
+  }
+
+  void integrate_arcs() {
+    s_.fan.clear();
+    error_ = 0.0;
+    set_corners();
+    set_arcs();
+    while (!s_.arcs.empty()) integrate_arc();
+  }
+
+  // The part of the line x + height t inside of both; false when it is empty.
+  bool column(const Vec3& x, double& low, double& high) const {
+    const auto local = [&](const Shape& shape, const Pose& X) {
+      const Vec3 o = X.rotation.transpose() * (x - X.translation);
+      const Vec3 d = X.rotation.transpose() * frame_.t;
+      return std::visit(
+          [&](const auto& solid) {
+            if constexpr (requires {
+                            { solid.ray(o, d) } -> std::same_as<RayInterval>;
+                          }) {
+              return solid.ray(o, d);
+            }
+            return RayInterval{};
+          },
+          shape);
+    };
+    const RayInterval in_a = local(a_, Pose{}), in_b = local(b_, X_AB_);
+    low = std::max(in_a.enter, in_b.enter);
+    high = std::min(in_a.leave, in_b.leave);
+    return !in_a.empty() && !in_b.empty() && low < high;
+  }
+
+  // The breaks in the order of their angle, with more between them where they are far apart.
+  void set_corners() {
+    std::vector<Vec2>& d = s_.breaks.directions;
+    std::sort(d.begin(), d.end(), [](const Vec2& a, const Vec2& b) {
+      const bool a_up = a.y() >= 0.0, b_up = b.y() >= 0.0;
+      return a_up != b_up ? a_up : a_up ? a.x() > b.x() : a.x() < b.x();
+    });
+    d.erase(std::unique(d.begin(), d.end(),
+                        [](const Vec2& a, const Vec2& b) {
+                          return (a - b).squaredNorm() < kSameCorner * kSameCorner;
+                        }),
+            d.end());
+    s_.corners.clear();
+    if (d.empty()) d.push_back(Vec2::UnitX());
+    for (std::size_t i = 0; i < d.size(); ++i) {
+      s_.corners.push_back(d[i]);
+      fill(d[i], d[i + 1 < d.size() ? i + 1 : 0], d.size() == 1);
+    }
+    put_on_rim(s_.corners);
+  }
+
+  // Directions between two corners, none inclusive, so that no angle is wide.
+  void fill(const Vec2& from, const Vec2& to, bool whole_turn) {
+    double angle = std::atan2(cross(from, to), from.dot(to));
+    if (whole_turn || angle <= 0.0) angle += 2.0 * kPi;
+    const int parts = static_cast<int>(std::ceil(angle / kWidestAngle));
+    for (int k = 1; k < parts; ++k) {
+      const double turn = angle * k / parts, c = std::cos(turn), s = std::sin(turn);
+      s_.corners.push_back({c * from.x() - s * from.y(), s * from.x() + c * from.y()});
+    }
+  }
+
+  // Lengthens or shortens each place to the rim.
+  void put_on_rim(std::vector<Vec2>& places) {
+    double u[kLanes], v[kLanes], rho[kLanes], height[kLanes];
+    for (std::size_t from = 0; from < places.size(); from += kLanes) {
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        const Vec2& p = places[std::min(from + i, places.size() - 1)];
+        u[i] = p.x();
+        v[i] = p.y();
+      }
+      s_.fan.ends(s_.path, u, v, rho, height);
+      for (std::size_t i = 0; i < kLanes && from + i < places.size(); ++i)
+        places[from + i] *= rho[i];
+    }
+  }
+
+  void set_arcs() {
+    const std::size_t n = s_.corners.size();
+    std::vector<Vec2>& middles = s_.breaks.directions;
+    middles.clear();
+    for (std::size_t i = 0; i < n; ++i) {
+      middles.push_back(0.5 * (s_.corners[i] + s_.corners[(i + 1) % n]));
+    }
+    put_on_rim(middles);
+    s_.arcs.clear();
+    for (std::size_t i = 0; i < n; ++i) {
+      s_.arcs.push_back({s_.corners[i], middles[i], s_.corners[(i + 1) % n], 0});
+    }
+  }
+
+  // Eight half-planes over the arc. Along it, rho of the end is about 1: little is left to resolve.
+  void integrate_arc() {
+    const LinesScratch::Arc arc = s_.arcs.back();
+    s_.arcs.pop_back();
+    double u[kLanes], v[kLanes], weight[kLanes], section[kLanes];
+    for (int i = 0; i < kLanes; ++i) {
+      const double x = OuterRule::kNodes[i];
+      const Vec2 place = (1.0 - x) * (1.0 - 2.0 * x) * arc.from +
+                         4.0 * x * (1.0 - x) * arc.through + x * (2.0 * x - 1.0) * arc.to;
+      const Vec2 along =
+          (4.0 * x - 3.0) * arc.from + (4.0 - 8.0 * x) * arc.through + (4.0 * x - 1.0) * arc.to;
+      u[i] = place.x();
+      v[i] = place.y();
+      weight[i] = OuterRule::kWeights[i] * cross(place, along);
+    }
+    s_.fan.integrate(s_.path, u, v, weight, section);
+    for (int i = 0; i < kLanes; ++i) section[i] *= weight[i];
+    const double error = estimate(section);
+    if (error > kTarget * options_.tolerance * window_.volume && arc.depth < kMaxDepth) {
+      divide(arc);
+      return;
+    }
+    error_ += error;
+    s_.fan.accept_batch();
+  }
+
+  void divide(const LinesScratch::Arc& arc) {
+    double u[kLanes], v[kLanes], rho[kLanes], height[kLanes];
+    const Vec2 middles[2] = {0.5 * (arc.from + arc.through), 0.5 * (arc.through + arc.to)};
+    for (int i = 0; i < kLanes; ++i) {
+      u[i] = middles[i / 4].x();
+      v[i] = middles[i / 4].y();
+    }
+    s_.fan.ends(s_.path, u, v, rho, height);
+    s_.arcs.push_back({arc.from, middles[0] * rho[0], arc.through, arc.depth + 1});
+    s_.arcs.push_back({arc.through, middles[1] * rho[4], arc.to, arc.depth + 1});
+  }
+
+  // Error of the Gauss rule from how fast the Legendre coefficients of the integrand fall; `terms`
+  // are its values times the weights of the rule.
+  static double estimate(const double* terms) {
+    double c[kLanes] = {};
+    for (int i = 0; i < kLanes; ++i) {
+      const double x = 2.0 * OuterRule::kNodes[i] - 1.0;
+      double p = 1.0, p_next = x;
+      for (int k = 0; k < kLanes; ++k) {
+        c[k] += (2 * k + 1) * terms[i] * p;
+        const double p_new = ((2 * k + 3) * x * p_next - (k + 1) * p) / (k + 2);
+        p = p_next;
+        p_next = p_new;
+      }
+    }
+    const double last = std::abs(c[6]) + std::abs(c[7]), before = std::abs(c[4]) + std::abs(c[5]);
+    const double fall = before > 0.0 ? std::min(1.0, last / before) : 0.0;
+    return last * fall * fall * fall;
+  }
+
+  VolumeMetrics metrics() const {
+    const FanSums& sums = s_.fan.total();
+    const double* m = sums.moments;
+    const Vec3 &u = frame_.u, &v = frame_.v, &t = frame_.t;
+    MomentSum sum;
+    sum.volume = m[0];
+    sum.first = u * m[1] + v * m[2] + t * m[3];
+    const auto both = [](const Vec3& x, const Vec3& y) -> Mat3 {
+      return x * y.transpose() + y * x.transpose();
+    };
+    sum.second = m[4] * u * u.transpose() + m[5] * both(u, v) + m[6] * v * v.transpose() +
+                 m[7] * both(u, t) + m[8] * both(v, t) + m[9] * t * t.transpose();
+    Surface surface[2];
+    for (Owner owner : {Owner::kA, Owner::kB}) surface[index(owner)] = surface_of(owner);
+    // Both surfaces give S; plane faces give it best.
+    double share_b = 0.5;
+    if (is_flat(Owner::kA) != is_flat(Owner::kB)) share_b = is_flat(Owner::kB) ? 1.0 : 0.0;
+    sum.area_vector = (1.0 - share_b) * surface[0].vector - share_b * surface[1].vector;
+    sum.area_moment = (1.0 - share_b) * surface[0].moment - share_b * surface[1].moment;
+    sum.area = surface[0].area;
+    sum.counter_area = surface[1].area;
+    VolumeMetrics result = sum.metrics();
+    if (!result.touching()) return result;
+    if (result.area == 0.0) {
+      const VolumeMetrics own = own_metrics_of(b_);
+      if (result.volume > kWhole * own.volume) return contained(transformed(own, X_AB_));
+    }
+    if (result.counter_area == 0.0) {
+      const VolumeMetrics own = own_metrics_of(a_);
+      if (result.volume > kWhole * own.volume) return contained(own);
+    }
+    result.depth_moment = sums.depth_moment;
+    result.depth = std::max(sums.high, s_.breaks.high) - std::min(sums.low, s_.breaks.low);
+    result.volume_error = error_ + kInnerError * result.volume;
+    if (error_ > options_.tolerance * result.volume) result.status = Status::kApproximate;
+    return transformed(result, Pose{Mat3::Identity(), frame_.center});
+  }
+
+  struct Surface {
+    Vec3 vector = Vec3::Zero(), moment = Vec3::Zero();
+    double area = 0.0;
+  };
+
+  Surface surface_of(Owner owner) const {
+    const FanSums& sums = s_.fan.total();
+    const FanFaces& faces = s_.fan.faces();
+    const Vec3 &u = frame_.u, &v = frame_.v, &t = frame_.t;
+    Surface s;
+    for (int i = 0; i < faces.active_planes; ++i) {
+      const PlaneFace& plane = s_.faces.active.planes[faces.planes[i].face];
+      if (plane.owner != owner) continue;
+      const double* x = sums.planes[i].sums;
+      s.area += x[0];
+      s.vector += x[0] * plane.normal;
+      s.moment += (x[1] * u + x[2] * v + x[3] * t).cross(plane.normal);
+    }
+    for (int i = 0; i < faces.round_count; ++i) {
+      const FanRound& r = faces.rounds[i];
+      if (r.owner != index(owner)) continue;
+      const double* x = sums.rounds[i].sums;
+      const Vec3 g(r.g), g_u(r.g_u), g_v(r.g_v), g_t(r.g_t);
+      s.area += sums.rounds[i].area;
+      s.vector += x[0] * g + x[1] * g_u + x[2] * g_v + x[3] * g_t;
+      s.moment +=
+          (x[1] * u + x[2] * v + x[3] * t).cross(g) + (x[4] * u + x[5] * v + x[7] * t).cross(g_u) +
+          (x[5] * u + x[6] * v + x[8] * t).cross(g_v) + (x[7] * u + x[8] * v + x[9] * t).cross(g_t);
+    }
+    return s;
+  }
+
+  const Shape& a_;
+  const Shape& b_;
+  const Pose& X_AB_;
+  const InterferenceOptions& options_;
+  LinesScratch& s_;
+  LinesWindow window_;
+  FanFrame frame_;
+  bool along_normal_ = false;  // the columns are to follow the normal, which is yet to be found
+  double error_ = 0.0;
+};
+
+}  // namespace
+
+void lines_interference(const Shape& a, const Shape& b, const Pose& X_AB,
+                        const InterferenceOptions& options, LinesScratch& scratch,
+                        Interference& out) noexcept {
+  out.sites.clear();
+  out.total = VolumeMetrics{};
+  if (!X_AB.is_finite()) {
+    out.total.status = Status::kInvalid;
+    return;
+  }
+  const double volume_a = own_metrics_of(a).volume, volume_b = own_metrics_of(b).volume;
+  if (std::isinf(volume_a) && std::isinf(volume_b)) {
+    out.total.status = Status::kUnbounded;
+    return;
+  }
+  if (!(volume_a > 0.0) || !(volume_b > 0.0)) return;
+  out.total = LinesRun(a, b, X_AB, options, scratch).run();
+  if (out.total.touching()) out.sites.push_back(out.total);
+}
+
+}  // namespace volcontact

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "volcontact/pair/fan.h"
+#include "volcontact/pair/fan_breaks.h"
+#include "volcontact/pair/interference.h"
+#include "volcontact/pair/window.h"
+
+namespace volcontact {
+
+/// Memory of the lines engine, reused from call to call; no value depends on what it holds.
+struct LinesScratch {
+  /// A part of the rim of the overlap seen along the columns, as a quadratic arc through three
+  /// places.
+  struct Arc {
+    Eigen::Vector2d from, through, to;
+    int depth;
+  };
+  SimdPath path = best_simd_path();
+  LinesFaces faces;
+  Fan fan;
+  FanBreaks breaks;
+  std::vector<Eigen::Vector2d> corners;
+  std::vector<Arc> arcs;
+};
+
+/// Interference of two convex solids of which at least one is round, by columns along the contact
+/// normal: metrics in A's frame and about A's origin, one site. `volume_error` is an estimate.
+/// docs/theory.md, "Lines".
+void lines_interference(const Shape& a, const Shape& b, const Pose& X_AB,
+                        const InterferenceOptions& options, LinesScratch& scratch,
+                        Interference& out) noexcept;
+
+}  // namespace volcontact

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/gjk.h"
+
+#include <gtest/gtest.h>
+
+#include "core/support/random_shapes.h"
+
+namespace volcontact {
+namespace {
+
+// Signed distance of a point to a posed shape, negative inside.
+double distance(const Shape& shape, const Pose& X, const Vec3& p) {
+  return std::visit([&](const auto& solid) { return solid.signed_distance(X.inverse() * p); },
+                    shape);
+}
+
+TEST(FindCommonPoint, BallsMeetExactlyWhenTheirCentersAreNearEnough) {
+  test::Random random(31);
+  const Shape a = Sphere({.radius = 0.3}), b = Sphere({.radius = 0.2});
+  for (int i = 0; i < 300; ++i) {
+    const Pose X{random.rotation(), random.uniform(0.0, 1.0) * random.direction()};
+    const double gap = X.translation.norm() - 0.5;
+    Vec3 p;
+    ASSERT_EQ(find_common_point(a, b, X, p), gap < 0.0) << "gap " << gap;
+    if (gap >= 0.0) continue;
+    EXPECT_LE(distance(a, Pose{}, p), 1e-12);
+    EXPECT_LE(distance(b, X, p), 1e-12);
+  }
+}
+
+TEST(FindCommonPoint, AnAnswerIsAlwaysAPointOfBoth) {
+  test::Random random(32);
+  const std::vector<Shape> solids = {
+      Box({.half_sizes = {0.3, 0.2, 0.1}}),
+      Cylinder({.radius = 0.2, .half_length = 0.15}),
+      Capsule({.radius = 0.1, .half_length = 0.2}),
+      Ellipsoid({.semi_axes = {0.3, 0.2, 0.1}}),
+      Frustum({.bottom_radius = 0.3, .top_radius = 0.1, .half_length = 0.2}),
+      test::random_polytope(12, random)};
+  int met = 0;
+  for (const Shape& a : solids) {
+    for (const Shape& b : solids) {
+      for (int i = 0; i < 40; ++i) {
+        const Pose X = random.pose(0.5);
+        Vec3 p;
+        if (!find_common_point(a, b, X, p)) continue;
+        ++met;
+        EXPECT_LE(distance(a, Pose{}, p), 1e-12) << name_of(a);
+        EXPECT_LE(distance(b, X, p), 1e-12) << name_of(b);
+      }
+    }
+  }
+  EXPECT_GT(met, 300);
+}
+
+TEST(NearestInHull, KnowsCornersEdgesAndFaces) {
+  const Vec3 a(1, 0, 0), b(0, 1, 0), c(0, 0, 1);
+  EXPECT_TRUE(nearest_in_hull({a}).isApprox(a));
+  EXPECT_TRUE(nearest_in_hull({a, b}).isApprox(Vec3(0.5, 0.5, 0)));
+  EXPECT_TRUE(nearest_in_hull({a, b, c}).isApprox(Vec3::Constant(1.0 / 3.0)));
+  EXPECT_TRUE(nearest_in_hull({Vec3(1, -1, 0), Vec3(1, 1, 0), Vec3(3, 0, 0)}).isApprox(a));
+  EXPECT_LE(nearest_in_hull({a, b, c, Vec3(-1, -1, -1)}).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace volcontact

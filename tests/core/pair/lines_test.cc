@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/lines.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "core/support/gradient.h"
+#include "core/support/matchers.h"
+#include "core/support/random_shapes.h"
+#include "volcontact/pair/closed_form/half_space_ellipsoid.h"
+#include "volcontact/pair/closed_form/sphere_sphere.h"
+#include "volcontact/pair/octree.h"
+
+namespace volcontact {
+namespace {
+
+// Bodies of a few tenths of a metre; the first is unbounded, those of plane faces come last.
+std::vector<Shape> solids() {
+  test::Random random(41);
+  return {HalfSpace(),
+          Sphere({.radius = 0.25}),
+          Ellipsoid({.semi_axes = {0.3, 0.2, 0.12}}),
+          Capsule({.radius = 0.12, .half_length = 0.2}),
+          Cylinder({.radius = 0.2, .half_length = 0.15}),
+          Frustum({.bottom_radius = 0.25, .top_radius = 0.1, .half_length = 0.2}),
+          Box({.half_sizes = {0.3, 0.2, 0.1}}),
+          test::random_polytope(10, random)};
+}
+bool is_flat(std::size_t i) { return i == 0 || i >= 6; }
+
+VolumeMetrics lines(const Shape& a, const Shape& b, const Pose& X_AB, double tolerance = 1e-3,
+                    SimdPath path = best_simd_path()) {
+  static LinesScratch scratch;
+  scratch.path = path;
+  Interference out;
+  lines_interference(a, b, X_AB, {.tolerance = tolerance}, scratch, out);
+  EXPECT_EQ(out.sites.size(), out.total.touching() ? 1u : 0u);
+  return out.total;
+}
+
+// Moves B along a random direction until it overlaps A by `depth` and no more.
+Pose pose_of_depth(const Shape& a, const Shape& b, double depth, test::Random& random) {
+  Pose X{random.rotation(), Vec3::Zero()};
+  const Vec3 d = std::holds_alternative<HalfSpace>(a) ? Vec3(Vec3::UnitZ()) : random.direction();
+  double touching = 0.0, apart = 3.0;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (touching + apart);
+    X.translation = middle * d;
+    (lines(a, b, X).touching() ? touching : apart) = middle;
+  }
+  X.translation = (touching - depth) * d;
+  return X;
+}
+
+TEST(Lines, EllipsoidOnAHalfSpaceIsTheClosedForm) {
+  test::Random random(42);
+  const Ellipsoid ellipsoid({.semi_axes = {0.3, 0.2, 0.12}});
+  for (double depth : {1e-6, 1e-4, 1e-2, 0.1, 0.2}) {
+    const Pose X = pose_of_depth(HalfSpace(), ellipsoid, depth, random);
+    const VolumeMetrics m = lines(HalfSpace(), ellipsoid, X);
+    VolumeMetrics expected = closed_form(HalfSpace(), ellipsoid, X);
+    expected.counter_area = m.counter_area;  // has no closed form; see the next test
+    EXPECT_TRUE(test::same(m, expected, {2e-5, 0.1})) << "depth " << depth;
+    EXPECT_NEAR(m.volume, expected.volume, 1e-6 * expected.volume);
+  }
+}
+
+TEST(Lines, BentAreaOfAnEllipsoidsCapIsItsQuadrature) {
+  const Vec3 a(0.3, 0.2, 0.12);
+  const double height = 0.11, reach = std::sqrt(1.0 - height * height / (a.z() * a.z()));
+  double area = 0.0;  // over the footprint, in its own polar coordinates
+  constexpr int kRings = 1000, kSpokes = 64;
+  for (int i = 0; i < kRings; ++i) {
+    for (int j = 0; j < kSpokes; ++j) {
+      const double r = reach * (i + 0.5) / kRings, angle = 2.0 * kPi * j / kSpokes;
+      const Vec3 unit(r * std::cos(angle), r * std::sin(angle), std::sqrt(1.0 - r * r));
+      const Vec3 gradient = unit.cwiseQuotient(a);
+      area += gradient.norm() / gradient.z() * a.x() * a.y() * r;
+    }
+  }
+  area *= reach / kRings * 2.0 * kPi / kSpokes;
+  const VolumeMetrics m =
+      lines(HalfSpace(), Ellipsoid({.semi_axes = a}), {Mat3::Identity(), {0, 0, height}});
+  EXPECT_NEAR(m.counter_area, area, 1e-6 * area);
+}
+
+TEST(Lines, ALensOfTwoBallsIsTheClosedForm) {
+  const Sphere a({.radius = 0.25}), b({.radius = 0.2});
+  const Vec3 direction = Vec3(0.3, 0.5, 0.7).normalized();
+  for (double depth : {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1}) {
+    const Pose X{Mat3::Identity(), (0.45 - depth) * direction};
+    const VolumeMetrics m = lines(a, b, X);
+    EXPECT_TRUE(test::same(m, closed_form(a, b, X), {2e-6, 0.1})) << "depth " << depth;
+  }
+}
+
+// The hoof that a plane through the middle of the bottom cuts off a cylinder has 2/3 r^2 h; here r
+// is 0.2 and the plane rises 0.3 at the wall (Archimedes, The Method, proposition 11).
+TEST(Lines, AHoofHasTwoThirdsOfTheSquareTimesItsHeight) {
+  const Cylinder cylinder({.radius = 0.2, .half_length = 0.5});
+  const Mat3 tilt = test::turn(Vec3::UnitX(), std::atan2(0.3, 0.2));
+  const Pose X{tilt, tilt * Vec3(0.0, 0.0, 0.5)};
+  EXPECT_NEAR(lines(HalfSpace(), cylinder, X).volume, 2.0 / 3.0 * 0.04 * 0.3, 1e-8);
+}
+
+// Two equal round tubes that cross at a right angle share 16/3 r^3 (Archimedes, proposition 15).
+TEST(Lines, CrossedCylindersShareSixteenThirdsOfTheCube) {
+  const Cylinder cylinder({.radius = 0.2, .half_length = 0.5});
+  const Pose X{test::turn(Vec3::UnitX(), kPi / 2.0), Vec3::Zero()};
+  const VolumeMetrics m = lines(cylinder, cylinder, X);
+  EXPECT_NEAR(m.volume, 16.0 / 3.0 * 0.008, 1e-4 * m.volume);
+  EXPECT_LE(m.centroid.norm(), 1e-6);
+}
+
+TEST(Lines, AnUprightCylinderIsADisc) {
+  const Cylinder cylinder({.radius = 0.2, .half_length = 0.4});
+  for (double tilt : {0.0, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7}) {
+    const Pose X{test::turn({1.0, 0.3, 0.0}, tilt), {0.0, 0.0, 0.3}};
+    EXPECT_NEAR(lines(HalfSpace(), cylinder, X).volume, kPi * 0.04 * 0.1, 1e-8) << tilt;
+  }
+}
+
+// The sanitizers make every pose many times slower and look for other faults: fewer will do.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr int kPoses = 2;
+#else
+constexpr int kPoses = 20;
+#endif
+
+TEST(Lines, StaysWithinTheCertifiedBoundsOfTheOctree) {
+  const std::vector<Shape> all = solids();
+  test::Random random(43);
+  OctreeScratch scratch;
+  Interference octree;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t j = 1; j < all.size(); ++j) {
+      if (is_flat(i) && is_flat(j)) continue;
+      for (int k = 0; k < kPoses; ++k) {
+        const bool shallow = k % 2 == 0;
+        const Pose X = shallow
+                           ? pose_of_depth(all[i], all[j], random.log_uniform(1e-4, 0.03), random)
+                           : random.pose(0.3);
+        const VolumeMetrics m = lines(all[i], all[j], X);
+        octree_interference(all[i], all[j], X, {.tolerance = 2e-2}, scratch, octree);
+        const VolumeMetrics& o = octree.total;
+        EXPECT_LE(std::abs(m.volume - o.volume), o.volume_error + m.volume_error + 1e-15)
+            << name_of(all[i]) << " - " << name_of(all[j]) << " pose " << k << ", V = " << o.volume;
+      }
+    }
+  }
+}
+
+TEST(Lines, OtherOrderOtherSideOfTheSameNumbers) {
+  const std::vector<Shape> all = solids();
+  test::Random random(44);
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    for (std::size_t j = 1; j < all.size(); ++j) {
+      if (is_flat(i) && is_flat(j)) continue;
+      const Pose X = pose_of_depth(all[i], all[j], 0.01, random);
+      const VolumeMetrics m = lines(all[i], all[j], X);
+      const VolumeMetrics mirrored = reversed(transformed(lines(all[j], all[i], X.inverse()), X));
+      EXPECT_NEAR(m.volume, mirrored.volume, 2e-4 * m.volume) << name_of(all[i]) << name_of(all[j]);
+      EXPECT_LE((m.area_vector - mirrored.area_vector).norm(), 5e-3 * m.area);
+    }
+  }
+}
+
+TEST(Lines, AreaVectorAndMomentAreTheGradientOfVolume) {
+  const std::vector<Shape> all = solids();
+  test::Random random(45);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t j = 1; j < all.size(); ++j) {
+      if (is_flat(i) && is_flat(j)) continue;
+      const Pose X = pose_of_depth(all[i], all[j], 0.02, random);
+      const VolumeMetrics m = lines(all[i], all[j], X, 1e-6);
+      const auto volume = [&](const Pose& X_AB) {
+        return lines(all[i], all[j], X_AB, 1e-6).volume;
+      };
+      const test::Gradient g = test::gradient_of_A(volume, X, 1e-3);
+      EXPECT_LE((g.shift - m.area_vector).norm(), 3e-3 * m.area)
+          << name_of(all[i]) << " - " << name_of(all[j]);
+      EXPECT_LE((g.turn - m.area_moment).norm(), 3e-3 * m.area * 0.5)
+          << name_of(all[i]) << " - " << name_of(all[j]);
+    }
+  }
+}
+
+// Of bytes, so that even the signs of zeros and the bits of rounding agree.
+TEST(Lines, EveryInstructionSetGivesTheSameBits) {
+  const std::vector<Shape> all = solids();
+  test::Random random(46);
+  int compared = 0;
+  for (SimdPath path : {SimdPath::kAvx2, SimdPath::kAvx512}) {
+    if (!can_run(path)) continue;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      for (std::size_t j = 1; j < all.size(); ++j) {
+        if (is_flat(i) && is_flat(j)) continue;
+        for (int k = 0; k < kPoses; ++k) {
+          const Pose X = random.pose(0.3);
+          const VolumeMetrics m = lines(all[i], all[j], X, 1e-3, path);
+          const VolumeMetrics portable = lines(all[i], all[j], X, 1e-3, SimdPath::kPortable);
+          const auto same_bits = [&](const auto& x, const auto& y) {
+            return std::memcmp(&x, &y, sizeof(x)) == 0;
+          };
+          ASSERT_TRUE(
+              same_bits(m.volume, portable.volume) && same_bits(m.inertia, portable.inertia) &&
+              same_bits(m.centroid, portable.centroid) && same_bits(m.area, portable.area) &&
+              same_bits(m.area_vector, portable.area_vector) &&
+              same_bits(m.area_moment, portable.area_moment) &&
+              same_bits(m.depth_moment, portable.depth_moment) &&
+              same_bits(m.depth, portable.depth) &&
+              same_bits(m.counter_area, portable.counter_area) &&
+              same_bits(m.volume_error, portable.volume_error))
+              << name_of(all[i]) << " - " << name_of(all[j]);
+          ++compared;
+        }
+      }
+    }
+  }
+  if (compared == 0) GTEST_SKIP() << "this machine has the portable path only";
+}
+
+TEST(Lines, DegeneratePosesGiveFiniteNumbers) {
+  const std::vector<Shape> all = solids();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t j = 1; j < all.size(); ++j) {
+      if (is_flat(i) && is_flat(j)) continue;
+      for (double z : {0.0, 0.1, 0.12, 0.15, 0.2, 0.25, 0.3, 0.35, 0.45, 0.5, nan}) {
+        for (const Mat3& r : {Mat3(Mat3::Identity()), test::turn(Vec3::UnitX(), kPi / 2.0),
+                              test::turn(Vec3::UnitY(), kPi / 4.0)}) {
+          const VolumeMetrics m = lines(all[i], all[j], {r, {0.0, 0.0, z}});
+          EXPECT_TRUE(is_finite(m)) << name_of(all[i]) << " - " << name_of(all[j]) << " z " << z;
+          EXPECT_EQ(m.status == Status::kInvalid, std::isnan(z));
+          EXPECT_GE(m.volume, 0.0);
+        }
+      }
+    }
+  }
+}
+
+TEST(Lines, ASolidInsideAnotherIsContained) {
+  const Cylinder inner({.radius = 0.1, .half_length = 0.1});
+  const Box outer({.half_sizes = {0.5, 0.5, 0.5}});
+  const Pose X{test::turn({1, 2, 3}, 0.4), {0.1, 0.0, -0.1}};
+  const VolumeMetrics m = lines(outer, inner, X);
+  EXPECT_EQ(m.status, Status::kContained);
+  EXPECT_NEAR(m.volume, kPi * 0.01 * 0.2, 1e-15);
+  EXPECT_TRUE(m.centroid.isApprox(X.translation));
+  EXPECT_EQ(m.area_vector.norm(), 0.0);
+}
+
+}  // namespace
+}  // namespace volcontact
