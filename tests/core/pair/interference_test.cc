@@ -36,13 +36,14 @@ Shape some_polytope() {
   return test::random_polytope(12, random);
 }
 
-// One of each shape that an exact engine serves, and one that none serves.
+// One of each shape that an exact engine serves, and two that none serves.
 const Shape kGround = HalfSpace();
 const Shape kBall = Sphere({.radius = 0.5});
 const Shape kEgg = Ellipsoid({.semi_axes = Vec3(0.5, 0.4, 0.3)});
 const Shape kBox = Box({.half_sizes = Vec3(0.5, 0.4, 0.3)});
 const Shape kGem = some_polytope();
 const Shape kCan = Cylinder({.radius = 0.3, .half_length = 0.4});
+const Shape kRing = Torus({.major_radius = 0.3, .minor_radius = 0.1});
 
 struct Served {
   Shape a, b;
@@ -72,8 +73,10 @@ TEST(Interference, AutoTakesTheFirstEngineThatServes) {
     EXPECT_EQ(evaluated(pair.a, pair.b, touching_pose(random)).engine, pair.engine);
     EXPECT_EQ(evaluated(pair.b, pair.a, touching_pose(random)).engine, pair.engine);
   }
-  EXPECT_EQ(engine_for(kBox, kCan), Engine::kOctree);
-  EXPECT_EQ(evaluated(kBox, kCan, touching_pose(random)).engine, Engine::kOctree);
+  EXPECT_EQ(engine_for(kBox, kCan), Engine::kLines);
+  EXPECT_EQ(evaluated(kBox, kCan, touching_pose(random)).engine, Engine::kLines);
+  EXPECT_EQ(engine_for(kBox, kRing), Engine::kOctree);
+  EXPECT_EQ(evaluated(kBox, kRing, touching_pose(random)).engine, Engine::kOctree);
 }
 
 TEST(Interference, ServesSaysWhichEnginesCan) {
