@@ -8,7 +8,7 @@ namespace volcontact {
 /// How an overlap is integrated. docs/theory.md, "Engines".
 enum class Engine : int {
   kAuto = 0,        ///< the fastest that serves the pair to its tolerance
-  kClosedForm = 1,  ///< formulas: half-space with sphere and ellipsoid, sphere-sphere
+  kClosedForm = 1,  ///< formulas: half-space with every round shape, sphere-sphere
   kClip = 2,        ///< exact clipping of half-space, box and convex polytope
   kLines = 3,       ///< quadrature of exact columns: convex solids of plane and round faces
   kOctree = 4,      ///< recursive cells with certified bounds; serves every pair

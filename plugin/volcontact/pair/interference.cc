@@ -4,8 +4,11 @@
 #include <type_traits>
 
 #include "volcontact/pair/clip.h"
+#include "volcontact/pair/closed_form/half_space_capsule.h"
 #include "volcontact/pair/closed_form/half_space_ellipsoid.h"
+#include "volcontact/pair/closed_form/half_space_frustum.h"
 #include "volcontact/pair/closed_form/half_space_sphere.h"
+#include "volcontact/pair/closed_form/half_space_torus.h"
 #include "volcontact/pair/closed_form/sphere_sphere.h"
 #include "volcontact/pair/lines.h"
 #include "volcontact/pair/octree.h"

@@ -36,13 +36,15 @@ Shape some_polytope() {
   return test::random_polytope(12, random);
 }
 
-// One of each shape that an exact engine serves, and two that none serves.
+// One of each shape that an exact engine serves.
 const Shape kGround = HalfSpace();
 const Shape kBall = Sphere({.radius = 0.5});
 const Shape kEgg = Ellipsoid({.semi_axes = Vec3(0.5, 0.4, 0.3)});
 const Shape kBox = Box({.half_sizes = Vec3(0.5, 0.4, 0.3)});
 const Shape kGem = some_polytope();
 const Shape kCan = Cylinder({.radius = 0.3, .half_length = 0.4});
+const Shape kPill = Capsule({.radius = 0.3, .half_length = 0.2});
+const Shape kCup = Frustum({.bottom_radius = 0.3, .top_radius = 0.5, .half_length = 0.4});
 const Shape kRing = Torus({.major_radius = 0.3, .minor_radius = 0.1});
 
 struct Served {
@@ -51,6 +53,8 @@ struct Served {
 };
 const std::vector<Served> kServed{
     {kGround, kBall, Engine::kClosedForm}, {kGround, kEgg, Engine::kClosedForm},
+    {kGround, kCan, Engine::kClosedForm},  {kGround, kPill, Engine::kClosedForm},
+    {kGround, kCup, Engine::kClosedForm},  {kGround, kRing, Engine::kClosedForm},
     {kBall, kBall, Engine::kClosedForm},   {kGround, kBox, Engine::kClip},
     {kGround, kGem, Engine::kClip},        {kBox, kBox, Engine::kClip},
     {kBox, kGem, Engine::kClip},           {kGem, kGem, Engine::kClip}};
