@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "volcontact/shape/shapes.h"
+#include "volcontact/shape/simple_shapes.h"
 
 namespace volcontact {
 
@@ -68,12 +68,14 @@ struct FaceSet {
   std::vector<RoundFace> rounds;
   std::vector<Rim> rims;
   Segment capsule[2];  ///< by owner
+  bool has_bore = false;
+  RoundFace bore;  ///< a tube whose inside is cut out of its owner
 
   void clear() {
     planes.clear();
     rounds.clear();
     rims.clear();
-    capsule[0].present = capsule[1].present = false;
+    capsule[0].present = capsule[1].present = has_bore = false;
   }
   bool has_rounds(Owner owner) const {
     for (const RoundFace& round : rounds) {

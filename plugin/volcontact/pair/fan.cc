@@ -38,6 +38,11 @@ void Fan::clear(FanSums& sums, std::vector<FanSums::OnPlane>& planes, int count)
 void Fan::accept_batch() {
   for (int i = 0; i < 10; ++i) total_.moments[i] += batch_.moments[i];
   total_.depth_moment += batch_.depth_moment;
+  total_.bore.area += batch_.bore.area;
+  total_.bore.x += batch_.bore.x;
+  total_.bore.y += batch_.bore.y;
+  total_.bore.xh += batch_.bore.xh;
+  total_.bore.yh += batch_.bore.yh;
   total_.low = std::min(total_.low, batch_.low);
   total_.high = std::max(total_.high, batch_.high);
   for (int i = 0; i < faces_.active_planes; ++i) {
@@ -141,6 +146,7 @@ void Fan::set(const FaceSet& faces, const std::vector<PlaneFace>& idle, const Fa
                        segment.axis.dot(frame.t), segment.half_length};
   }
   faces_.area_scale = frame.area_scale();
+  faces_.start = faces.has_bore ? 1.0 : 0.0;
   clear();
   const std::size_t on_planes = faces_.active_planes * sizeof(portable::FanBatch::OnPlane);
   const std::size_t size = portable::FanSlices::work_size(faces_) + on_planes / sizeof(Vec8);

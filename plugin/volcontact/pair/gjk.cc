@@ -100,22 +100,6 @@ int keep_used(Corner* s, int count, const Nearest& nearest) {
 
 }  // namespace
 
-Vec3 support_point(const Shape& shape, const Pose& X_AS, const Vec3& e) noexcept {
-  const Vec3 e_S = X_AS.rotation.transpose() * e;
-  return X_AS * std::visit(
-                    [&](const auto& solid) -> Vec3 {
-                      if constexpr (requires { solid.support(e_S); }) return solid.support(e_S);
-                      return Vec3::Zero();
-                    },
-                    shape);
-}
-
-double support_height(const Shape& shape, const Pose& X_AS, const Vec3& e) noexcept {
-  const Vec3 e_S = X_AS.rotation.transpose() * e;
-  return e.dot(X_AS.translation) +
-         std::visit([&](const auto& solid) { return solid.support_height(e_S); }, shape);
-}
-
 Vec3 nearest_in_hull(const std::vector<Vec3>& points) noexcept {
   Corner corners[4];
   corners[0].w = points[0];
@@ -137,15 +121,15 @@ Vec3 nearest_in_hull(const std::vector<Vec3>& points) noexcept {
   return v;
 }
 
-bool find_common_point(const Shape& a, const Shape& b, const Pose& X_AB, Vec3& point) noexcept {
+bool find_common_point(const ConvexView& a, const ConvexView& b, const Pose& X_AB, Vec3& point) noexcept {
   const Pose X_AA;
   Corner corners[4];
   double weights[4] = {1.0, 0.0, 0.0, 0.0};
   int count = 0;
   const auto add_corner = [&](const Vec3& direction) {
     Corner& c = corners[count++];
-    c.a = support_point(a, X_AA, direction);
-    c.w = c.a - support_point(b, X_AB, -direction);
+    c.a = a.support(X_AA, direction);
+    c.w = c.a - b.support(X_AB, -direction);
   };
   add_corner(X_AB.translation.squaredNorm() > 0.0 ? X_AB.translation : Vec3(Vec3::UnitZ()));
   Vec3 v = corners[0].w;  // the place of the simplex nearest the origin

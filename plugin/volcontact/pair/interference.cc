@@ -146,7 +146,8 @@ void interference(const Shape& a, const Shape& b, const Pose& X_AB,
     }
     if constexpr (serves_pair<A, B>(Engine::kLines)) {
       if (out.engine == Engine::kLines) {
-        lines_interference(a, b, X_AB, options, workspace.scratch().lines, out);
+        lines_interference(ConvexView(solid_a), ConvexView(solid_b), X_AB, options,
+                           workspace.scratch().lines, out);
         if (is_finite(out.total)) return;
         out.engine = Engine::kOctree;
       }

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "volcontact/pair/fan_metrics.h"
 #include "volcontact/pair/gauss.h"
 
 namespace volcontact {
@@ -29,7 +30,7 @@ double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(
 
 class LinesRun {
  public:
-  LinesRun(const Shape& a, const Shape& b, const Pose& X_AB, const InterferenceOptions& options,
+  LinesRun(const ConvexView& a, const ConvexView& b, const Pose& X_AB, const InterferenceOptions& options,
            LinesScratch& scratch)
       : a_(a), b_(b), X_AB_(X_AB), options_(options), s_(scratch) {}
 
@@ -39,9 +40,9 @@ class LinesRun {
       case LinesWindow::Kind::kApart:
         return {};
       case LinesWindow::Kind::kAInB:
-        return contained(own_metrics_of(a_));
+        return contained(a_.own_metrics());
       case LinesWindow::Kind::kBInA:
-        return contained(transformed(own_metrics_of(b_), X_AB_));
+        return contained(transformed(b_.own_metrics(), X_AB_));
       case LinesWindow::Kind::kOverlap:
         break;
     }
@@ -194,21 +195,7 @@ class LinesRun {
 
   // The part of the line x + height t inside of both; false when it is empty.
   bool column(const Vec3& x, double& low, double& high) const {
-    const auto local = [&](const Shape& shape, const Pose& X) {
-      const Vec3 o = X.rotation.transpose() * (x - X.translation);
-      const Vec3 d = X.rotation.transpose() * frame_.t;
-      return std::visit(
-          [&](const auto& solid) {
-            if constexpr (requires {
-                            { solid.ray(o, d) } -> std::same_as<RayInterval>;
-                          }) {
-              return solid.ray(o, d);
-            }
-            return RayInterval{};
-          },
-          shape);
-    };
-    const RayInterval in_a = local(a_, Pose{}), in_b = local(b_, X_AB_);
+    const RayInterval in_a = a_.ray(Pose{}, x, frame_.t), in_b = b_.ray(X_AB_, x, frame_.t);
     low = std::max(in_a.enter, in_b.enter);
     high = std::min(in_a.leave, in_b.leave);
     return !in_a.empty() && !in_b.empty() && low < high;
@@ -334,33 +321,14 @@ class LinesRun {
 
   VolumeMetrics metrics() const {
     const FanSums& sums = s_.fan.total();
-    const double* m = sums.moments;
-    const Vec3 &u = frame_.u, &v = frame_.v, &t = frame_.t;
-    MomentSum sum;
-    sum.volume = m[0];
-    sum.first = u * m[1] + v * m[2] + t * m[3];
-    const auto both = [](const Vec3& x, const Vec3& y) -> Mat3 {
-      return x * y.transpose() + y * x.transpose();
-    };
-    sum.second = m[4] * u * u.transpose() + m[5] * both(u, v) + m[6] * v * v.transpose() +
-                 m[7] * both(u, t) + m[8] * both(v, t) + m[9] * t * t.transpose();
-    Surface surface[2];
-    for (Owner owner : {Owner::kA, Owner::kB}) surface[index(owner)] = surface_of(owner);
-    // Both surfaces give S; plane faces give it best.
-    double share_b = 0.5;
-    if (is_flat(Owner::kA) != is_flat(Owner::kB)) share_b = is_flat(Owner::kB) ? 1.0 : 0.0;
-    sum.area_vector = (1.0 - share_b) * surface[0].vector - share_b * surface[1].vector;
-    sum.area_moment = (1.0 - share_b) * surface[0].moment - share_b * surface[1].moment;
-    sum.area = surface[0].area;
-    sum.counter_area = surface[1].area;
-    VolumeMetrics result = sum.metrics();
+    VolumeMetrics result = moments_of(s_.fan, s_.faces.active, frame_).metrics();
     if (!result.touching()) return result;
     if (result.area == 0.0) {
-      const VolumeMetrics own = own_metrics_of(b_);
+      const VolumeMetrics own = b_.own_metrics();
       if (result.volume > kWhole * own.volume) return contained(transformed(own, X_AB_));
     }
     if (result.counter_area == 0.0) {
-      const VolumeMetrics own = own_metrics_of(a_);
+      const VolumeMetrics own = a_.own_metrics();
       if (result.volume > kWhole * own.volume) return contained(own);
     }
     result.depth_moment = sums.depth_moment;
@@ -370,40 +338,8 @@ class LinesRun {
     return transformed(result, Pose{Mat3::Identity(), frame_.center});
   }
 
-  struct Surface {
-    Vec3 vector = Vec3::Zero(), moment = Vec3::Zero();
-    double area = 0.0;
-  };
-
-  Surface surface_of(Owner owner) const {
-    const FanSums& sums = s_.fan.total();
-    const FanFaces& faces = s_.fan.faces();
-    const Vec3 &u = frame_.u, &v = frame_.v, &t = frame_.t;
-    Surface s;
-    for (int i = 0; i < faces.active_planes; ++i) {
-      const PlaneFace& plane = s_.faces.active.planes[faces.planes[i].face];
-      if (plane.owner != owner) continue;
-      const double* x = sums.planes[i].sums;
-      s.area += x[0];
-      s.vector += x[0] * plane.normal;
-      s.moment += (x[1] * u + x[2] * v + x[3] * t).cross(plane.normal);
-    }
-    for (int i = 0; i < faces.round_count; ++i) {
-      const FanRound& r = faces.rounds[i];
-      if (r.owner != index(owner)) continue;
-      const double* x = sums.rounds[i].sums;
-      const Vec3 g(r.g), g_u(r.g_u), g_v(r.g_v), g_t(r.g_t);
-      s.area += sums.rounds[i].area;
-      s.vector += x[0] * g + x[1] * g_u + x[2] * g_v + x[3] * g_t;
-      s.moment +=
-          (x[1] * u + x[2] * v + x[3] * t).cross(g) + (x[4] * u + x[5] * v + x[7] * t).cross(g_u) +
-          (x[5] * u + x[6] * v + x[8] * t).cross(g_v) + (x[7] * u + x[8] * v + x[9] * t).cross(g_t);
-    }
-    return s;
-  }
-
-  const Shape& a_;
-  const Shape& b_;
+  const ConvexView& a_;
+  const ConvexView& b_;
   const Pose& X_AB_;
   const InterferenceOptions& options_;
   LinesScratch& s_;
@@ -415,7 +351,7 @@ class LinesRun {
 
 }  // namespace
 
-void lines_interference(const Shape& a, const Shape& b, const Pose& X_AB,
+void lines_interference(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
                         const InterferenceOptions& options, LinesScratch& scratch,
                         Interference& out) noexcept {
   out.sites.clear();
@@ -424,7 +360,7 @@ void lines_interference(const Shape& a, const Shape& b, const Pose& X_AB,
     out.total.status = Status::kInvalid;
     return;
   }
-  const double volume_a = own_metrics_of(a).volume, volume_b = own_metrics_of(b).volume;
+  const double volume_a = a.own_metrics().volume, volume_b = b.own_metrics().volume;
   if (std::isinf(volume_a) && std::isinf(volume_b)) {
     out.total.status = Status::kUnbounded;
     return;

@@ -73,36 +73,15 @@ constexpr int kMaxMoves = 8;         // from a common point on the faces into th
 constexpr double kRound = 3.5;       // longest by shortest way out of a well-rounded overlap
 constexpr double kThinnest = 1e-14;  // squared relative length below which one rounding cannot see
 
-bool is_bounded(const Shape& shape) { return !std::holds_alternative<HalfSpace>(shape); }
-
-// A point in the middle of a bounded solid.
-Vec3 middle_of(const Shape& shape, const Pose& X_AS) {
-  if (const auto* polytope = std::get_if<ConvexPolytope>(&shape)) {
-    return X_AS * polytope->own_metrics().centroid;
-  }
-  return X_AS.translation;
-}
-
-RayInterval ray_in(const Shape& shape, const Pose& X_AS, const Vec3& o, const Vec3& d) {
-  const Vec3 o_S = X_AS.rotation.transpose() * (o - X_AS.translation);
-  const Vec3 d_S = X_AS.rotation.transpose() * d;
-  return std::visit(
-      [&](const auto& solid) {
-        if constexpr (requires { solid.ray(o_S, d_S); }) return solid.ray(o_S, d_S);
-        return RayInterval{};
-      },
-      shape);
-}
-
 struct Solid2 {
-  const Shape* shape;
+  ConvexView view;
   Pose X;
 };
 
 class WindowSearch {
  public:
-  WindowSearch(const Shape& a, const Shape& b, const Pose& X_AB, SimdPath path, LinesFaces& faces)
-      : solids_{{&a, Pose{}}, {&b, X_AB}}, path_(path), faces_(faces) {}
+  WindowSearch(const ConvexView& a, const ConvexView& b, const Pose& X_AB, SimdPath path, LinesFaces& faces)
+      : solids_{{a, Pose{}}, {b, X_AB}}, path_(path), faces_(faces) {}
 
   LinesWindow run() {
     LinesWindow window;
@@ -125,12 +104,8 @@ class WindowSearch {
     faces_.idle.clear();
     for (Owner owner : {Owner::kA, Owner::kB}) {
       const Solid2& s = solid(owner);
-      std::visit(
-          [&](const auto& shape) {
-            FaceWriter writer(faces_.active, s.X, owner);
-            if constexpr (requires { writer.write(shape); }) writer.write(shape);
-          },
-          *s.shape);
+      FaceWriter writer(faces_.active, s.X, owner);
+      s.view.write_faces(writer);
     }
   }
 
@@ -140,9 +115,9 @@ class WindowSearch {
     std::size_t kept = 0;
     for (const PlaneFace& plane : planes) {
       const Solid2& s = solid(other(plane.owner));
-      if (is_bounded(*s.shape)) {
-        if (-support_height(*s.shape, s.X, -plane.normal) >= plane.offset) return false;
-        if (support_height(*s.shape, s.X, plane.normal) <= plane.offset) {
+      if (s.view.bounded()) {
+        if (-s.view.support_height(s.X, -plane.normal) >= plane.offset) return false;
+        if (s.view.support_height(s.X, plane.normal) <= plane.offset) {
           faces_.idle.push_back(plane);
           continue;
         }
@@ -187,16 +162,15 @@ class WindowSearch {
   bool find_start(Vec3& start) const {
     for (const PlaneFace& plane : faces_.active.planes) {
       const Solid2& s = solid(other(plane.owner));
-      if (!is_bounded(*s.shape)) continue;
-      const Vec3 deepest = support_point(*s.shape, s.X, -plane.normal);
-      const Vec3 inward = middle_of(*s.shape, s.X) - deepest;
+      if (!s.view.bounded()) continue;
+      const Vec3 deepest = s.view.support(s.X, -plane.normal);
+      const Vec3 inward = s.view.middle(s.X) - deepest;
       const double depth = plane.offset - plane.normal.dot(deepest);
       start = deepest + std::min(0.5, 0.5 * depth / plane.normal.dot(inward)) * inward;
       if (inside(start)) return true;
     }
-    const bool bounded[2] = {is_bounded(*solids_[0].shape), is_bounded(*solids_[1].shape)};
-    if (bounded[0] && bounded[1]) {
-      return find_common_point(*solids_[0].shape, *solids_[1].shape, solids_[1].X, start) &&
+    if (solids_[0].view.bounded() && solids_[1].view.bounded()) {
+      return find_common_point(solids_[0].view, solids_[1].view, solids_[1].X, start) &&
              move_inside(start);
     }
     return false;
@@ -209,8 +183,8 @@ class WindowSearch {
       if (inside(x)) return true;
       const Vec3 d = way_from_faces(x);
       if (!(d.norm() > 0.0)) return false;
-      const RayInterval in_a = ray_in(*solids_[0].shape, solids_[0].X, x, d),
-                        in_b = ray_in(*solids_[1].shape, solids_[1].X, x, d);
+      const RayInterval in_a = solids_[0].view.ray(solids_[0].X, x, d),
+                        in_b = solids_[1].view.ray(solids_[1].X, x, d);
       const double enter = std::max(in_a.enter, in_b.enter),
                    leave = std::min(in_a.leave, in_b.leave);
       if (!(enter < leave)) return false;
@@ -317,7 +291,7 @@ class WindowSearch {
 
 }  // namespace
 
-LinesWindow find_lines_window(const Shape& a, const Shape& b, const Pose& X_AB, SimdPath path,
+LinesWindow find_lines_window(const ConvexView& a, const ConvexView& b, const Pose& X_AB, SimdPath path,
                               LinesFaces& faces) {
   return WindowSearch(a, b, X_AB, path, faces).run();
 }

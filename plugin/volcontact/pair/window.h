@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "volcontact/base/simd.h"
-#include "volcontact/pair/face_set.h"
+#include "volcontact/pair/convex_view.h"
 
 namespace volcontact {
 
@@ -44,7 +44,7 @@ struct LinesFaces {
 /// chords of the overlap in 16 directions then give its place, size and shape; directions are taken
 /// in the frame that the last chords made, until the overlap looks round from the inside.
 /// docs/theory.md, "Lines".
-LinesWindow find_lines_window(const Shape& a, const Shape& b, const Pose& X_AB, SimdPath path,
+LinesWindow find_lines_window(const ConvexView& a, const ConvexView& b, const Pose& X_AB, SimdPath path,
                               LinesFaces& faces);
 
 }  // namespace volcontact

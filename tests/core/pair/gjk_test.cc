@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/support/random_shapes.h"
+#include "volcontact/shape/shapes.h"
 
 namespace volcontact {
 namespace {
@@ -14,6 +15,18 @@ double distance(const Shape& shape, const Pose& X, const Vec3& p) {
                     shape);
 }
 
+bool common_point(const Shape& a, const Shape& b, const Pose& X_AB, Vec3& p) {
+  return std::visit(
+      [&](const auto& solid_a, const auto& solid_b) {
+        if constexpr (HasFaces<std::decay_t<decltype(solid_a)>> &&
+                      HasFaces<std::decay_t<decltype(solid_b)>>) {
+          return find_common_point(ConvexView(solid_a), ConvexView(solid_b), X_AB, p);
+        }
+        return false;
+      },
+      a, b);
+}
+
 TEST(FindCommonPoint, BallsMeetExactlyWhenTheirCentersAreNearEnough) {
   test::Random random(31);
   const Shape a = Sphere({.radius = 0.3}), b = Sphere({.radius = 0.2});
@@ -21,7 +34,7 @@ TEST(FindCommonPoint, BallsMeetExactlyWhenTheirCentersAreNearEnough) {
     const Pose X{random.rotation(), random.uniform(0.0, 1.0) * random.direction()};
     const double gap = X.translation.norm() - 0.5;
     Vec3 p;
-    ASSERT_EQ(find_common_point(a, b, X, p), gap < 0.0) << "gap " << gap;
+    ASSERT_EQ(common_point(a, b, X, p), gap < 0.0) << "gap " << gap;
     if (gap >= 0.0) continue;
     EXPECT_LE(distance(a, Pose{}, p), 1e-12);
     EXPECT_LE(distance(b, X, p), 1e-12);
@@ -43,7 +56,7 @@ TEST(FindCommonPoint, AnAnswerIsAlwaysAPointOfBoth) {
       for (int i = 0; i < 40; ++i) {
         const Pose X = random.pose(0.5);
         Vec3 p;
-        if (!find_common_point(a, b, X, p)) continue;
+        if (!common_point(a, b, X, p)) continue;
         ++met;
         EXPECT_LE(distance(a, Pose{}, p), 1e-12) << name_of(a);
         EXPECT_LE(distance(b, X, p), 1e-12) << name_of(b);

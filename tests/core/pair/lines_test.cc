@@ -34,7 +34,15 @@ VolumeMetrics lines(const Shape& a, const Shape& b, const Pose& X_AB, double tol
   static LinesScratch scratch;
   scratch.path = path;
   Interference out;
-  lines_interference(a, b, X_AB, {.tolerance = tolerance}, scratch, out);
+  std::visit(
+      [&](const auto& solid_a, const auto& solid_b) {
+        if constexpr (HasFaces<std::decay_t<decltype(solid_a)>> &&
+                      HasFaces<std::decay_t<decltype(solid_b)>>) {
+          lines_interference(ConvexView(solid_a), ConvexView(solid_b), X_AB, {.tolerance = tolerance},
+                             scratch, out);
+        }
+      },
+      a, b);
   EXPECT_EQ(out.sites.size(), out.total.touching() ? 1u : 0u);
   return out.total;
 }

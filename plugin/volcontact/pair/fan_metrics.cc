@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/fan_metrics.h"
+
+namespace volcontact {
+namespace {
+
+struct Surface {
+  Vec3 vector = Vec3::Zero(), moment = Vec3::Zero();
+  double area = 0.0;
+};
+
+void add_planes(const Fan& fan, const FaceSet& faces, const FanFrame& frame, Owner owner,
+                Surface& s) {
+  for (int i = 0; i < fan.faces().active_planes; ++i) {
+    const PlaneFace& plane = faces.planes[fan.faces().planes[i].face];
+    if (plane.owner != owner) continue;
+    const double* x = fan.total().planes[i].sums;
+    s.area += x[0];
+    s.vector += x[0] * plane.normal;
+    s.moment += (x[1] * frame.u + x[2] * frame.v + x[3] * frame.t).cross(plane.normal);
+  }
+}
+
+void add_rounds(const Fan& fan, const FanFrame& frame, Owner owner, Surface& s) {
+  const Vec3 &u = frame.u, &v = frame.v, &t = frame.t;
+  for (int i = 0; i < fan.faces().round_count; ++i) {
+    const FanRound& r = fan.faces().rounds[i];
+    if (r.owner != index(owner)) continue;
+    const double* x = fan.total().rounds[i].sums;
+    const Vec3 g(r.g), g_u(r.g_u), g_v(r.g_v), g_t(r.g_t);
+    s.area += fan.total().rounds[i].area;
+    s.vector += x[0] * g + x[1] * g_u + x[2] * g_v + x[3] * g_t;
+    s.moment += (x[1] * u + x[2] * v + x[3] * t).cross(g) +
+                (x[4] * u + x[5] * v + x[7] * t).cross(g_u) +
+                (x[5] * u + x[6] * v + x[8] * t).cross(g_v) +
+                (x[7] * u + x[8] * v + x[9] * t).cross(g_t);
+  }
+}
+
+// The wall of a bore about t, which looks towards the axis.
+void add_bore(const Fan& fan, const FanFrame& frame, Surface& s) {
+  const FanSums::OnBore& b = fan.total().bore;
+  const double inverse = 1.0 / frame.u.norm();
+  s.area += b.area * inverse;
+  s.vector -= (b.x * frame.u + b.y * frame.v) * (inverse * inverse);
+  s.moment -= frame.t.cross(b.xh * frame.u + b.yh * frame.v) * (inverse * inverse);
+}
+
+}  // namespace
+
+MomentSum moments_of(const Fan& fan, const FaceSet& faces, const FanFrame& frame) {
+  const double* m = fan.total().moments;
+  const Vec3 &u = frame.u, &v = frame.v, &t = frame.t;
+  const auto both = [](const Vec3& x, const Vec3& y) -> Mat3 {
+    return x * y.transpose() + y * x.transpose();
+  };
+  MomentSum sum;
+  sum.volume = m[0];
+  sum.first = u * m[1] + v * m[2] + t * m[3];
+  sum.second = m[4] * u * u.transpose() + m[5] * both(u, v) + m[6] * v * v.transpose() +
+               m[7] * both(u, t) + m[8] * both(v, t) + m[9] * t * t.transpose();
+  Surface surface[2];
+  for (Owner owner : {Owner::kA, Owner::kB}) {
+    Surface& s = surface[index(owner)];
+    add_planes(fan, faces, frame, owner, s);
+    add_rounds(fan, frame, owner, s);
+    if (faces.has_bore && faces.bore.owner == owner) add_bore(fan, frame, s);
+  }
+  double share_b = 0.5;
+  const bool flat_a = !faces.has_rounds(Owner::kA), flat_b = !faces.has_rounds(Owner::kB);
+  if (flat_a != flat_b) share_b = flat_b ? 1.0 : 0.0;
+  sum.area_vector = (1.0 - share_b) * surface[0].vector - share_b * surface[1].vector;
+  sum.area_moment = (1.0 - share_b) * surface[0].moment - share_b * surface[1].moment;
+  sum.area = surface[0].area;
+  sum.counter_area = surface[1].area;
+  return sum;
+}
+
+}  // namespace volcontact
