@@ -12,8 +12,8 @@ constexpr double kFar = 1e30;     // stands for "no bound"
 constexpr double kSteep = 1e-9;   // a plane whose normal is this normal to the columns is a wall
 constexpr double kOnFace = 1e-9;  // a crossing this close to the envelope counts, per height
 constexpr double kOnSilhouette = 1e-6;  // a root this small is zero, per the largest one
+constexpr double kBeforeWall = 1e-10;   // of rho: there the tube along the columns is wide open
 constexpr double kWallTilt = 1e-7;      // a tube tilted less against the columns is a wall [rad]
-constexpr double kLeastTilt = 3e-9;     // of columns against a tube [rad]
 constexpr int kNodes = 5;               // Gauss nodes on each piece of a half-plane
 constexpr int kKnotParts = 3;           // of a half-plane, each with one knot of two round faces
 constexpr int kRootSteps = 8;           // at most; each of them squares the error
@@ -38,6 +38,8 @@ void Fan::clear(FanSums& sums, std::vector<FanSums::OnPlane>& planes, int count)
 void Fan::accept_batch() {
   for (int i = 0; i < 10; ++i) total_.moments[i] += batch_.moments[i];
   total_.depth_moment += batch_.depth_moment;
+  total_.bore.depth_moment += batch_.bore.depth_moment;
+  total_.bore.reach = std::max(total_.bore.reach, batch_.bore.reach);
   total_.bore.area += batch_.bore.area;
   total_.bore.x += batch_.bore.x;
   total_.bore.y += batch_.bore.y;
@@ -72,41 +74,42 @@ void put(const Vec3& x, double* out) {
   for (int i = 0; i < 3; ++i) out[i] = x[i];
 }
 
-// Columns along a tube never leave it: then the image `d` of their direction is tilted as little as
-// the digits allow, towards the image `u` of another direction.
-Vec3 leaving(const RoundFace& face, const Vec3& d, const Vec3& u) {
-  const double least = kLeastTilt * face.map.norm(), length = d.norm();
-  if (face.cone || length >= least) return d;
-  return length > 0.0 ? Vec3(d * (least / length)) : Vec3(u * (least / u.norm()));
-}
-
 FanRound seen_from(const RoundFace& face, const FanFrame& frame) {
   const Vec3 o = face.map * (frame.center - face.center);
   const Vec3 u = face.map * frame.u, v = face.map * frame.v;
-  const Vec3 d = leaving(face, face.map * frame.t, u);
-  const Vec3 dj = face.weighted(d);
+  const Vec3 d = face.map * frame.t, dj = face.weighted(d);
   const double a = d.dot(dj);
+  const Mat3 back = face.map.transpose();
   FanRound r;
+  put(back * face.weighted(o), r.g);
+  put(back * face.weighted(u), r.g_u);
+  put(back * face.weighted(v), r.g_v);
+  put(back * dj, r.g_t);
+  r.sign[0] = r.sign[1] = face.cone ? -1.0 : 1.0;
+  r.sign[2] = 1.0;
+  r.owner = index(face.owner);
+  r.part = face.part;
+  r.wall = !face.cone && a < kWallTilt * kWallTilt * face.map.squaredNorm();
+  if (r.wall) {
+    // The root is that of minus the face's function.
+    r.mid = r.mid_u = r.mid_v = 0.0;
+    put(o, r.x);
+    put(u, r.x_u);
+    put(v, r.x_v);
+    r.reach = r.weight = 1.0;
+    r.lower = r.upper = 0;
+    return r;
+  }
   r.mid = -o.dot(dj) / a;
   r.mid_u = -u.dot(dj) / a;
   r.mid_v = -v.dot(dj) / a;
   put(d.cross(o) / a, r.x);
   put(d.cross(u) / a, r.x_u);
   put(d.cross(v) / a, r.x_v);
-  r.sign[0] = r.sign[1] = face.cone ? -1.0 : 1.0;
-  r.sign[2] = 1.0;
   r.reach = face.level() / a;
-  const Mat3 back = face.map.transpose();
-  put(back * face.weighted(o), r.g);
-  put(back * face.weighted(u), r.g_u);
-  put(back * face.weighted(v), r.g_v);
-  put(back * dj, r.g_t);
   r.weight = 1.0 / std::abs(a);
-  r.wall = !face.cone && a < kWallTilt * kWallTilt * face.map.squaredNorm();
   r.lower = a > 0.0 ? -1 : d.z() > 0.0 ? 1 : 0;
   r.upper = a > 0.0 ? 1 : d.z() < 0.0 ? -1 : 0;
-  r.owner = index(face.owner);
-  r.part = face.part;
   return r;
 }
 

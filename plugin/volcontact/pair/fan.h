@@ -84,17 +84,19 @@ struct FanSums {
   /// int dS times R, x R, y R, x h R, y h R over the wall of a bore of radius R.
   struct OnBore {
     double area, x, y, xh, yh;
+    double depth_moment;  ///< int (rho - 1) dV / R
+    double reach;         ///< largest rho
   };
   OnBore bore;
-  double low, high;  ///< least and largest height seen; with a bore, largest rho
+  double low, high;  ///< least and largest height seen
   OnRound rounds[FanFaces::kMaxRounds];
   OnPlane* planes;  ///< as many as there are active planes
 };
 
-/// Both solids seen from the axis of a fan, which must pass through their overlap: `center` inside of
-/// every face. Or the axis of a bore of radius 1 in the frame's units, with u and v normal to each
-/// other and of one length: what lies within it does not count, and only half-planes that cut the
-/// overlap of the bodies at the wall do. Integrates columns over half-planes, eight at a time.
+/// Both solids seen from the axis of a fan, which must pass through their overlap: `center` inside
+/// of every face. Or the axis of a bore of radius 1 in the frame's units, with u and v normal to
+/// each other and of one length: what lies within it does not count, and only half-planes that cut
+/// the overlap of the bodies at the wall do. Integrates columns over half-planes, eight at a time.
 ///
 /// In one half-plane every face is a line or an arc, height over rho, and the overlap is what lies
 /// above the lower and below the upper ones. Where it ends, and where one face takes over from

@@ -39,15 +39,26 @@ class BreakSearch {
         find_on_edge(i, r);
         for (int j = 0; j < i; ++j) intersect(plane(i), plane(j), r, kCorner);
       }
+      for (int j = 0; j < i && faces_.has_bore; ++j) intersect(plane(i), plane(j), kBore, kCorner);
       for (int j = 0; j < i; ++j) {
         for (int k = 0; k < j; ++k) intersect(plane(i), plane(j), plane(k));
       }
     }
-    for (const Rim& rim : faces_.rims) follow(rim);
+    for (const Rim& rim : faces_.rims) {
+      const Owner met = other(rim.owner);
+      if (faces_.has_rounds(met)) {
+        follow(rim, [&](const Vec3& x) { return largest_value(x, met); });
+      }
+      if (faces_.has_bore)
+        follow(rim, [&](const Vec3& x) { return faces_.bore(frame_.center + x); });
+    }
   }
 
  private:
   enum Use { kCorner, kTouch, kTop };
+  static constexpr int kBore = -2;  // stands for the index of a round face
+
+  const RoundFace& round(int r) const { return r == kBore ? faces_.bore : faces_.rounds[r]; }
 
   Plane plane(int i) const {
     const PlaneFace& p = faces_.planes[i];
@@ -93,7 +104,7 @@ class BreakSearch {
     const double a2 = along.squaredNorm();
     if (!(a2 > kParallel * p.normal.squaredNorm() * q.normal.squaredNorm())) return;
     const Vec3 o = (p.offset * q.normal.cross(along) + q.offset * along.cross(p.normal)) / a2;
-    const RoundFace& f = faces_.rounds[r];
+    const RoundFace& f = round(r);
     const Vec3 d = f.map * along, y = f.map * (frame_.center + o - f.center);
     const double a = d.dot(f.weighted(d)), b = d.dot(f.weighted(y));
     const double c = y.dot(f.weighted(y)) - f.level();
@@ -116,8 +127,8 @@ class BreakSearch {
 
   // Where a rim of one solid enters or leaves the round faces of the other one. Only near the axis
   // of the fan: the overlap may be a small part of the rim.
-  void follow(const Rim& rim) {
-    if (!faces_.has_rounds(other(rim.owner))) return;
+  template <typename Function>
+  void follow(const Rim& rim, Function&& value_at) {
     const Vec3 from = frame_.center - rim.center;
     const double middle = std::atan2(from.dot(rim.radius_v), from.dot(rim.radius_u));
     const double reach = std::max(frame_.u.norm(), frame_.v.norm()) / rim.radius_u.norm();
@@ -126,7 +137,7 @@ class BreakSearch {
       return rim.center - frame_.center + rim.radius_u * std::cos(angle) +
              rim.radius_v * std::sin(angle);
     };
-    const auto value = [&](double angle) { return largest_value(x_at(angle), other(rim.owner)); };
+    const auto value = [&](double angle) { return value_at(x_at(angle)); };
     double angles[kRimSteps + 1], values[kRimSteps + 1];
     for (int i = 0; i <= kRimSteps; ++i) {
       angles[i] = middle + (i - 0.5 * kRimSteps) * step;
@@ -216,13 +227,13 @@ class BreakSearch {
   // Whether a place on the unbounded round face belongs to the face: on the right part of a
   // capsule, on the right half of a cone.
   bool is_on(const Vec3& x, int r) const {
-    const RoundFace& f = faces_.rounds[r];
+    const RoundFace& f = round(r);
     if (f.cone && !((f.map * (frame_.center + x - f.center)).z() >= 0.0)) return false;
     return is_on_part(x, f);
   }
 
   // Inside of both solids to the tolerance, up to the faces named.
-  bool is_inside(const Vec3& x, int plane_1, int plane_2, int plane_3, int round) const {
+  bool is_inside(const Vec3& x, int plane_1, int plane_2, int plane_3, int own) const {
     for (int i = 0; i < static_cast<int>(faces_.planes.size()); ++i) {
       if (i == plane_1 || i == plane_2 || i == plane_3) continue;
       const Plane p = plane(i);
@@ -230,7 +241,7 @@ class BreakSearch {
     }
     for (int r = 0; r < static_cast<int>(faces_.rounds.size()); ++r) {
       const RoundFace& f = faces_.rounds[r];
-      if (round >= 0 && f.owner == faces_.rounds[round].owner) continue;
+      if (own >= 0 && f.owner == faces_.rounds[own].owner) continue;
       if (!is_on_part(x, f)) continue;
       const Vec3 place = frame_.center + x;
       if (!(f(place) <= 2.0 * tolerance_ * f.half_gradient(place).norm())) return false;
@@ -243,8 +254,9 @@ class BreakSearch {
     breaks_.low = std::min(breaks_.low, y.z());
     breaks_.high = std::max(breaks_.high, y.z());
     const double length = std::hypot(y.x(), y.y());
-    if (use != kTop && length > 1e-9)
-      breaks_.directions.push_back({y.x() / length, y.y() / length});
+    if (use == kTop || !(length > 1e-9)) return;
+    if (faces_.has_bore && length < 1.0 - 1e-9) return;
+    breaks_.directions.push_back({y.x() / length, y.y() / length});
   }
 
   const FaceSet& faces_;

@@ -30,10 +30,9 @@ void add_rounds(const Fan& fan, const FanFrame& frame, Owner owner, Surface& s) 
     const Vec3 g(r.g), g_u(r.g_u), g_v(r.g_v), g_t(r.g_t);
     s.area += fan.total().rounds[i].area;
     s.vector += x[0] * g + x[1] * g_u + x[2] * g_v + x[3] * g_t;
-    s.moment += (x[1] * u + x[2] * v + x[3] * t).cross(g) +
-                (x[4] * u + x[5] * v + x[7] * t).cross(g_u) +
-                (x[5] * u + x[6] * v + x[8] * t).cross(g_v) +
-                (x[7] * u + x[8] * v + x[9] * t).cross(g_t);
+    s.moment +=
+        (x[1] * u + x[2] * v + x[3] * t).cross(g) + (x[4] * u + x[5] * v + x[7] * t).cross(g_u) +
+        (x[5] * u + x[6] * v + x[8] * t).cross(g_v) + (x[7] * u + x[8] * v + x[9] * t).cross(g_t);
   }
 }
 
@@ -74,6 +73,28 @@ MomentSum moments_of(const Fan& fan, const FaceSet& faces, const FanFrame& frame
   sum.area = surface[0].area;
   sum.counter_area = surface[1].area;
   return sum;
+}
+
+double share_of_bore(const Fan& fan, const FaceSet& faces, const FanFrame& frame) {
+  constexpr double kBalanced = 1e-3;  // weight of areas where all area vectors vanish
+  Surface wall, rest;
+  add_bore(fan, frame, wall);
+  add_planes(fan, faces, frame, faces.bore.owner, rest);
+  add_rounds(fan, frame, faces.bore.owner, rest);
+  const double on_wall = wall.vector.squaredNorm() + kBalanced * wall.area * wall.area;
+  const double on_rest = rest.vector.squaredNorm() + kBalanced * rest.area * rest.area;
+  return on_wall > 0.0 ? on_wall / (on_wall + on_rest) : 0.0;
+}
+
+void add_patches(const Fan& fan, const FaceSet& faces, const FanFrame& frame,
+                 std::vector<LinesRegion::PlanePatch>& patches) {
+  for (int i = 0; i < fan.faces().active_planes; ++i) {
+    const PlaneFace& plane = faces.planes[fan.faces().planes[i].face];
+    const double* x = fan.total().planes[i].sums;
+    if (!(x[0] > 0.0)) continue;
+    const Vec3 first = x[1] * frame.u + x[2] * frame.v + x[3] * frame.t;
+    patches.push_back({plane.owner, plane.normal, plane.offset, x[0], frame.center + first / x[0]});
+  }
 }
 
 }  // namespace volcontact

@@ -121,7 +121,8 @@ Vec3 nearest_in_hull(const std::vector<Vec3>& points) noexcept {
   return v;
 }
 
-bool find_common_point(const ConvexView& a, const ConvexView& b, const Pose& X_AB, Vec3& point) noexcept {
+bool find_common_point(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
+                       Vec3& point) noexcept {
   const Pose X_AA;
   Corner corners[4];
   double weights[4] = {1.0, 0.0, 0.0, 0.0};

@@ -10,7 +10,7 @@
 #include "volcontact/pair/closed_form/half_space_sphere.h"
 #include "volcontact/pair/closed_form/half_space_torus.h"
 #include "volcontact/pair/closed_form/sphere_sphere.h"
-#include "volcontact/pair/lines.h"
+#include "volcontact/pair/composed_lines.h"
 #include "volcontact/pair/octree.h"
 
 namespace volcontact {
@@ -18,6 +18,7 @@ namespace volcontact {
 struct InterferenceWorkspace::Scratch {
   ClipScratch clip;
   LinesScratch lines;
+  ComposedScratch composed;
   OctreeScratch octree;
 };
 
@@ -39,6 +40,11 @@ constexpr bool has_clip = requires(const A& a, const B& b, const Pose& X_AB, Cli
 };
 template <typename A, typename B>
 constexpr bool has_lines = HasFaces<A> && HasFaces<B> && (HasRoundFaces<A> || HasRoundFaces<B>);
+template <typename S>
+constexpr bool is_composed = std::is_same_v<S, Csg>;
+template <typename A, typename B>
+constexpr bool has_composed_lines =
+    (is_composed<A> && (is_composed<B> || HasFaces<B>)) || (HasFaces<A> && is_composed<B>);
 template <typename A, typename B>
 constexpr bool both_unbounded = std::is_same_v<A, HalfSpace> && std::is_same_v<B, HalfSpace>;
 
@@ -52,17 +58,26 @@ constexpr bool serves_pair(Engine engine) {
     case Engine::kClip:
       return has_clip<A, B> || has_clip<B, A>;
     case Engine::kLines:
-      return has_lines<A, B>;
+      return has_lines<A, B> || has_composed_lines<A, B>;
     case Engine::kOctree:
       return !both_unbounded<A, B>;
   }
   return false;
 }
 
+// Not every composed solid can be written as the pieces that lines need.
 template <typename A, typename B>
-constexpr Engine engine_for_pair() {
+bool serves_pair(Engine engine, const A& a, const B& b) {
+  if constexpr (has_composed_lines<A, B>) {
+    if (engine == Engine::kLines) return has_lines_pieces(a) && has_lines_pieces(b);
+  }
+  return serves_pair<A, B>(engine);
+}
+
+template <typename A, typename B>
+Engine engine_for_pair(const A& a, const B& b) {
   for (Engine engine : {Engine::kClosedForm, Engine::kClip, Engine::kLines, Engine::kOctree}) {
-    if (serves_pair<A, B>(engine)) return engine;
+    if (serves_pair(engine, a, b)) return engine;
   }
   return Engine::kAuto;
 }
@@ -93,6 +108,21 @@ VolumeMetrics clip_metrics(const A& a, const B& b, const Pose& X_AB, ClipScratch
   }
 }
 
+// False when the pose is beyond the engine.
+template <typename A, typename B>
+bool lines(const A& a, const B& b, const Pose& X_AB, const InterferenceOptions& options,
+           InterferenceWorkspace::Scratch& scratch, Interference& out) {
+  if constexpr (has_lines<A, B>) {
+    lines_interference(ConvexView(a), ConvexView(b), X_AB, options, scratch.lines, out);
+  } else {
+    for (auto& pieces : scratch.composed.pieces) pieces.clear();
+    add_lines_pieces(a, scratch.composed.pieces[0]);
+    add_lines_pieces(b, scratch.composed.pieces[1]);
+    if (!composed_lines(X_AB, options, scratch.lines, scratch.composed, out)) return false;
+  }
+  return is_finite(out.total);
+}
+
 void set_one_site(const VolumeMetrics& metrics, Interference& out) {
   out.total = metrics;
   out.sites.clear();
@@ -108,20 +138,15 @@ void set_status(Status status, Interference& out) {
 }  // namespace
 
 bool serves(Engine engine, const Shape& a, const Shape& b) {
-  return std::visit(
-      [=](const auto& solid_a, const auto& solid_b) {
-        return serves_pair<std::decay_t<decltype(solid_a)>, std::decay_t<decltype(solid_b)>>(
-            engine);
-      },
-      a, b);
+  return std::visit([=](const auto& solid_a,
+                        const auto& solid_b) { return serves_pair(engine, solid_a, solid_b); },
+                    a, b);
 }
 
 Engine engine_for(const Shape& a, const Shape& b) {
   return std::visit(
-      [](const auto& solid_a, const auto& solid_b) {
-        return engine_for_pair<std::decay_t<decltype(solid_a)>, std::decay_t<decltype(solid_b)>>();
-      },
-      a, b);
+      [](const auto& solid_a, const auto& solid_b) { return engine_for_pair(solid_a, solid_b); }, a,
+      b);
 }
 
 void interference(const Shape& a, const Shape& b, const Pose& X_AB,
@@ -130,8 +155,9 @@ void interference(const Shape& a, const Shape& b, const Pose& X_AB,
   const auto run = [&](const auto& solid_a, const auto& solid_b) {
     using A = std::decay_t<decltype(solid_a)>;
     using B = std::decay_t<decltype(solid_b)>;
-    const bool wanted = options.engine != Engine::kAuto && serves_pair<A, B>(options.engine);
-    out.engine = wanted ? options.engine : engine_for_pair<A, B>();
+    const bool wanted =
+        options.engine != Engine::kAuto && serves_pair(options.engine, solid_a, solid_b);
+    out.engine = wanted ? options.engine : engine_for_pair(solid_a, solid_b);
     if (!X_AB.is_finite()) return set_status(Status::kInvalid, out);
     if constexpr (both_unbounded<A, B>) return set_status(Status::kUnbounded, out);
     if constexpr (serves_pair<A, B>(Engine::kClosedForm)) {
@@ -146,9 +172,7 @@ void interference(const Shape& a, const Shape& b, const Pose& X_AB,
     }
     if constexpr (serves_pair<A, B>(Engine::kLines)) {
       if (out.engine == Engine::kLines) {
-        lines_interference(ConvexView(solid_a), ConvexView(solid_b), X_AB, options,
-                           workspace.scratch().lines, out);
-        if (is_finite(out.total)) return;
+        if (lines(solid_a, solid_b, X_AB, options, workspace.scratch(), out)) return;
         out.engine = Engine::kOctree;
       }
     }

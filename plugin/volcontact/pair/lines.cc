@@ -30,12 +30,12 @@ double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(
 
 class LinesRun {
  public:
-  LinesRun(const ConvexView& a, const ConvexView& b, const Pose& X_AB, const InterferenceOptions& options,
-           LinesScratch& scratch)
+  LinesRun(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
+           const InterferenceOptions& options, LinesScratch& scratch)
       : a_(a), b_(b), X_AB_(X_AB), options_(options), s_(scratch) {}
 
-  VolumeMetrics run() {
-    window_ = find_lines_window(a_, b_, X_AB_, s_.path, s_.faces);
+  VolumeMetrics run(bool look_inside) {
+    window_ = find_lines_window(a_, b_, X_AB_, s_.path, look_inside, s_.faces);
     switch (window_.kind) {
       case LinesWindow::Kind::kApart:
         return {};
@@ -53,6 +53,10 @@ class LinesRun {
     const bool smooth = s_.breaks.complete && s_.breaks.directions.empty();
     if (!smooth || !integrate_smooth()) integrate_arcs();
     return metrics();
+  }
+
+  void add_patches(std::vector<LinesRegion::PlanePatch>& patches) const {
+    volcontact::add_patches(s_.fan, s_.faces.active, frame_, patches);
   }
 
  private:
@@ -279,7 +283,7 @@ class LinesRun {
     }
     s_.fan.integrate(s_.path, u, v, weight, section);
     for (int i = 0; i < kLanes; ++i) section[i] *= weight[i];
-    const double error = estimate(section);
+    const double error = legendre_error(section);
     if (error > kTarget * options_.tolerance * window_.volume && arc.depth < kMaxDepth) {
       divide(arc);
       return;
@@ -298,25 +302,6 @@ class LinesRun {
     s_.fan.ends(s_.path, u, v, rho, height);
     s_.arcs.push_back({arc.from, middles[0] * rho[0], arc.through, arc.depth + 1});
     s_.arcs.push_back({arc.through, middles[1] * rho[4], arc.to, arc.depth + 1});
-  }
-
-  // Error of the Gauss rule from how fast the Legendre coefficients of the integrand fall; `terms`
-  // are its values times the weights of the rule.
-  static double estimate(const double* terms) {
-    double c[kLanes] = {};
-    for (int i = 0; i < kLanes; ++i) {
-      const double x = 2.0 * OuterRule::kNodes[i] - 1.0;
-      double p = 1.0, p_next = x;
-      for (int k = 0; k < kLanes; ++k) {
-        c[k] += (2 * k + 1) * terms[i] * p;
-        const double p_new = ((2 * k + 3) * x * p_next - (k + 1) * p) / (k + 2);
-        p = p_next;
-        p_next = p_new;
-      }
-    }
-    const double last = std::abs(c[6]) + std::abs(c[7]), before = std::abs(c[4]) + std::abs(c[5]);
-    const double fall = before > 0.0 ? std::min(1.0, last / before) : 0.0;
-    return last * fall * fall * fall;
   }
 
   VolumeMetrics metrics() const {
@@ -366,8 +351,19 @@ void lines_interference(const ConvexView& a, const ConvexView& b, const Pose& X_
     return;
   }
   if (!(volume_a > 0.0) || !(volume_b > 0.0)) return;
-  out.total = LinesRun(a, b, X_AB, options, scratch).run();
+  out.total = LinesRun(a, b, X_AB, options, scratch).run(false);
   if (out.total.touching()) out.sites.push_back(out.total);
+}
+
+void add_lines_region(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
+                      const InterferenceOptions& options, LinesScratch& scratch,
+                      std::vector<LinesRegion>& regions) noexcept {
+  LinesRun run(a, b, X_AB, options, scratch);
+  LinesRegion region;
+  region.metrics = run.run(true);
+  if (!region.metrics.touching()) return;
+  run.add_patches(region.patches);
+  regions.push_back(std::move(region));
 }
 
 }  // namespace volcontact

@@ -6,6 +6,7 @@
 #include "volcontact/pair/fan.h"
 #include "volcontact/pair/fan_breaks.h"
 #include "volcontact/pair/interference.h"
+#include "volcontact/pair/lines_region.h"
 #include "volcontact/pair/window.h"
 
 namespace volcontact {
@@ -32,5 +33,10 @@ struct LinesScratch {
 void lines_interference(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
                         const InterferenceOptions& options, LinesScratch& scratch,
                         Interference& out) noexcept;
+
+/// Adds the overlap of two convex bodies that are pieces of solids, if there is one.
+void add_lines_region(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
+                      const InterferenceOptions& options, LinesScratch& scratch,
+                      std::vector<LinesRegion>& regions) noexcept;
 
 }  // namespace volcontact

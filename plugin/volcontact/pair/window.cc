@@ -80,15 +80,16 @@ struct Solid2 {
 
 class WindowSearch {
  public:
-  WindowSearch(const ConvexView& a, const ConvexView& b, const Pose& X_AB, SimdPath path, LinesFaces& faces)
+  WindowSearch(const ConvexView& a, const ConvexView& b, const Pose& X_AB, SimdPath path,
+               LinesFaces& faces)
       : solids_{{a, Pose{}}, {b, X_AB}}, path_(path), faces_(faces) {}
 
-  LinesWindow run() {
+  LinesWindow run(bool look_inside) {
     LinesWindow window;
     write_faces();
     if (!sort_planes()) return window;
     for (Owner owner : {Owner::kA, Owner::kB}) {
-      if (count_planes(owner) > 0 || faces_.active.has_rounds(owner)) continue;
+      if (look_inside || count_planes(owner) > 0 || faces_.active.has_rounds(owner)) continue;
       window.kind = owner == Owner::kB ? LinesWindow::Kind::kAInB : LinesWindow::Kind::kBInA;
       return window;
     }
@@ -117,7 +118,10 @@ class WindowSearch {
       const Solid2& s = solid(other(plane.owner));
       if (s.view.bounded()) {
         if (-s.view.support_height(s.X, -plane.normal) >= plane.offset) return false;
-        if (s.view.support_height(s.X, plane.normal) <= plane.offset) {
+        // Of two faces in one plane A's stays.
+        const double reach = s.view.support_height(s.X, plane.normal) - plane.offset;
+        const double rounding = kRounding * (std::abs(plane.offset) + s.X.translation.norm());
+        if (reach <= (plane.owner == Owner::kA ? -2.0 * rounding : rounding)) {
           faces_.idle.push_back(plane);
           continue;
         }
@@ -172,6 +176,10 @@ class WindowSearch {
     if (solids_[0].view.bounded() && solids_[1].view.bounded()) {
       return find_common_point(solids_[0].view, solids_[1].view, solids_[1].X, start) &&
              move_inside(start);
+    }
+    for (const Solid2& s : solids_) {
+      start = s.view.middle(s.X);
+      if (s.view.bounded() && inside(start)) return true;
     }
     return false;
   }
@@ -291,9 +299,9 @@ class WindowSearch {
 
 }  // namespace
 
-LinesWindow find_lines_window(const ConvexView& a, const ConvexView& b, const Pose& X_AB, SimdPath path,
-                              LinesFaces& faces) {
-  return WindowSearch(a, b, X_AB, path, faces).run();
+LinesWindow find_lines_window(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
+                              SimdPath path, bool look_inside, LinesFaces& faces) {
+  return WindowSearch(a, b, X_AB, path, faces).run(look_inside);
 }
 
 }  // namespace volcontact

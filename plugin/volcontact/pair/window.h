@@ -43,8 +43,9 @@ struct LinesFaces {
 /// do not meet proves them apart (the method of Gilbert, Johnson and Keerthi). From a common point,
 /// chords of the overlap in 16 directions then give its place, size and shape; directions are taken
 /// in the frame that the last chords made, until the overlap looks round from the inside.
-/// docs/theory.md, "Lines".
-LinesWindow find_lines_window(const ConvexView& a, const ConvexView& b, const Pose& X_AB, SimdPath path,
-                              LinesFaces& faces);
+/// A solid inside the other is reported as such, or with `look_inside` as an overlap like any
+/// other. docs/theory.md, "Lines".
+LinesWindow find_lines_window(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
+                              SimdPath path, bool look_inside, LinesFaces& faces);
 
 }  // namespace volcontact

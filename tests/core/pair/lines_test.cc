@@ -38,8 +38,8 @@ VolumeMetrics lines(const Shape& a, const Shape& b, const Pose& X_AB, double tol
       [&](const auto& solid_a, const auto& solid_b) {
         if constexpr (HasFaces<std::decay_t<decltype(solid_a)>> &&
                       HasFaces<std::decay_t<decltype(solid_b)>>) {
-          lines_interference(ConvexView(solid_a), ConvexView(solid_b), X_AB, {.tolerance = tolerance},
-                             scratch, out);
+          lines_interference(ConvexView(solid_a), ConvexView(solid_b), X_AB,
+                             {.tolerance = tolerance}, scratch, out);
         }
       },
       a, b);

@@ -1,0 +1,417 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/bored_lines.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+#include "volcontact/pair/fan_metrics.h"
+#include "volcontact/pair/gauss.h"
+
+namespace volcontact {
+namespace {
+
+using OuterRule = GaussRule<kLanes>;
+
+constexpr int kOutline = 32;          // places tried on the outline of the overlap
+constexpr int kNarrowings = 3;        // of a place where the outline comes near the wall
+constexpr int kEndNarrowings = 3;     // of a place where it crosses the wall
+constexpr double kTarget = 1e-2;      // share of the tolerance at which an arc is no longer divided
+constexpr double kInnerError = 3e-6;  // of the rule along a half-plane, per V; as measured
+constexpr int kMaxDepth = 4;          // of divisions of an arc
+constexpr double kWidestAngle = 1.6;  // of an undivided arc [rad]
+constexpr double kSameAngle = 1e-9;
+
+double wrapped(double angle) { return angle - 2.0 * kPi * std::floor(angle / (2.0 * kPi) + 0.5); }
+
+class BoreRun {
+ public:
+  BoreRun(const ConvexView& a, const ConvexView& b, const Pose& X_AB, const RoundFace& bore,
+          const InterferenceOptions& options, LinesScratch& lines, BoreScratch& scratch,
+          std::vector<LinesRegion>& regions)
+      : a_(a),
+        b_(b),
+        X_AB_(X_AB),
+        bore_(bore),
+        options_(options),
+        s_(lines),
+        outline_(scratch.outline),
+        breaks_(scratch.breaks),
+        regions_(regions) {
+    axis_ = bore.map.row(0).cross(bore.map.row(1)).normalized();
+    radius_ = 1.0 / bore.map.row(0).norm();
+  }
+
+  bool run() {
+    window_ = find_lines_window(a_, b_, X_AB_, s_.path, true, s_.faces);
+    if (window_.kind == LinesWindow::Kind::kApart) return true;
+    trace_outline();
+    const auto [nearest, farthest] =
+        std::minmax_element(outline_.begin(), outline_.end(),
+                            [](const Place& p, const Place& q) { return p.rho < q.rho; });
+    if (farthest->rho <= 1.0) return true;  // all of it in the bore
+    if (nearest->rho > 1.0) return outside_all_round();
+    return each_lobe();
+  }
+
+ private:
+  using Place = BoreScratch::Place;
+
+  Vec3 from_axis(const Vec3& x) const {
+    const Vec3 d = x - bore_.center;
+    return d - axis_ * axis_.dot(d);
+  }
+
+  // A fan along the bore's axis through the middle of the overlap, in which its outline is about
+  // round.
+  void set_outline_frame() {
+    const Mat3 basis = basis_with_z(axis_);
+    const Mat3 seen = basis.transpose() * window_.spread;
+    const Eigen::Matrix2d square = (seen * seen.transpose()).topLeftCorner<2, 2>();
+    const Eigen::Matrix2d l = Eigen::LLT<Eigen::Matrix2d>(square).matrixL();
+    frame_.center = window_.center;
+    frame_.t = axis_;
+    frame_.u = basis.col(0) * l(0, 0) + basis.col(1) * l(1, 0);
+    frame_.v = basis.col(1) * l(1, 1);
+    s_.faces.active.has_bore = false;
+    s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
+  }
+
+  // Eight places of the outline at these angles.
+  void places_at(const double* angles, Place* places) {
+    double u[kLanes], v[kLanes], rho[kLanes], height[kLanes];
+    for (int i = 0; i < kLanes; ++i) {
+      u[i] = std::cos(angles[i]);
+      v[i] = std::sin(angles[i]);
+    }
+    s_.fan.ends(s_.path, u, v, rho, height);
+    for (int i = 0; i < kLanes; ++i) {
+      Place& p = places[i];
+      p.angle = angles[i];
+      p.point = frame_.center + rho[i] * (u[i] * frame_.u + v[i] * frame_.v) + height[i] * frame_.t;
+      p.rho = from_axis(p.point).norm() / radius_;
+    }
+  }
+
+  void trace_outline() {
+    set_outline_frame();
+    outline_.resize(kOutline);
+    double angles[kLanes];
+    for (int k = 0; k < kOutline; k += kLanes) {
+      for (int i = 0; i < kLanes; ++i) angles[i] = 2.0 * kPi * (k + i) / kOutline;
+      places_at(angles, &outline_[k]);
+    }
+    // Places that come nearest to the wall from within may hide a lobe between them.
+    const int n = kOutline;
+    for (int k = 0; k < n; ++k) {
+      const Place p = outline_[k], before = outline_[(k + n - 1) % n],
+                  after = outline_[(k + 1) % n];
+      if (p.rho > 1.0 || p.rho < before.rho || p.rho < after.rho) continue;
+      if (p.rho + 2.0 * (p.rho - std::min(before.rho, after.rho)) < 1.0) continue;
+      const Place top = summit(p.angle - 2.0 * kPi / n, p.angle + 2.0 * kPi / n);
+      if (top.rho > 1.0) outline_.push_back(top);
+    }
+    std::sort(outline_.begin(), outline_.end(),
+              [](const Place& p, const Place& q) { return p.angle < q.angle; });
+  }
+
+  // Where the outline is farthest from the axis between two angles.
+  Place summit(double from, double to) {
+    Place places[kLanes];
+    Place top;
+    for (int step = 0; step < kNarrowings; ++step) {
+      double angles[kLanes];
+      for (int i = 0; i < kLanes; ++i) angles[i] = from + (to - from) * (i + 1) / (kLanes + 1);
+      places_at(angles, places);
+      const int best = static_cast<int>(
+          std::max_element(places, places + kLanes,
+                           [](const Place& p, const Place& q) { return p.rho < q.rho; }) -
+          places);
+      top = places[best];
+      const double width = (to - from) / (kLanes + 1);
+      if (step + 1 == kNarrowings && best > 0 && best + 1 < kLanes) {
+        // The summit of the parabola through three places.
+        const double low = places[best - 1].rho, high = places[best + 1].rho;
+        const double bend = low - 2.0 * top.rho + high;
+        if (bend < 0.0) {
+          std::fill_n(angles, kLanes, top.angle + 0.5 * width * (low - high) / bend);
+          places_at(angles, places);
+          if (places[0].rho > top.rho) top = places[0];
+        }
+      }
+      from = top.angle - width;
+      to = top.angle + width;
+    }
+    top.angle = std::fmod(top.angle + 2.0 * kPi, 2.0 * kPi);
+    return top;
+  }
+
+  // Where the outline crosses the wall between an inner and an outer place.
+  Place crossing(Place inner, Place outer) {
+    double from = inner.angle, to = outer.angle;
+    to = from + wrapped(to - from);
+    double rho_from = inner.rho, rho_to = outer.rho;
+    Place places[kLanes];
+    for (int step = 0; step < kEndNarrowings; ++step) {
+      double angles[kLanes];
+      for (int i = 0; i < kLanes; ++i) angles[i] = from + (to - from) * (i + 1) / (kLanes + 1);
+      places_at(angles, places);
+      for (int i = 0; i < kLanes; ++i) {
+        if (places[i].rho > 1.0) {
+          to = angles[i];
+          rho_to = places[i].rho;
+          break;
+        }
+        from = angles[i];
+        rho_from = places[i].rho;
+      }
+      // The last step goes to where the chord crosses.
+      if (step + 2 == kEndNarrowings) {
+        const double at = from + (to - from) * (1.0 - rho_from) / (rho_to - rho_from);
+        std::fill_n(angles, kLanes, at);
+        places_at(angles, places);
+        return places[0];
+      }
+    }
+    return places[0];
+  }
+
+  double angle_of(const Vec3& x) const {
+    const Vec3 d = from_axis(x);
+    return std::atan2(d.dot(side_v_), d.dot(side_u_));
+  }
+
+  // The frame about the axis of the bore for a lobe about the place x: angles count from there.
+  void set_bore_frame(const Vec3& x) {
+    const Vec3 d = from_axis(x);
+    side_u_ = d.normalized();
+    side_v_ = axis_.cross(side_u_);
+    frame_.center = x - d;
+    frame_.t = axis_;
+    frame_.u = radius_ * side_u_;
+    frame_.v = radius_ * side_v_;
+    s_.faces.active.has_bore = true;
+    s_.faces.active.bore = bore_;
+    s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
+  }
+
+  // All of the outline lies outside of the bore: the overlap goes round it, or misses it.
+  bool outside_all_round() {
+    double turn = 0.0;
+    set_bore_frame(outline_[0].point);
+    for (std::size_t i = 0; i < outline_.size(); ++i) {
+      turn += wrapped(angle_of(outline_[(i + 1) % outline_.size()].point) -
+                      angle_of(outline_[i].point));
+    }
+    if (std::abs(turn) < kPi) return false;
+    integrate(-kPi, kPi, false);
+    return true;
+  }
+
+  bool each_lobe() {
+    const std::size_t n = outline_.size();
+    std::size_t first = 0;  // an inner place whose next one is outer
+    while (first < n && !(outline_[first].rho <= 1.0 && outline_[(first + 1) % n].rho > 1.0))
+      ++first;
+    const std::size_t begun = regions_.size();
+    for (std::size_t k = 0; k < n;) {
+      const Place inner = outline_[(first + k) % n];
+      std::size_t last = k + 1;
+      Place top = outline_[(first + last) % n];
+      while (last < n && outline_[(first + last) % n].rho > 1.0) {
+        const Place& p = outline_[(first + last) % n];
+        if (p.rho > top.rho) top = p;
+        ++last;
+      }
+      const bool is_lobe = inner.rho <= 1.0 && last > k + 1;
+      if (is_lobe && !add_lobe(inner, top, outline_[(first + last - 1) % n], k + 1, last, first)) {
+        regions_.resize(begun);
+        return false;
+      }
+      k = is_lobe ? last : k + 1;
+    }
+    return true;
+  }
+
+  // The places from number `from` to before `to` lie outside of the wall.
+  bool add_lobe(const Place& inner, const Place& top, const Place& last_outer, std::size_t from,
+                std::size_t to, std::size_t first) {
+    const std::size_t n = outline_.size();
+    const Place outer = outline_[(first + from) % n], after = outline_[(first + to) % n];
+    set_outline_frame();
+    const Place begin = crossing(inner, outer), end = crossing(after, last_outer);
+    set_bore_frame(top.point);
+    double low = angle_of(begin.point), high = angle_of(end.point);
+    if (low > 0.0) low -= 2.0 * kPi;
+    if (high < 0.0) high += 2.0 * kPi;
+    if (low > high || high - low > 2.0 * kPi) return false;
+    // Past the ends a half-plane would cut the overlap, but not at the wall.
+    for (std::size_t k = from; k < to; ++k) {
+      const double angle = angle_of(outline_[(first + k) % n].point);
+      const bool within =
+          (angle >= low && angle <= high) || angle - 2.0 * kPi >= low || angle + 2.0 * kPi <= high;
+      if (!within) return false;
+    }
+    integrate(low, high, true);
+    return true;
+  }
+
+  void set_breaks(double low, double high, bool open) {
+    const double tolerance = 1e-9 * radius_;
+    find_breaks(s_.faces.active, frame_, tolerance, s_.breaks);
+    breaks_.clear();
+    for (const Eigen::Vector2d& d : s_.breaks.directions) {
+      const double angle = std::atan2(d.y(), d.x());
+      for (double turned : {angle - 2.0 * kPi, angle, angle + 2.0 * kPi}) {
+        if (turned > low + kSameAngle && turned < high - kSameAngle) breaks_.push_back(turned);
+      }
+    }
+    if (!open && !breaks_.empty()) {
+      // A whole turn begins at a break.
+      const double shift = breaks_.front() - low;
+      for (double& angle : breaks_) {
+        angle -= shift;
+        if (angle <= low) angle += 2.0 * kPi;
+      }
+      turned_by_ = shift;
+    }
+    breaks_.push_back(low);
+    breaks_.push_back(high);
+    std::sort(breaks_.begin(), breaks_.end());
+    breaks_.erase(std::unique(breaks_.begin(), breaks_.end(),
+                              [](double a, double b) { return b - a < kSameAngle; }),
+                  breaks_.end());
+    if (breaks_.back() < high) breaks_.back() = high;
+  }
+
+  // The region between two angles; `open` when it ends there, else it goes all round.
+  void integrate(double low, double high, bool open) {
+    turned_by_ = 0.0;
+    error_ = 0.0;
+    set_breaks(low, high, open);
+    volume_scale_ = 0.0;
+    const bool smooth_ring = !open && breaks_.size() == 2 && ring();
+    for (std::size_t i = 0; i + 1 < breaks_.size() && !smooth_ring; ++i) {
+      const double from = breaks_[i], to = breaks_[i + 1];
+      const int parts = std::max(1, static_cast<int>(std::ceil((to - from) / kWidestAngle)));
+      for (int k = 0; k < parts; ++k) {
+        const Arc arc{from + (to - from) * k / parts, from + (to - from) * (k + 1) / parts,
+                      open && i == 0 && k == 0, open && i + 2 == breaks_.size() && k + 1 == parts};
+        integrate_arc(arc, 0.0, 1.0, 0);
+      }
+    }
+    add_region();
+  }
+
+  struct Arc {
+    double from, to;
+    bool begins, ends;  // with a section of no size
+
+    // The angle at x in [0, 1] and its derivative: a section that grows from nothing like a power
+    // of the angle is smooth in x.
+    void at(double x, double& angle, double& speed) const {
+      const double width = to - from;
+      if (begins && ends) {
+        angle = from + 0.5 * width * (1.0 - std::cos(kPi * x));
+        speed = 0.5 * width * kPi * std::sin(kPi * x);
+      } else if (begins) {
+        angle = from + width * x * x;
+        speed = 2.0 * width * x;
+      } else if (ends) {
+        angle = to - width * (1.0 - x) * (1.0 - x);
+        speed = 2.0 * width * (1.0 - x);
+      } else {
+        angle = from + width * x;
+        speed = width;
+      }
+    }
+  };
+
+  void integrate_arc(const Arc& arc, double x_from, double x_to, int depth) {
+    double u[kLanes], v[kLanes], weight[kLanes], section[kLanes];
+    for (int i = 0; i < kLanes; ++i) {
+      double angle, speed;
+      arc.at(x_from + (x_to - x_from) * OuterRule::kNodes[i], angle, speed);
+      u[i] = std::cos(angle + turned_by_);
+      v[i] = std::sin(angle + turned_by_);
+      weight[i] = OuterRule::kWeights[i] * speed * (x_to - x_from);
+    }
+    s_.fan.integrate(s_.path, u, v, weight, section);
+    double volume = 0.0;
+    for (int i = 0; i < kLanes; ++i) volume += section[i] *= weight[i];
+    const double error = legendre_error(section);
+    volume_scale_ = std::max(volume_scale_, volume);
+    if (error > kTarget * options_.tolerance * volume_scale_ && depth < kMaxDepth) {
+      const double middle = 0.5 * (x_from + x_to);
+      integrate_arc(arc, x_from, middle, depth + 1);
+      integrate_arc(arc, middle, x_to, depth + 1);
+      return;
+    }
+    error_ += error;
+    s_.fan.accept_batch();
+  }
+
+  // A ring without corners: equal steps of the angle. False when 32 of them are too few.
+  bool ring() {
+    double u[kLanes], v[kLanes], weight[kLanes], section[kLanes], volume[2] = {0.0, 0.0};
+    constexpr int kBatches = 4;
+    std::fill_n(weight, kLanes, 2.0 * kPi / (kBatches * kLanes));
+    for (int k = 0; k < kBatches; ++k) {
+      for (int i = 0; i < kLanes; ++i) {
+        const double angle = 2.0 * kPi * (i * kBatches + k) / (kBatches * kLanes);
+        u[i] = std::cos(angle);
+        v[i] = std::sin(angle);
+      }
+      s_.fan.integrate(s_.path, u, v, weight, section);
+      s_.fan.accept_batch();
+      volume[k % 2] += s_.fan.batch().moments[0];
+    }
+    const double sum = volume[0] + volume[1];
+    const double relative = std::abs(volume[0] - volume[1]) / sum;
+    error_ = relative * std::sqrt(relative) * sum;
+    if (error_ <= kTarget * options_.tolerance * sum) return true;
+    s_.fan.clear();
+    error_ = 0.0;
+    return false;
+  }
+
+  void add_region() {
+    const FanSums& sums = s_.fan.total();
+    VolumeMetrics m = moments_of(s_.fan, s_.faces.active, frame_).metrics();
+    if (!m.touching()) return;
+    // Columns across the wall where this is what pushes, else along the axis.
+    const double share = share_of_bore(s_.fan, s_.faces.active, frame_);
+    m.depth_moment = share * sums.bore.depth_moment * radius_ + (1.0 - share) * sums.depth_moment;
+    m.depth = share * (sums.bore.reach - 1.0) * radius_ + (1.0 - share) * (sums.high - sums.low);
+    m.volume_error = error_ + kInnerError * m.volume;
+    if (error_ > options_.tolerance * m.volume) m.status = Status::kApproximate;
+    LinesRegion region;
+    region.metrics = transformed(m, Pose{Mat3::Identity(), frame_.center});
+    add_patches(s_.fan, s_.faces.active, frame_, region.patches);
+    regions_.push_back(std::move(region));
+  }
+
+  const ConvexView& a_;
+  const ConvexView& b_;
+  const Pose& X_AB_;
+  const RoundFace& bore_;
+  const InterferenceOptions& options_;
+  LinesScratch& s_;
+  std::vector<Place>& outline_;
+  std::vector<double>& breaks_;
+  std::vector<LinesRegion>& regions_;
+  LinesWindow window_;
+  FanFrame frame_;
+  Vec3 axis_, side_u_, side_v_;
+  double radius_;
+  double turned_by_ = 0.0, error_ = 0.0, volume_scale_ = 0.0;
+};
+
+}  // namespace
+
+bool bored_lines(const ConvexView& a, const ConvexView& b, const Pose& X_AB, const RoundFace& bore,
+                 const InterferenceOptions& options, LinesScratch& lines, BoreScratch& scratch,
+                 std::vector<LinesRegion>& regions) noexcept {
+  return BoreRun(a, b, X_AB, bore, options, lines, scratch, regions).run();
+}
+
+}  // namespace volcontact

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/composed_lines.h"
+
+#include <algorithm>
+
+namespace volcontact {
+namespace {
+
+constexpr double kSamePlane = 1e-9;  // of normals, and of offsets per size of a patch
+constexpr double kRoundTube = 1e-9;  // how far a tube may be from round
+
+// A quadric as the tube that it is: false if it is something else.
+bool as_tube(const Quadric& q, RoundFace& tube) {
+  if (q.bend != Bend::kConvex) return false;
+  const double h = 0.5 * q.hessian.trace();
+  if (!(h > 0.0)) return false;
+  const Mat3 along = Mat3::Identity() - q.hessian / h;  // a a^T
+  int largest;
+  const double square = along.diagonal().maxCoeff(&largest);
+  if (!(square > 0.3)) return false;
+  const Vec3 a = along.col(largest).normalized();
+  if (!((along - a * a.transpose()).norm() < kRoundTube)) return false;
+  const Vec3 center = -(q.linear - a * a.dot(q.linear)) / h;
+  const double square_radius = -2.0 * (q.constant + 0.5 * q.linear.dot(center)) / h;
+  if (!(square_radius > 0.0)) return false;
+  const Mat3 basis = basis_with_z(a);
+  tube = RoundFace{};
+  tube.map.setZero();
+  tube.map.row(0) = basis.col(0).transpose() / std::sqrt(square_radius);
+  tube.map.row(1) = basis.col(1).transpose() / std::sqrt(square_radius);
+  tube.center = center;
+  return true;
+}
+
+class ComposedRun {
+ public:
+  ComposedRun(const Pose& X_AB, const InterferenceOptions& options, LinesScratch& lines,
+              ComposedScratch& scratch, Interference& out)
+      : X_AB_(X_AB), options_(options), lines_(lines), s_(scratch), out_(out) {}
+
+  bool run() {
+    s_.regions.clear();
+    for (std::size_t a = 0; a < s_.pieces[0].size(); ++a) {
+      for (std::size_t b = 0; b < s_.pieces[1].size(); ++b) {
+        const std::size_t before = s_.regions.size();
+        if (!add_regions(s_.pieces[0][a], s_.pieces[1][b])) return false;
+        for (std::size_t i = before; i < s_.regions.size(); ++i) {
+          s_.regions[i].piece[0] = static_cast<int>(a);
+          s_.regions[i].piece[1] = static_cast<int>(b);
+        }
+      }
+    }
+    join_sites();
+    return true;
+  }
+
+ private:
+  bool add_regions(const LinesPiece& a, const LinesPiece& b) {
+    const Pose X_BodyA_A = a.X_SB.inverse();
+    const Pose X = X_BodyA_A * X_AB_ * b.X_SB;  // body B in body A
+    if (!find_bores(a, b, X)) return false;
+    const std::size_t before = s_.regions.size();
+    if (s_.bores.empty()) {
+      add_lines_region(a.body, b.body, X, options_, lines_, s_.regions);
+    } else if (!bored_lines(a.body, b.body, X, s_.bores[0], options_, lines_, s_.bore,
+                            s_.regions)) {
+      return false;
+    }
+    for (std::size_t i = before; i < s_.regions.size(); ++i) {
+      LinesRegion& region = s_.regions[i];
+      region.metrics = transformed(region.metrics, a.X_SB);
+      std::erase_if(region.patches, [](const auto& patch) { return !(patch.area > 0.0); });
+      for (LinesRegion::PlanePatch& patch : region.patches) {
+        patch.normal = a.X_SB.rotation * patch.normal;
+        patch.offset += patch.normal.dot(a.X_SB.translation);
+        patch.centroid = a.X_SB * patch.centroid;
+      }
+      std::erase_if(region.patches, [&](const LinesRegion::PlanePatch& patch) {
+        return !(patch.owner == Owner::kA ? is_seam(patch, a, Pose{}) : is_seam(patch, b, X_AB_));
+      });
+    }
+    return true;
+  }
+
+  // Whether a patch lies in a seam of its piece, whose solid has the pose X in A.
+  static bool is_seam(const LinesRegion::PlanePatch& patch, const LinesPiece& piece,
+                      const Pose& X) {
+    if (!piece.seams) return false;
+    return std::any_of(piece.seams->begin(), piece.seams->end(), [&](const Seam& seam) {
+      const Vec3 normal = X.rotation * seam.normal;
+      const double offset = seam.offset + normal.dot(X.translation);
+      return same_plane(patch, normal, offset);
+    });
+  }
+
+  static bool same_plane(const LinesRegion::PlanePatch& patch, const Vec3& normal, double offset) {
+    const double size = std::sqrt(patch.area) + patch.centroid.norm();
+    return (patch.normal - normal).norm() < kSamePlane &&
+           std::abs(patch.offset - offset) < kSamePlane * size;
+  }
+
+  // The bores that both bodies reach, in body A's frame; false for more than one, or another face.
+  bool find_bores(const LinesPiece& a, const LinesPiece& b, const Pose& X) {
+    s_.bores.clear();
+    const auto add = [&](const LinesPiece& piece, Owner owner, const Pose& X_SolidBodyA) {
+      if (!piece.carved) return true;
+      for (const Quadric& face : *piece.carved) {
+        RoundFace tube;
+        if (!as_tube(transformed(face, X_SolidBodyA), tube)) return false;
+        tube.owner = owner;
+        const ConvexView& other_body = owner == Owner::kA ? b.body : a.body;
+        if (reaches(other_body, owner == Owner::kA ? X : Pose{}, tube)) s_.bores.push_back(tube);
+      }
+      return true;
+    };
+    return add(a, Owner::kA, a.X_SB) && add(b, Owner::kB, X_AB_.inverse() * a.X_SB) &&
+           s_.bores.size() <= 1;
+  }
+
+  // False when a plane along the tube's axis keeps the two apart.
+  static bool reaches(const ConvexView& body, const Pose& X, const RoundFace& tube) {
+    if (!body.bounded()) return true;
+    const Vec3 axis = tube.map.row(0).cross(tube.map.row(1)).normalized();
+    Vec3 out = body.middle(X) - tube.center;
+    out -= axis * axis.dot(out);
+    const double length = out.norm();
+    if (!(length > 0.0)) return true;
+    out /= length;
+    const double nearest = -body.support_height(X, -out) - out.dot(tube.center);
+    return nearest < 1.0 / tube.map.row(0).norm();
+  }
+
+  // Regions on the two sides of a seam have the same patch there: they are one site, and the patch
+  // is no surface.
+  void join_sites() {
+    const int n = static_cast<int>(s_.regions.size());
+    s_.site_of.resize(n);
+    for (int i = 0; i < n; ++i) s_.site_of[i] = i;
+    for (int i = 0; i < n; ++i) {
+      for (LinesRegion::PlanePatch& p : s_.regions[i].patches) {
+        for (int j = 0; j < i; ++j) {
+          for (LinesRegion::PlanePatch& q : s_.regions[j].patches) join(i, p, j, q);
+        }
+      }
+    }
+    out_.sites.clear();
+    out_.total = VolumeMetrics{};
+    for (int site = 0; site < n; ++site) {
+      if (s_.site_of[site] != site) continue;
+      VolumeMetrics sum = s_.regions[site].metrics;
+      for (int i = site + 1; i < n; ++i) {
+        if (root(i) == site) sum = sum + s_.regions[i].metrics;
+      }
+      settle_status(sum);
+      out_.total = out_.sites.empty() ? sum : out_.total + sum;
+      out_.sites.push_back(sum);
+    }
+  }
+
+  int root(int i) const {
+    while (s_.site_of[i] != i) i = s_.site_of[i];
+    return i;
+  }
+
+  void join(int i, LinesRegion::PlanePatch& p, int j, LinesRegion::PlanePatch& q) {
+    if (p.owner != q.owner || !same_plane(p, -q.normal, -q.offset)) return;
+    const double shared = std::min(p.area, q.area);
+    if (!(shared > 0.0)) return;
+    if (!holds(s_.regions[i], q) && !holds(s_.regions[j], p)) return;
+    const int a = root(i), b = root(j);
+    s_.site_of[std::max(a, b)] = std::min(a, b);
+    for (int k : {i, j}) {
+      VolumeMetrics& m = s_.regions[k].metrics;
+      double& area = p.owner == Owner::kA ? m.area : m.counter_area;
+      area = std::max(0.0, area - shared);
+    }
+    p.area -= shared;
+    q.area -= shared;
+  }
+
+  // Whether the middle of a patch belongs to a region as well.
+  bool holds(const LinesRegion& region, const LinesRegion::PlanePatch& patch) const {
+    const double slack = kSamePlane * (std::sqrt(patch.area) + patch.centroid.norm());
+    for (Owner owner : {Owner::kA, Owner::kB}) {
+      const LinesPiece& piece = s_.pieces[index(owner)][region.piece[index(owner)]];
+      const Pose X = owner == Owner::kA ? piece.X_SB : X_AB_ * piece.X_SB;
+      const RayInterval span = piece.body.ray(X, patch.centroid, patch.normal);
+      if (span.empty() || span.enter > slack || span.leave < -slack) return false;
+    }
+    return true;
+  }
+
+  // A part that is contained is no contained solid, unless it is all of the overlap.
+  void settle_status(VolumeMetrics& m) const {
+    if (m.status == Status::kContained && m.area > 0.0 && m.counter_area > 0.0) {
+      m.status = Status::kOk;
+    }
+  }
+
+  const Pose& X_AB_;
+  const InterferenceOptions& options_;
+  LinesScratch& lines_;
+  ComposedScratch& s_;
+  Interference& out_;
+};
+
+}  // namespace
+
+void add_lines_pieces(const Csg& solid, std::vector<LinesPiece>& pieces) {
+  for (const CarvedPiece& piece : solid.carved_pieces()) {
+    std::visit(
+        [&](const auto& body) {
+          if constexpr (HasFaces<std::decay_t<decltype(body)>>) {
+            pieces.push_back({ConvexView(body), piece.X_SB, &piece.carved, &piece.seams});
+          }
+        },
+        piece.body);
+  }
+}
+
+bool composed_lines(const Pose& X_AB, const InterferenceOptions& options, LinesScratch& lines,
+                    ComposedScratch& scratch, Interference& out) noexcept {
+  return ComposedRun(X_AB, options, lines, scratch, out).run();
+}
+
+}  // namespace volcontact

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/bored_lines.h"
+
+#include <gtest/gtest.h>
+
+#include "core/support/gradient.h"
+#include "volcontact/pair/interference.h"
+
+namespace volcontact {
+namespace {
+
+constexpr double kBore = 0.01;  // radius [m]
+constexpr double kHalf = 0.02;  // half height of the block
+
+// A block with a bore along z.
+Shape bored_block() {
+  return Csg(Csg::Operation::kDifference, Csg(Box({.half_sizes = {0.03, 0.03, kHalf}})),
+             Csg(Cylinder({.radius = kBore, .half_length = 0.03})));
+}
+
+Interference evaluated(const Shape& a, const Shape& b, const Pose& X_AB,
+                       Engine engine = Engine::kAuto, double tolerance = 1e-3) {
+  InterferenceWorkspace workspace;
+  Interference out;
+  interference(a, b, X_AB, {.tolerance = tolerance, .engine = engine}, workspace, out);
+  return out;
+}
+
+// Area of a disc of radius r outside of a disc of radius R whose center is d away.
+double lune(double r, double R, double d) {
+  if (d + r <= R) return 0.0;
+  if (d >= r + R) return kPi * r * r;
+  if (d + R <= r) return kPi * (r * r - R * R);
+  const double a = std::acos((d * d + r * r - R * R) / (2.0 * d * r));
+  const double b = std::acos((d * d + R * R - r * r) / (2.0 * d * R));
+  return kPi * r * r -
+         (r * r * (a - 0.5 * std::sin(2.0 * a)) + R * R * (b - 0.5 * std::sin(2.0 * b)));
+}
+
+TEST(BoredLines, AShiftedPegIsALuneTimesTheHeight) {
+  for (double clearance : {3e-4, 2e-5}) {
+    const double r = kBore - clearance;
+    const Shape peg = Cylinder({.radius = r, .half_length = 0.05});
+    for (double depth : {1e-6, 1e-5, 3e-4, 3e-3}) {
+      const double shift = clearance + depth;
+      const Pose X{Mat3::Identity(), {shift, 0.0, 0.004}};
+      const Interference out = evaluated(bored_block(), peg, X);
+      EXPECT_EQ(out.engine, Engine::kLines);
+      ASSERT_EQ(out.sites.size(), 1u);
+      const double expected = lune(r, kBore, shift) * 2.0 * kHalf;
+      EXPECT_NEAR(out.total.volume, expected, 2e-6 * expected) << "depth " << depth;
+      EXPECT_NEAR(out.total.depth, depth, 1e-2 * depth);
+      EXPECT_GE(out.total.normal().dot(Vec3::UnitX()), 1.0 - 1e-9);  // the block is pushed along
+    }
+  }
+}
+
+// Slices across the axis are lunes.
+TEST(BoredLines, ABallAtTheWallIsTheSumOfItsSlices) {
+  const double r = 0.008;
+  for (double depth : {1e-6, 2e-5, 5e-4}) {
+    const double shift = kBore - r + depth, reach = std::sqrt(2.0 * r * depth);
+    const Pose X{Mat3::Identity(), {0.6 * shift, 0.8 * shift, 0.003}};
+    double expected = 0.0;
+    constexpr int kSlices = 20000;
+    for (int i = 0; i < kSlices; ++i) {
+      const double z = reach * (2.0 * (i + 0.5) / kSlices - 1.0);
+      expected += lune(std::sqrt(r * r - z * z), kBore, shift) * 2.0 * reach / kSlices;
+    }
+    const Interference out = evaluated(bored_block(), Sphere({.radius = r}), X);
+    EXPECT_EQ(out.engine, Engine::kLines);
+    EXPECT_NEAR(out.total.volume, expected, 2e-5 * expected) << "depth " << depth;
+    EXPECT_TRUE(out.total.normal().isApprox(Vec3(0.6, 0.8, 0.0), 1e-6));
+  }
+}
+
+// The ring between the wall and where the ball leaves the top is a solid of revolution.
+TEST(BoredLines, ABallOnTheRimIsARing) {
+  const double r = 0.015;
+  for (double depth : {1e-6, 1e-4, 2e-3}) {
+    const double z = kHalf + std::sqrt(r * r - kBore * kBore) - depth;  // of its center
+    const auto primitive = [&](double rho) {  // of 2 pi rho (top - ball's lower face)
+      return kPi * rho * rho * (kHalf - z) - 2.0 / 3.0 * kPi * std::pow(r * r - rho * rho, 1.5);
+    };
+    const double outer = std::sqrt(r * r - (z - kHalf) * (z - kHalf));
+    const double expected = primitive(outer) - primitive(kBore);
+    const Interference out =
+        evaluated(bored_block(), Sphere({.radius = r}), {Mat3::Identity(), {0.0, 0.0, z}});
+    EXPECT_EQ(out.engine, Engine::kLines);
+    EXPECT_EQ(out.sites.size(), 1u);
+    EXPECT_NEAR(out.total.volume, expected, 1e-6 * expected + 1e-20) << "depth " << depth;
+    EXPECT_GT(out.total.area_vector.z(), 0.99 * out.total.area_vector.norm());
+  }
+}
+
+TEST(BoredLines, ATiltedPegTouchesInTwoSites) {
+  const Shape block = bored_block();
+  for (double clearance : {3e-4, 2e-5}) {
+    const Shape peg = Cylinder({.radius = kBore - clearance, .half_length = 0.04});
+    const double tilt = 1.5 * clearance / kHalf;
+    const Pose X{test::turn({1.0, 0.2, 0.0}, tilt), Vec3::Zero()};
+    const Interference out = evaluated(block, peg, X);
+    EXPECT_EQ(out.engine, Engine::kLines);
+    ASSERT_EQ(out.sites.size(), 2u);
+    EXPECT_NEAR(out.sites[0].volume, out.sites[1].volume, 1e-6 * out.total.volume);
+    EXPECT_LE((out.sites[0].centroid + out.sites[1].centroid).norm(), 1e-6 * kHalf);
+    EXPECT_LE(out.total.area_vector.norm(), 1e-6 * out.total.area);
+    EXPECT_GT(out.sites[0].area_vector.norm(), 0.9 * out.sites[0].area);
+    const Interference octree = evaluated(block, peg, X, Engine::kOctree, 1e-2);
+    EXPECT_NEAR(out.total.volume, octree.total.volume, octree.total.volume_error);
+    EXPECT_EQ(octree.sites.size(), 2u);
+    const Interference mirrored = evaluated(peg, block, X.inverse());
+    EXPECT_NEAR(mirrored.total.volume, out.total.volume, 1e-5 * out.total.volume);
+    EXPECT_EQ(mirrored.sites.size(), 2u);
+  }
+}
+
+TEST(BoredLines, AreaVectorAndMomentAreTheGradientOfVolume) {
+  const Shape block = bored_block();
+  const Shape peg = Cylinder({.radius = kBore - 3e-4, .half_length = 0.04});
+  const Pose X{test::turn({1.0, 0.2, 0.0}, 0.025), {2e-4, -1e-4, 0.003}};
+  const VolumeMetrics m = evaluated(block, peg, X, Engine::kAuto, 1e-6).total;
+  const auto volume = [&](const Pose& X_AB) {
+    return evaluated(block, peg, X_AB, Engine::kAuto, 1e-6).total.volume;
+  };
+  const test::Gradient g = test::gradient_of_A(volume, X, 1e-5);
+  EXPECT_LE((g.shift - m.area_vector).norm(), 1e-3 * m.area);
+  EXPECT_LE((g.turn - m.area_moment).norm(), 1e-3 * m.area * kHalf);
+}
+
+// A tilted peg that is pushed aside: one of two sites leaves, and comes back.
+TEST(BoredLines, VolumeIsContinuousWhileASiteLeavesAndComesBack) {
+  const Shape block = bored_block();
+  const Shape peg = Cylinder({.radius = kBore - 2e-5, .half_length = 0.04});
+  const double tilt = 2e-3;
+  double before = 0.0, largest = 0.0;
+  std::size_t most = 0, fewest = 10;
+  constexpr int kSteps = 400;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double shift = 1e-4 * (2.0 * i / kSteps - 1.0);
+    const Interference out =
+        evaluated(block, peg, {test::turn(Vec3::UnitX(), tilt), {0.0, shift, 0.0}});
+    EXPECT_EQ(out.engine, Engine::kLines);
+    if (i > 0) largest = std::max(largest, std::abs(out.total.volume - before));
+    before = out.total.volume;
+    most = std::max(most, out.sites.size());
+    fewest = std::min(fewest, out.sites.size());
+  }
+  EXPECT_EQ(most, 2u);
+  EXPECT_EQ(fewest, 1u);
+  // A step of 0.5 um sweeps no more than that over the projected wall, 2 R h.
+  EXPECT_LE(largest, 5.1e-7 * 2.0 * kBore * 2.0 * kHalf);
+}
+
+TEST(BoredLines, AFreePegTouchesNothing) {
+  const Shape peg = Cylinder({.radius = kBore - 2e-5, .half_length = 0.04});
+  for (double shift : {0.0, 1e-5, 1.9e-5}) {
+    const Interference out = evaluated(bored_block(), peg, {Mat3::Identity(), {shift, 0.0, 0.0}});
+    EXPECT_EQ(out.engine, Engine::kLines);
+    EXPECT_EQ(out.total.volume, 0.0);
+    EXPECT_TRUE(out.sites.empty());
+  }
+}
+
+}  // namespace
+}  // namespace volcontact
