@@ -14,7 +14,7 @@ using OuterRule = GaussRule<kLanes>;
 
 constexpr int kOutline = 32;          // places tried on the outline of the overlap
 constexpr int kNarrowings = 3;        // of a place where the outline comes near the wall
-constexpr int kEndNarrowings = 3;     // of a place where it crosses the wall
+constexpr int kEndNarrowings = 2;     // of a place where it crosses the wall
 constexpr double kTarget = 1e-2;      // share of the tolerance at which an arc is no longer divided
 constexpr double kInnerError = 3e-6;  // of the rule along a half-plane, per V; as measured
 constexpr int kMaxDepth = 4;          // of divisions of an arc
@@ -145,34 +145,39 @@ class BoreRun {
     return top;
   }
 
-  // Where the outline crosses the wall between an inner and an outer place.
-  Place crossing(Place inner, Place outer) {
-    double from = inner.angle, to = outer.angle;
-    to = from + wrapped(to - from);
-    double rho_from = inner.rho, rho_to = outer.rho;
+  // Where the outline crosses the wall, between two pairs of an inner and an outer place.
+  void crossings(Place (&inner)[2], Place (&outer)[2], Place (&found)[2]) {
+    constexpr int kShare = kLanes / 2;
+    double angles[kLanes];
     Place places[kLanes];
+    for (int side : {0, 1}) {
+      outer[side].angle = inner[side].angle + wrapped(outer[side].angle - inner[side].angle);
+    }
     for (int step = 0; step < kEndNarrowings; ++step) {
-      double angles[kLanes];
-      for (int i = 0; i < kLanes; ++i) angles[i] = from + (to - from) * (i + 1) / (kLanes + 1);
+      for (int i = 0; i < kLanes; ++i) {
+        const int side = i / kShare;
+        const double part = (i % kShare + 1.0) / (kShare + 1.0);
+        angles[i] = (1.0 - part) * inner[side].angle + part * outer[side].angle;
+      }
       places_at(angles, places);
       for (int i = 0; i < kLanes; ++i) {
-        if (places[i].rho > 1.0) {
-          to = angles[i];
-          rho_to = places[i].rho;
-          break;
+        const int side = i / kShare;
+        if (places[i].rho <= 1.0) {
+          inner[side] = places[i];
+        } else {
+          outer[side] = places[i];
+          i = kShare * (side + 1) - 1;  // on to the other side
         }
-        from = angles[i];
-        rho_from = places[i].rho;
-      }
-      // The last step goes to where the chord crosses.
-      if (step + 2 == kEndNarrowings) {
-        const double at = from + (to - from) * (1.0 - rho_from) / (rho_to - rho_from);
-        std::fill_n(angles, kLanes, at);
-        places_at(angles, places);
-        return places[0];
       }
     }
-    return places[0];
+    // The last step goes to where the chord crosses.
+    for (int i = 0; i < kLanes; ++i) {
+      const Place &from = inner[i / kShare], &to = outer[i / kShare];
+      angles[i] = from.angle + (to.angle - from.angle) * (1.0 - from.rho) / (to.rho - from.rho);
+    }
+    places_at(angles, places);
+    found[0] = places[0];
+    found[1] = places[kShare];
   }
 
   double angle_of(const Vec3& x) const {
@@ -238,7 +243,9 @@ class BoreRun {
     const std::size_t n = outline_.size();
     const Place outer = outline_[(first + from) % n], after = outline_[(first + to) % n];
     set_outline_frame();
-    const Place begin = crossing(inner, outer), end = crossing(after, last_outer);
+    Place inner_two[2] = {inner, after}, outer_two[2] = {outer, last_outer}, found[2];
+    crossings(inner_two, outer_two, found);
+    const Place &begin = found[0], &end = found[1];
     set_bore_frame(top.point);
     double low = angle_of(begin.point), high = angle_of(end.point);
     if (low > 0.0) low -= 2.0 * kPi;
@@ -352,23 +359,25 @@ class BoreRun {
 
   // A ring without corners: equal steps of the angle. False when 32 of them are too few.
   bool ring() {
-    double u[kLanes], v[kLanes], weight[kLanes], section[kLanes], volume[2] = {0.0, 0.0};
-    constexpr int kBatches = 4;
-    std::fill_n(weight, kLanes, 2.0 * kPi / (kBatches * kLanes));
-    for (int k = 0; k < kBatches; ++k) {
-      for (int i = 0; i < kLanes; ++i) {
-        const double angle = 2.0 * kPi * (i * kBatches + k) / (kBatches * kLanes);
-        u[i] = std::cos(angle);
-        v[i] = std::sin(angle);
+    for (int batches : {2, 4}) {
+      double u[kLanes], v[kLanes], weight[kLanes], section[kLanes], volume[2] = {0.0, 0.0};
+      std::fill_n(weight, kLanes, 2.0 * kPi / (batches * kLanes));
+      s_.fan.clear();
+      for (int k = 0; k < batches; ++k) {
+        for (int i = 0; i < kLanes; ++i) {
+          const double angle = 2.0 * kPi * (i * batches + k) / (batches * kLanes);
+          u[i] = std::cos(angle);
+          v[i] = std::sin(angle);
+        }
+        s_.fan.integrate(s_.path, u, v, weight, section);
+        s_.fan.accept_batch();
+        volume[k % 2] += s_.fan.batch().moments[0];
       }
-      s_.fan.integrate(s_.path, u, v, weight, section);
-      s_.fan.accept_batch();
-      volume[k % 2] += s_.fan.batch().moments[0];
+      const double sum = volume[0] + volume[1];
+      const double relative = std::abs(volume[0] - volume[1]) / sum;
+      error_ = relative * std::sqrt(relative) * sum;
+      if (error_ <= kTarget * options_.tolerance * sum) return true;
     }
-    const double sum = volume[0] + volume[1];
-    const double relative = std::abs(volume[0] - volume[1]) / sum;
-    error_ = relative * std::sqrt(relative) * sum;
-    if (error_ <= kTarget * options_.tolerance * sum) return true;
     s_.fan.clear();
     error_ = 0.0;
     return false;
