@@ -56,6 +56,11 @@ const Shape kEgg = Ellipsoid({.semi_axes = Vec3(0.5, 0.35, 0.2)});
 const Shape kBox = Box({.half_sizes = Vec3(0.5, 0.4, 0.3)});
 const Shape kPlate = Box({.half_sizes = Vec3(2.0, 2.0, 0.1)});
 
+const Shape kCan = Cylinder({.radius = 0.3, .half_length = 0.4});
+const Shape kPill = Capsule({.radius = 0.3, .half_length = 0.4});
+const Shape kCup = Frustum({.bottom_radius = 0.3, .top_radius = 0.5, .half_length = 0.4});
+const Shape kRing = Torus({.major_radius = 0.4, .minor_radius = 0.1});
+
 Shape polytope(int vertices) {
   Random random(3);
   std::vector<Vec3> points;
@@ -79,6 +84,34 @@ void ground_ellipsoid(benchmark::State& state) {
 }
 void ellipsoid_ground(benchmark::State& state) {
   run(state, kEgg, kGround, find_poses(kEgg, kGround, 0.0, 0.4, is_between(1e-9, 0.1)));
+}
+// Round solids at any tilt and depth, and lying on the ground, a hair tilted.
+void ground_can(benchmark::State& state) {
+  run(state, kGround, kCan, find_poses(kGround, kCan, 0.0, 0.5, is_between(1e-9, 0.2)));
+}
+void can_ground(benchmark::State& state) {
+  run(state, kCan, kGround, find_poses(kCan, kGround, 0.0, 0.5, is_between(1e-9, 0.2)));
+}
+std::vector<Pose> lying_poses(double height) {
+  Random random(4);
+  std::vector<Pose> poses;
+  for (int i = 0; i < kPoses; ++i) {
+    const Mat3 r = test::turn(Vec3::UnitZ(), random.uniform(0.0, 6.0)) *
+                   test::turn(Vec3::UnitX(), kPi / 2 + random.uniform(-0.002, 0.002));
+    poses.push_back({r, Vec3(0.1, 0.2, height)});
+  }
+  return poses;
+}
+void ground_can_lying(benchmark::State& state) { run(state, kGround, kCan, lying_poses(0.298)); }
+void ground_pill(benchmark::State& state) {
+  run(state, kGround, kPill, find_poses(kGround, kPill, 0.0, 0.7, is_between(1e-9, 0.3)));
+}
+void ground_pill_lying(benchmark::State& state) { run(state, kGround, kPill, lying_poses(0.298)); }
+void ground_cup(benchmark::State& state) {
+  run(state, kGround, kCup, find_poses(kGround, kCup, 0.0, 0.6, is_between(1e-9, 0.3)));
+}
+void ground_ring(benchmark::State& state) {
+  run(state, kGround, kRing, find_poses(kGround, kRing, 0.0, 0.5, is_between(1e-9, 0.07)));
 }
 void ball_ball(benchmark::State& state) {
   run(state, kBall, kBall, find_poses(kBall, kBall, 0.95, 1.0, is_between(1e-12, 1.0)));
@@ -140,6 +173,13 @@ BENCHMARK(ball_ground);
 BENCHMARK(ground_ball_apart);
 BENCHMARK(ground_ellipsoid);
 BENCHMARK(ellipsoid_ground);
+BENCHMARK(ground_can);
+BENCHMARK(can_ground);
+BENCHMARK(ground_can_lying);
+BENCHMARK(ground_pill);
+BENCHMARK(ground_pill_lying);
+BENCHMARK(ground_cup);
+BENCHMARK(ground_ring);
 BENCHMARK(ball_ball);
 BENCHMARK(ground_box);
 BENCHMARK(box_ground);

@@ -20,18 +20,21 @@ inline Vec3 on_plane(const Vec3& below, const Vec3& above) {
   return p;
 }
 
-// The part of a face at z <= 0.
-inline void cut_face(std::span<const int> loop, std::span<const Vec3> corners,
-                     std::vector<Vec3>& part) {
-  part.clear();
+// The part of a face at z <= 0; the number of its points. Without branches on the heights: no
+// processor could predict them.
+inline int cut_face(std::span<const int> loop, std::span<const Vec3> corners, Vec3* part) {
+  Vec3* end = part;
   const Vec3* last = &corners[loop.back()];
   for (int index : loop) {
     const Vec3* p = &corners[index];
-    if (last->z() > 0.0 && !(p->z() > 0.0)) part.push_back(on_plane(*p, *last));
-    if (!(last->z() > 0.0) && p->z() > 0.0) part.push_back(on_plane(*last, *p));
-    if (!(p->z() > 0.0)) part.push_back(*p);
+    const bool last_is_above = last->z() > 0.0, is_above = p->z() > 0.0;
+    *end = on_plane(last_is_above ? *p : *last, last_is_above ? *last : *p);
+    end += last_is_above != is_above;
+    *end = *p;
+    end += !is_above;
     last = p;
   }
+  return static_cast<int>(end - part);
 }
 
 // Metrics of the part below z = 0 of a solid with these corners and faces, moved by `shift`.
@@ -46,12 +49,13 @@ VolumeMetrics measure_below(std::span<const Vec3> corners, int faces, Loop&& loo
       sum.origin = Vec3(p.x(), p.y(), 0.0);
     }
   }
+  if (part.size() < 2 * corners.size()) part.resize(2 * corners.size());
   for (int f = 0; f < faces; ++f) {
-    cut_face(loop(f), corners, part);
-    if (part.size() < 3) continue;
+    const int count = cut_face(loop(f), corners, part.data());
+    if (count < 3) continue;
     const Vec3 n = normal(f);
-    const FaceIntegral face = sum.add_face(
-        static_cast<int>(part.size()), [&](int i) -> const Vec3& { return part[i]; }, n, 0.0);
+    const FaceIntegral face =
+        sum.add_face(count, [&](int i) -> const Vec3& { return part[i]; }, n, 0.0);
     sum.counter_area += face.area;
     sum.area_vector -= face.area * n;
     sum.area_moment -= face.first.cross(n);

@@ -65,34 +65,42 @@ void ColumnEnergy::add_lower(int face, const HeightPlane& height, bool overhang,
   has_overhang_ |= overhang;
 }
 
-void ColumnEnergy::Polygon::assign(std::span<const Point> from, int most_cuts) {
-  count = static_cast<int>(from.size());
-  const std::size_t room = from.size() + most_cuts;
-  if (points.size() < room) {
-    points.resize(room);
-    spare.resize(room);
-    sides.resize(room);
-  }
-  std::copy(from.begin(), from.end(), points.begin());
+void ColumnEnergy::Polygon::reserve(int most_points) {
+  if (sides_.size() >= static_cast<std::size_t>(most_points)) return;
+  for (std::vector<Point>& buffer : buffers_) buffer.resize(most_points + 1);
+  sides_.resize(most_points);
 }
 
 void ColumnEnergy::Polygon::cut(const HeightPlane& side) {
   int outside = 0;
   for (int i = 0; i < count; ++i) {
-    sides[i] = side(points[i]);
-    outside += sides[i] > 0.0;
+    sides_[i] = side(points[i]);
+    outside += sides_[i] > 0.0;
   }
   if (outside == 0) return;
-  int kept = 0;
-  for (int i = 0, last = count - 1; i < count; last = i++) {
-    if ((sides[last] > 0.0) != (sides[i] > 0.0)) {
-      const double t = sides[last] / (sides[last] - sides[i]);
-      spare[kept++] = points[last] + t * (points[i] - points[last]);
-    }
-    if (!(sides[i] > 0.0)) spare[kept++] = points[i];
+  if (outside == count) {
+    count = 0;
+    return;
   }
-  count = kept;
-  std::swap(points, spare);
+  // Without branches on the sides: no processor could predict them.
+  Point* kept = buffers_[next_].data();
+  const Point* const begin = kept;
+  Point last = points[count - 1];
+  double last_side = sides_[count - 1];
+  for (int i = 0; i < count; ++i) {
+    const Point p = points[i];
+    const double s = sides_[i];
+    const double t = last_side / (last_side - s);  // of use where the signs differ
+    *kept = last + t * (p - last);
+    kept += (last_side > 0.0) != (s > 0.0);
+    *kept = p;
+    kept += !(s > 0.0);
+    last = p;
+    last_side = s;
+  }
+  points = begin;
+  count = static_cast<int>(kept - begin);
+  next_ = 1 - next_;
 }
 
 // int (a b) of two linear functions, clamped to be >= 0 against rounding.
@@ -115,56 +123,83 @@ double ColumnEnergy::Polygon::integral(const HeightPlane& a, const HeightPlane& 
   return sum / 24.0;
 }
 
-// The part of the upper face's outline over which `bottom` is the lowest face. Cut by the heights
-// of the planes around it and not by its edges: cells of neighbours then fit together, however
-// short and noisy the edge between them is.
-void ColumnEnergy::cut_cell(const Upper& top, const Lower& bottom) {
-  cell_.assign({outlines_.data() + top.first, static_cast<std::size_t>(top.count)}, bottom.count);
-  for (int i = bottom.first; i < bottom.first + bottom.count && cell_.count > 0; ++i) {
-    const int other = lower_of_face_[neighbors_[i]];
-    if (other >= 0) cell_.cut(lower_[other].height - bottom.height);
+// For each lower face, where its neighbours are lower than it. Cells are cut by these and not by
+// the edges of the face: cells of neighbours then fit together, however short and noisy an edge is.
+void ColumnEnergy::list_lines() {
+  lines_.clear();
+  for (Lower& bottom : lower_) {
+    bottom.first_line = static_cast<int>(lines_.size());
+    for (int i = bottom.first; i < bottom.first + bottom.count; ++i) {
+      const int other = lower_of_face_[neighbors_[i]];
+      if (other >= 0) lines_.push_back(lower_[other].height - bottom.height);
+    }
+    bottom.line_count = static_cast<int>(lines_.size()) - bottom.first_line;
   }
+}
+
+// Every cut adds one point at most, and may write one more.
+void ColumnEnergy::reserve() {
+  int outline = 0, lines = 0;
+  for (const Upper& top : upper_) outline = std::max(outline, top.count);
+  for (const Lower& bottom : lower_) lines = std::max(lines, bottom.line_count);
+  cell_.reserve(outline + lines);
+  part_.reserve(outline + lines + static_cast<int>(std::max(ceiling_.size(), floor_.size())));
+}
+
+// The part of the upper face's outline over which `bottom` is the lowest face.
+void ColumnEnergy::cut_cell(const Upper& top, const Lower& bottom) {
+  cell_.assign(outlines_.data() + top.first, top.count);
+  const HeightPlane* line = lines_.data() + bottom.first_line;
+  for (int i = 0; i < bottom.line_count && cell_.count > 0; ++i) cell_.cut(line[i]);
 }
 
 // The heights of planes over `from` (sign = 1) or of `from` over planes (-1), without those that
 // are nowhere in the cell the least: at its corners another one is lower throughout.
-void ColumnEnergy::list_reaches(const HeightPlane& from, std::span<const HeightPlane> planes,
-                                double sign) {
+void ColumnEnergy::list_reaches(std::span<const Point> cell, const HeightPlane& from,
+                                std::span<const HeightPlane> planes, double sign,
+                                std::vector<HeightPlane>& reaches) const {
   const auto below_in_cell = [&](const HeightPlane& a, const HeightPlane& b) {
-    for (int i = 0; i < cell_.count; ++i) {
-      if (a(cell_.points[i]) > b(cell_.points[i])) return false;
+    for (const Point& p : cell) {
+      if (a(p) > b(p)) return false;
     }
     return true;
   };
-  reaches_.clear();
+  reaches.clear();
   for (const HeightPlane& plane : planes) {
     const HeightPlane reach = sign > 0.0 ? plane - from : from - plane;
-    if (std::any_of(reaches_.begin(), reaches_.end(),
+    if (std::any_of(reaches.begin(), reaches.end(),
                     [&](const HeightPlane& other) { return below_in_cell(other, reach); })) {
       continue;
     }
-    std::erase_if(reaches_, [&](const HeightPlane& other) { return below_in_cell(reach, other); });
-    reaches_.push_back(reach);
+    std::erase_if(reaches, [&](const HeightPlane& other) { return below_in_cell(reach, other); });
+    reaches.push_back(reach);
   }
 }
 
 // int (length * least of the reaches) over the cell.
-double ColumnEnergy::overhang_energy(const HeightPlane& length) {
+double ColumnEnergy::overhang_energy(const HeightPlane& length,
+                                     std::span<const HeightPlane> reaches) {
+  if (reaches.size() == 1) return cell_.integral(length, reaches[0]);
   double sum = 0.0;
-  const int count = static_cast<int>(reaches_.size());
-  for (int j = 0; j < count; ++j) {
-    part_.assign({cell_.points.data(), static_cast<std::size_t>(cell_.count)}, count);
-    for (int i = 0; i < count && part_.count > 0; ++i) {
-      if (i != j) part_.cut(reaches_[j] - reaches_[i]);
+  for (std::size_t j = 0; j < reaches.size(); ++j) {
+    part_.assign(cell_.points, cell_.count);
+    for (std::size_t i = 0; i < reaches.size() && part_.count > 0; ++i) {
+      if (i != j) part_.cut(reaches[j] - reaches[i]);
     }
-    sum += part_.integral(length, reaches_[j]);
+    sum += part_.integral(length, reaches[j]);
   }
   return sum;
 }
 
 double ColumnEnergy::value() {
+  constexpr HeightPlane kNoHeight{};
+  list_lines();
+  reserve();
   double sum = 0.0;
   for (const Upper& top : upper_) {
+    const std::span<const Point> outline(outlines_.data() + top.first,
+                                         static_cast<std::size_t>(top.count));
+    if (top.overhang) list_reaches(outline, top.height, ceiling_, 1.0, face_reaches_);
     for (const Lower& bottom : lower_) {
       if ((top.min.array() > bottom.max.array()).any() ||
           (bottom.min.array() > top.max.array()).any()) {
@@ -172,15 +207,16 @@ double ColumnEnergy::value() {
       }
       cut_cell(top, bottom);
       if (cell_.count < 3) continue;
+      const std::span<const Point> cell(cell_.points, static_cast<std::size_t>(cell_.count));
       const HeightPlane length = top.height - bottom.height;
       sum += 0.5 * cell_.integral(length, length);
       if (top.overhang) {
-        list_reaches(top.height, ceiling_, 1.0);
-        sum += overhang_energy(length);
+        list_reaches(cell, kNoHeight, face_reaches_, 1.0, reaches_);
+        sum += overhang_energy(length, reaches_);
       }
       if (bottom.overhang) {
-        list_reaches(bottom.height, floor_, -1.0);
-        sum += overhang_energy(length);
+        list_reaches(cell, bottom.height, floor_, -1.0, reaches_);
+        sum += overhang_energy(length, reaches_);
       }
     }
   }

@@ -62,22 +62,34 @@ class ColumnEnergy {
     HeightPlane height;
     bool overhang;
     Point min, max;
+    int first_line = 0, line_count = 0;  // in lines_
   };
-  // A convex polygon being cut by lines.
+  // A convex polygon being cut by lines. It borrows the points it starts with.
   struct Polygon {
-    std::vector<Point> points;
-    std::vector<Point> spare;
-    std::vector<double> sides;
+    const Point* points = nullptr;
     int count = 0;
 
-    void assign(std::span<const Point> from, int most_cuts);
+    void reserve(int most_points);
+    void assign(const Point* from, int from_count) {
+      points = from;
+      count = from_count;
+    }
     void cut(const HeightPlane& side);  // keeps side <= 0
     double integral(const HeightPlane& a, const HeightPlane& b) const;
+
+   private:
+    std::vector<Point> buffers_[2];
+    std::vector<double> sides_;
+    int next_ = 0;  // buffer to write to
   };
 
+  void list_lines();
+  void reserve();
   void cut_cell(const Upper& top, const Lower& bottom);
-  double overhang_energy(const HeightPlane& length);
-  void list_reaches(const HeightPlane& from, std::span<const HeightPlane> planes, double sign);
+  double overhang_energy(const HeightPlane& length, std::span<const HeightPlane> reaches);
+  void list_reaches(std::span<const Point> cell, const HeightPlane& from,
+                    std::span<const HeightPlane> planes, double sign,
+                    std::vector<HeightPlane>& reaches) const;
 
   std::vector<Point> outlines_;
   std::vector<int> neighbors_;
@@ -86,8 +98,10 @@ class ColumnEnergy {
   std::vector<int> lower_of_face_;  // index in lower_, -1 for none
   std::vector<HeightPlane> ceiling_, floor_;
   bool has_overhang_ = false;
+  std::vector<HeightPlane> lines_;  // positive where the lower face next to one is lower
   Polygon cell_, part_;
-  std::vector<HeightPlane> reaches_;  // heights of planes over a face, those that matter in a cell
+  // Heights of planes over a face: those that matter over the face, and in a cell of it.
+  std::vector<HeightPlane> face_reaches_, reaches_;
 };
 
 }  // namespace volcontact

@@ -123,10 +123,10 @@ bool lines(const A& a, const B& b, const Pose& X_AB, const InterferenceOptions& 
   return is_finite(out.total);
 }
 
-void set_one_site(const VolumeMetrics& metrics, Interference& out) {
-  out.total = metrics;
-  out.sites.clear();
-  if (metrics.touching()) out.sites.push_back(metrics);
+// `out.total` as the only site.
+void set_one_site(Interference& out) {
+  out.sites.resize(out.total.touching() ? 1 : 0);
+  if (out.total.touching()) out.sites[0] = out.total;
 }
 
 void set_status(Status status, Interference& out) {
@@ -162,12 +162,14 @@ void interference(const Shape& a, const Shape& b, const Pose& X_AB,
     if constexpr (both_unbounded<A, B>) return set_status(Status::kUnbounded, out);
     if constexpr (serves_pair<A, B>(Engine::kClosedForm)) {
       if (out.engine == Engine::kClosedForm) {
-        return set_one_site(closed_form_metrics(solid_a, solid_b, X_AB), out);
+        out.total = closed_form_metrics(solid_a, solid_b, X_AB);
+        return set_one_site(out);
       }
     }
     if constexpr (serves_pair<A, B>(Engine::kClip)) {
       if (out.engine == Engine::kClip) {
-        return set_one_site(clip_metrics(solid_a, solid_b, X_AB, workspace.scratch().clip), out);
+        out.total = clip_metrics(solid_a, solid_b, X_AB, workspace.scratch().clip);
+        return set_one_site(out);
       }
     }
     if constexpr (serves_pair<A, B>(Engine::kLines)) {

@@ -38,4 +38,29 @@ inline VolumeMetrics closed_form(const HalfSpace&, const Sphere& b, const Pose& 
   return m;
 }
 
+/// The same with the ball as A, in its frame: less work than the mirror image.
+inline VolumeMetrics closed_form(const Sphere& a, const HalfSpace&, const Pose& X_AB) noexcept {
+  const double r = a.radius();
+  const Vec3 up = X_AB.rotation.col(2);
+  const double height = -up.dot(X_AB.translation);  // of the centre over the plane [m]
+  const double h = std::min(r - height, 2.0 * r);
+  VolumeMetrics m;
+  if (!(h > 0.0)) return m;
+  const SphericalCap cap = spherical_cap(r, h);
+  if (!(cap.volume > 0.0)) return m;
+
+  const bool immersed = !(h < 2.0 * r);
+  m.volume = cap.volume;
+  if (!immersed) m.centroid = -(height + cap.centroid_depth) * up;
+  m.inertia = inertia_of_revolution(cap.axial_second, cap.lateral_second, up);
+  m.area = cap.lateral_area;
+  m.counter_area = cap.cut_area;
+  m.area_vector = -cap.cut_area * up;
+  m.depth_moment = immersed ? -height * cap.volume : cap.depth_moment;
+  m.depth = h;
+  m.volume_error = 8.0 * std::numeric_limits<double>::epsilon() * cap.volume;
+  m.status = immersed ? Status::kContained : Status::kOk;
+  return m;
+}
+
 }  // namespace volcontact

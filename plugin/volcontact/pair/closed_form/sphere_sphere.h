@@ -43,7 +43,7 @@ inline double lens_depth_moment(double radius_a, double radius_b, double overlap
   const double x = overlap * per_sum;
   const double q = (radius_a - radius_b) * per_sum;
   const double product = 4.0 * (radius_a * per_sum) * (radius_b * per_sum);
-  const double tail = 3.0 * q * q * log_tail(x);
+  const double tail = q != 0.0 ? 3.0 * q * q * log_tail(x) : 0.0;
   const double square = sum * sum;
   return kPi / 12.0 * square * square * (x * x * x * (product - 0.25 * x) - tail);
 }

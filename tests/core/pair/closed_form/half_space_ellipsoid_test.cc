@@ -193,5 +193,22 @@ TEST(HalfSpaceEllipsoid, FlatAndTouchingAreNothing) {
   EXPECT_FALSE(closed_form(HalfSpace(), solid, Pose{Mat3::Identity(), Vec3(0, 0, 3)}).touching());
 }
 
+TEST(HalfSpaceEllipsoid, InItsOwnFrameIsTheMirrorImage) {
+  Random random(21);
+  for (int i = 0; i < 200; ++i) {
+    const Ellipsoid solid = random_ellipsoid(random);
+    const Mat3 r = random.rotation();
+    const double reach = solid.support_height(r.row(2).transpose());
+    const double share = i % 10 == 0 ? 1.2 : random.log_uniform(1e-6, 0.999);
+    const Pose X{r,
+                 Vec3(random.uniform(-1, 1), random.uniform(-1, 1), reach * (1.0 - 2.0 * share))};
+    const VolumeMetrics mirrored =
+        reversed(transformed(closed_form(HalfSpace(), solid, X), X.inverse()));
+    EXPECT_TRUE(test::same(closed_form(solid, HalfSpace(), X.inverse()), mirrored, {2e-9, 1.0}));
+  }
+  const Pose apart{Mat3::Identity(), Vec3(0.0, 0.0, -3.0)};
+  EXPECT_FALSE(closed_form(Ellipsoid({.semi_axes = Vec3(1, 2, 3)}), HalfSpace(), apart).touching());
+}
+
 }  // namespace
 }  // namespace volcontact
