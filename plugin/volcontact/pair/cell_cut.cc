@@ -500,13 +500,17 @@ CellCut::Gap CellCut::bent_gap(int index, Columns& columns) {
   const double farthest = std::abs(offset);
   double factor = 0.0;
   for (int pass = 0; pass < 2; ++pass) {
-    double largest = 0.0, least_rise = kInfinity;
+    double largest = 0.0, least_rise = kInfinity, longest = 0.0;
     for (const ConvexPolygon::Point& p : polygon_.points()) {
       largest = std::max(largest, columns.bend(p.x, p.y));
       least_rise = std::min(least_rise, columns.rise(p.x, p.y));
+      const double height = columns.plane(p.x, p.y);
+      longest = std::max(longest, columns.half[columns.a] + (convex ? height : -height));
     }
     const double root = least_rise * least_rise - 2.0 * columns.bend_along * largest;
-    if (!(least_rise > kSteepEnough * columns.steep && root >= 0.0)) {
+    // No column may reach the far side of the face, where it leaves or enters the solid again.
+    if (!(least_rise > kSteepEnough * columns.steep && root >= 0.0 &&
+          columns.bend_along * longest <= least_rise + std::sqrt(root))) {
       gap.high = polygon_.area() * farthest;
       return gap;
     }

@@ -63,7 +63,7 @@ class Csg {
   double support_height(const Vec3& e) const;
   double signed_distance(const Vec3& p) const;
   Vec3 gradient(const Vec3& p) const;
-  /// Closed form where the carved pieces allow, else a quadrature to 1e-9 of the volume.
+  /// Closed form where the carved pieces allow, else a quadrature to 1e-8 of the volume.
   VolumeMetrics own_metrics() const;
 
   /// Pieces with disjoint interiors whose faces are surface all over or not at all; none when a

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// The octree on composed solids, against the lengths of lines through both solids at once: a method
+// that knows neither cells nor pieces.
+#include <gtest/gtest.h>
+
+#include "support/csg_solids.h"
+#include "volcontact/pair/octree.h"
+#include "volcontact/shape/csg_metrics.h"
+
+namespace volcontact {
+namespace {
+
+using namespace testing;  // the solids
+
+Interference octree(const Csg& a, const Csg& b) {
+  static OctreeScratch scratch;
+  Interference out;
+  octree_interference(view_of(a), view_of(b), Pose{}, {.tolerance = 1e-2}, scratch, out);
+  return out;
+}
+
+TEST(OctreeCsg, BoundsHoldTheVolumeOfEveryKindOfSolid) {
+  const Csg rod = tube(.06, .15, turned({1, .4, .2}, .8, {.1, .05, .08}));
+  int touching = 0;
+  for (const NamedSolid& named : kinds_of_solids()) {
+    const double exact = csg_metrics_by_lines(named.solid & rod).volume;
+    const Interference out = octree(named.solid, rod);
+    EXPECT_LE(std::abs(out.total.volume - exact), out.total.volume_error + 1e-7 * exact)
+        << named.name;
+    touching += exact > 0.0;
+  }
+  EXPECT_GT(touching, 20);
+}
+
+// A cell longer than the bore is wide: its columns leave the solid and enter it again.
+TEST(OctreeCsg, TheFarSideOfABoreCounts) {
+  Pose X;
+  X.rotation << 0.893878, -0.362873, -0.263259, 0.436683, 0.571886, 0.694446, -0.101442, -0.73571,
+      0.669657;
+  X.rotation = Eigen::Quaterniond(X.rotation).normalized().toRotationMatrix();
+  X.translation = Vec3(0.130462, 0.0564184, 0.101759);
+  const Csg rod = tube(.06, .15, X);
+  const Csg boss = box(.3, .2, .05) + tube(.05, .1, at(.1, 0, .15));
+  const double exact = csg_metrics_by_lines(boss & rod).volume;
+  const Interference out = octree(boss, rod);
+  EXPECT_LE(std::abs(out.total.volume - exact), out.total.volume_error);
+  EXPECT_NEAR(out.total.volume, exact, 1e-2 * exact);
+}
+
+// The seams within the solid are no surface: a ball pressed into the top of a counterbored block
+// next to its hole sees the top only.
+TEST(OctreeCsg, AreasLeaveSeamsOut) {
+  const double depth = .02, radius = .05;
+  const Csg drop = ball(radius, at(.2, .1, .1 + radius - depth));
+  const VolumeMetrics m = octree(counterbored(), drop).total;
+  const double disc = kPi * depth * (2.0 * radius - depth);
+  EXPECT_NEAR(m.area, disc, 1e-2 * disc);
+  EXPECT_NEAR(m.counter_area, 2.0 * kPi * radius * depth, 1e-2 * m.counter_area);
+  EXPECT_NEAR(m.area_vector.z(), disc, 1e-2 * disc);
+  EXPECT_NEAR(m.volume, kPi * depth * depth * (radius - depth / 3.0), 1e-2 * m.volume);
+}
+
+}  // namespace
+}  // namespace volcontact
