@@ -152,22 +152,21 @@ void Fan::set(const FaceSet& faces, const std::vector<PlaneFace>& idle, const Fa
   faces_.start = faces.has_bore ? 1.0 : 0.0;
   clear();
   const std::size_t on_planes = faces_.active_planes * sizeof(portable::FanBatch::OnPlane);
-  const std::size_t size = portable::FanSlices::work_size(faces_) + on_planes / sizeof(Vec8);
+  const std::size_t size =
+      portable::FanSlices::work_size(faces_) + on_planes / sizeof(portable::Vec8);
   if (work_.size() < size) work_.resize(size);
 }
 
 void Fan::clear() { clear(total_, total_planes_, faces_.active_planes); }
 
 void Fan::ends(SimdPath path, const double* u, const double* v, double* rho, double* height) {
-  VOLCONTACT_SIMD_CALL(path, ends, faces_, reinterpret_cast<Vec8*>(work_.data()), u, v, rho,
-                       height);
+  VOLCONTACT_SIMD_CALL(path, ends, faces_, work_.data()->x, u, v, rho, height);
 }
 
 void Fan::integrate(SimdPath path, const double* u, const double* v, const double* weight,
                     double* section) {
   clear(batch_, batch_planes_, faces_.active_planes);
-  VOLCONTACT_SIMD_CALL(path, integrate, faces_, reinterpret_cast<Vec8*>(work_.data()), u, v, weight,
-                       batch_, section);
+  VOLCONTACT_SIMD_CALL(path, integrate, faces_, work_.data()->x, u, v, weight, batch_, section);
 }
 
 }  // namespace volcontact

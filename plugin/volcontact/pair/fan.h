@@ -131,7 +131,6 @@ class Fan {
   std::vector<FanPlane> planes_;
   FanSums batch_, total_;
   std::vector<FanSums::OnPlane> batch_planes_, total_planes_;
-  // A template argument loses the alignment of Vec8.
   struct alignas(64) Lane {
     double x[kLanes];
   };
