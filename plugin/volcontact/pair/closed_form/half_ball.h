@@ -148,7 +148,7 @@ class HalfBall {
     const double turn_from = std::atan2(from, edge);
     const double half = 0.5 * (0.5 * kPi - turn_from), middle = turn_from + half;
     TiltedSum sum;
-    for (const GaussNode& node : kGauss16) {
+    for (const GaussNode& node : kGauss12) {
       for (const double x : {-node.x, node.x}) {
         const double turn = middle + half * x;
         const double q = cut_radius * std::sin(turn), w = cut_radius * std::cos(turn);
