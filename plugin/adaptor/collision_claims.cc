@@ -15,7 +15,10 @@ int holders = 0;
 bool is_claimed(const mjModel* m, int a, int b) {
   const SceneContact* contact = contact_of(m);
   if (!contact || contact->options().pairs != PairRule::kListed) return false;
-  return contact->keys().pair_of_geoms.count(std::minmax(a, b)) > 0;
+  const SceneKeys& keys = contact->keys();
+  // MuJoCo knows the geoms of a composed solid only one by one, holes as if they were bodies.
+  if (keys.composed(a) || keys.composed(b)) return true;
+  return keys.pair_of_geoms.count(std::minmax(a, b)) > 0;
 }
 
 // The arguments differ between releases: const or not, mjContact or mjPreContact.

@@ -30,7 +30,8 @@ void visit_structure(const mjModel* m, Visit visit) {
 }
 
 template <typename Visit>
-void visit_values(const mjModel* m, const std::vector<NumericSpan>& numerics, Visit visit) {
+void visit_values(const mjModel* m, const std::vector<NumericSpan>& numerics,
+                  const std::vector<int>& parts, Visit visit) {
   const auto geoms = static_cast<std::size_t>(m->ngeom);
   for (const NumericSpan& span : numerics) {
     bytes_of(m->numeric_data + span.address, static_cast<std::size_t>(span.size), visit);
@@ -40,6 +41,11 @@ void visit_values(const mjModel* m, const std::vector<NumericSpan>& numerics, Vi
   bytes_of(m->geom_type, geoms, visit);
   bytes_of(m->geom_contype, geoms, visit);
   bytes_of(m->geom_conaffinity, geoms, visit);
+  for (const int geom : parts) {
+    bytes_of(m->geom_pos + 3 * geom, 3, visit);
+    bytes_of(m->geom_quat + 4 * geom, 4, visit);
+  }
+  if (!parts.empty()) bytes_of(m->tuple_objprm, static_cast<std::size_t>(m->ntupledata), visit);
   const int parent_filter = m->opt.disableflags & mjDSBL_FILTERPARENT;
   bytes_of(&parent_filter, 1, visit);
 }
@@ -82,10 +88,13 @@ std::vector<NumericSpan> merged(std::vector<NumericSpan> spans) {
 
 }  // namespace
 
-ModelContent::ModelContent(const mjModel* m, const std::vector<NumericSpan>& numerics)
-    : numerics_(merged(numerics)) {
+ModelContent::ModelContent(const mjModel* m, const SceneKeys& keys)
+    : numerics_(merged(keys.numerics)) {
+  for (const ComposedGeoms& solid : keys.solids) {
+    for (const ComposedGeoms::Part& part : solid.parts) parts_.push_back(part.geom);
+  }
   visit_structure(m, copy_into(structure_));
-  visit_values(m, numerics_, copy_into(values_));
+  visit_values(m, numerics_, parts_, copy_into(values_));
 }
 
 bool ModelContent::is_same_model(const mjModel* m) const noexcept {
@@ -96,7 +105,7 @@ bool ModelContent::is_same_model(const mjModel* m) const noexcept {
 
 bool ModelContent::has_same_values(const mjModel* m) const noexcept {
   Comparison comparison(values_);
-  visit_values(m, numerics_,
+  visit_values(m, numerics_, parts_,
                [&](const std::byte* data, std::size_t size) { comparison(data, size); });
   return comparison.equal();
 }

@@ -40,6 +40,7 @@ class PairRules {
   // Whether the two can touch; fills in why.
   bool admit(GeomPair& pair) const {
     const int a = pair.a, b = pair.b;
+    if (!keys_.is_solid(a) || !keys_.is_solid(b)) return false;
     const auto listed = keys_.pair_of_geoms.find({a, b});
     if (listed != keys_.pair_of_geoms.end()) {
       pair.listed = listed->second;

@@ -26,11 +26,16 @@ constexpr double kPairTime = 1e-6;
 constexpr double kWorthSharing = 200e-6;
 constexpr int kPairsPerTask = 16;
 
-std::vector<Shape> solids_of(const mjModel* m, const std::vector<GeomPair>& pairs) {
+std::vector<Shape> solids_of(const mjModel* m, const SceneKeys& keys,
+                             const std::vector<GeomPair>& pairs) {
   std::vector<Shape> solids(static_cast<std::size_t>(m->ngeom), Shape(HalfSpace()));
   std::set<int> geoms;
   for (const GeomPair& pair : pairs) geoms.insert({pair.a, pair.b});
-  for (const int geom : geoms) solids[static_cast<std::size_t>(geom)] = solid_of_geom(m, geom);
+  for (const int geom : geoms) {
+    const ComposedGeoms* parts = keys.composed(geom);
+    solids[static_cast<std::size_t>(geom)] =
+        parts ? composed_solid(m, *parts) : solid_of_geom(m, geom);
+  }
   return solids;
 }
 
@@ -57,7 +62,7 @@ bool any(const std::vector<char>& flags, std::size_t count) {
 SceneContact::SceneContact(const mjModel* m)
     : keys_(read_scene_keys(m)),
       geom_pairs_(pairs_of(m, keys_)),
-      solids_(solids_of(m, geom_pairs_)),
+      solids_(solids_of(m, keys_, geom_pairs_)),
       cull_(geom_pairs_, solids_) {
   warn_about_model(m);
   if (geom_pairs_.empty()) {

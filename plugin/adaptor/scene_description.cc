@@ -79,6 +79,15 @@ void write_materials(const mjModel* m, const SceneContact& contact, JsonText& js
   json.end_object().end_object();
 }
 
+void write_parts(const mjModel* m, const ComposedGeoms& solid, JsonText& json) {
+  json.member("key", solid.key);
+  json.name("parts").begin_array();
+  for (const ComposedGeoms::Part& part : solid.parts) {
+    json.value((part.adds ? "+ " : "- ") + label(m, mjOBJ_GEOM, part.geom));
+  }
+  json.end_array();
+}
+
 void write_solids(const mjModel* m, const SceneContact& contact, JsonText& json) {
   std::set<int> touching;
   for (const PairContact& pair : contact.pairs()) touching.insert({pair.geoms.a, pair.geoms.b});
@@ -90,6 +99,7 @@ void write_solids(const mjModel* m, const SceneContact& contact, JsonText& json)
     json.member("id", geom);
     json.member("body", label(m, mjOBJ_BODY, m->geom_bodyid[geom]));
     json.member("shape", name_of(solid));
+    if (const ComposedGeoms* parts = contact.keys().composed(geom)) write_parts(m, *parts, json);
     json.member("material", material_of(contact.keys(), geom));
     json.member("volume", own_metrics_of(solid).volume);
     json.end_object();

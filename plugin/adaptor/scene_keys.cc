@@ -6,13 +6,14 @@
 #include <optional>
 #include <sstream>
 
+#include "adaptor/solids_of_geoms.h"
 #include "volcontact/base/check.h"
 
 namespace volcontact::adaptor {
 namespace {
 
 constexpr std::string_view kRoot = "volcontact/";
-const std::vector<std::string> kSections{"material", "option", "pair"};
+const std::vector<std::string> kSections{"material", "option", "pair", "solid"};
 
 // "c1_volcontact/material/rubber/stiffness" split: prefix "c1_", parts {material, rubber,
 // stiffness}.
@@ -75,12 +76,16 @@ class KeyReader {
  public:
   explicit KeyReader(const mjModel* m) : m_(m) {
     keys_.material_of_geom.assign(static_cast<std::size_t>(m->ngeom), -1);
+    keys_.solid_of_geom.assign(static_cast<std::size_t>(m->ngeom), -1);
   }
 
   SceneKeys read() {
     refuse_texts();
-    for (int i = 0; i < m_->ntuple; ++i) {
-      if (const auto key = parse_key(m_->names + m_->name_tupleadr[i])) read_tuple(*key, i);
+    for (const bool solids : {true, false}) {  // pairs are about solids
+      for (int i = 0; i < m_->ntuple; ++i) {
+        const auto key = parse_key(m_->names + m_->name_tupleadr[i]);
+        if (key && (key->parts[0] == "solid") == solids) read_tuple(*key, i);
+      }
     }
     for (int i = 0; i < m_->nnumeric; ++i) {
       if (const auto key = parse_key(m_->names + m_->name_numericadr[i])) read_numeric(*key, i);
@@ -102,17 +107,78 @@ class KeyReader {
   // Tuples: which geoms a material or a pair is about.
 
   void read_tuple(const Key& key, int tuple) {
-    const std::vector<std::string> sections{"material", "pair"};
+    const std::vector<std::string> sections{"material", "pair", "solid"};
     const std::string& section = key.parts[0];
-    if (section != "material" && section != "pair") unknown(key, 0, sections);
+    if (std::find(sections.begin(), sections.end(), section) == sections.end()) {
+      unknown(key, 0, sections);
+    }
     require(
         key.parts.size() == 2 && !key.parts[1].empty(),
         key.text + ": a tuple is named " + key.prefix + std::string(kRoot) + section + "/<name>");
     if (section == "material") {
       read_material(key, tuple);
-    } else {
+    } else if (section == "pair") {
       read_pair(key, tuple);
+    } else {
+      read_solid(key, tuple);
     }
+  }
+
+  // "volcontact/solid/bore: geom 'hole'", for messages.
+  std::string part_text(const Key& key, int geom) const {
+    return key.text + ": geom '" + label(m_, mjOBJ_GEOM, geom) + "'";
+  }
+
+  void read_solid(const Key& key, int tuple) {
+    const int index = static_cast<int>(keys_.solids.size());
+    ComposedGeoms solid{key.text, {}};
+    for (int element = 0; element < m_->tuple_size[tuple]; ++element) {
+      const int at = m_->tuple_adr[tuple] + element, type = m_->tuple_objtype[at];
+      require(type == mjOBJ_GEOM, key.text + ": element " + std::to_string(element + 1) + " is a " +
+                                      mju_type2Str(type) + "; a solid lists its geoms one by one");
+      const int geom = m_->tuple_objid[at];
+      const double sign = m_->tuple_objprm[at];
+      require(sign == 1.0 || sign == -1.0,
+              part_text(key, geom) + " has prm=\"" + number_text(sign) +
+                  "\"; write prm=\"1\" to add it or prm=\"-1\" to cut it out");
+      check_part(key, geom);
+      int& owner = keys_.solid_of_geom[static_cast<std::size_t>(geom)];
+      require(owner < 0, part_text(key, geom) + " is listed already, in " +
+                             (owner < 0       ? ""
+                              : owner < index ? keys_.solids[static_cast<std::size_t>(owner)].key
+                                              : key.text) +
+                             "; a geom belongs to one solid, once");
+      owner = index;
+      solid.parts.push_back({geom, sign > 0.0});
+    }
+    const ComposedGeoms::Part first = solid.parts[0];
+    require(first.adds, part_text(key, first.geom) +
+                            " is the first one and has prm=\"-1\": there is nothing yet to cut it "
+                            "out of; begin with a geom that has prm=\"1\"");
+    for (const ComposedGeoms::Part& part : solid.parts) {
+      const int own = m_->geom_bodyid[part.geom], body = m_->geom_bodyid[first.geom];
+      require(own == body,
+              part_text(key, part.geom) + " is on body '" + label(m_, mjOBJ_BODY, own) + "' and '" +
+                  label(m_, mjOBJ_GEOM, first.geom) + "' on body '" + label(m_, mjOBJ_BODY, body) +
+                  "'; the geoms of a solid must be on one body: move it there");
+    }
+    keys_.solids.push_back(std::move(solid));
+  }
+
+  static std::string number_text(double number) {
+    std::ostringstream text;
+    text << number;
+    return text.str();
+  }
+
+  void check_part(const Key& key, int geom) const {
+    const int type = m_->geom_type[geom];
+    require(type != mjGEOM_PLANE,
+            part_text(key, geom) + " is a plane; cut with a box that is large enough instead");
+    const bool simple = type == mjGEOM_SPHERE || type == mjGEOM_CAPSULE ||
+                        type == mjGEOM_ELLIPSOID || type == mjGEOM_CYLINDER || type == mjGEOM_BOX;
+    require(simple, part_text(key, geom) + " is of type " + type_name(m_, geom) +
+                        "; a solid is made of spheres, ellipsoids, capsules, cylinders and boxes");
   }
 
   std::vector<int> geoms_of_element(const Key& key, int tuple, int element) const {
@@ -149,11 +215,24 @@ class KeyReader {
                                             std::to_string(m_->tuple_size[tuple]));
     const int index = static_cast<int>(keys_.pairs.size());
     keys_.pairs.push_back({{key.text, {}, {}}, {}});
-    for (const int a : geoms_of_element(key, tuple, 0)) {
-      for (const int b : geoms_of_element(key, tuple, 1)) add_geom_pair(key, index, a, b);
+    for (const int a : solids_of_element(key, tuple, 0)) {
+      for (const int b : solids_of_element(key, tuple, 1)) add_geom_pair(key, index, a, b);
     }
     require(!keys_.pairs.back().geoms.empty(),
             key.text + ": the two are parts of one rigid body and cannot touch each other");
+  }
+
+  // The geoms of an element that are solids or name one.
+  std::vector<int> solids_of_element(const Key& key, int tuple, int element) const {
+    std::vector<int> geoms = geoms_of_element(key, tuple, element);
+    if (geoms.size() == 1 && !keys_.is_solid(geoms[0])) {
+      const ComposedGeoms& solid = *keys_.composed(geoms[0]);
+      throw std::invalid_argument(part_text(key, geoms[0]) + " is a part of " + solid.key +
+                                  ", which is named by its first geom; list '" +
+                                  label(m_, mjOBJ_GEOM, solid.parts[0].geom) + "'");
+    }
+    std::erase_if(geoms, [this](int geom) { return !keys_.is_solid(geom); });
+    return geoms;
   }
 
   void add_geom_pair(const Key& key, int index, int a, int b) {
@@ -179,6 +258,10 @@ class KeyReader {
     } else if (key.parts[0] == "material" || key.parts[0] == "pair") {
       read_keyed(key, numbers);
     } else {
+      require(key.parts[0] != "solid",
+              key.text +
+                  ": a solid has no numbers; its geoms are listed in a <tuple>, with prm=\"1\" "
+                  "or prm=\"-1\"");
       unknown(key, 0, kSections);
     }
   }

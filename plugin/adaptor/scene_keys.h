@@ -57,6 +57,16 @@ struct ListedPair {
   std::vector<std::pair<int, int>> geoms;
 };
 
+/// A volcontact/solid/...: geoms that count as one solid, which is named by the first of them.
+struct ComposedGeoms {
+  struct Part {
+    int geom;
+    bool adds;  ///< else it is cut out of what came before
+  };
+  std::string key;
+  std::vector<Part> parts;
+};
+
 /// Numbers [address, address + size) of mjModel.numeric_data that belong to volcontact.
 struct NumericSpan {
   int address;
@@ -70,7 +80,21 @@ struct SceneKeys {
   std::vector<int> material_of_geom;  ///< index into `materials`, -1 for the default material
   std::vector<ListedPair> pairs;
   std::map<std::pair<int, int>, int> pair_of_geoms;  ///< index into `pairs`, lower geom first
+  std::vector<ComposedGeoms> solids;
+  std::vector<int> solid_of_geom;  ///< index into `solids`, -1 for a geom that is one by itself
   std::vector<NumericSpan> numerics;
+
+  /// The composed solid that the geom belongs to, or null.
+  const ComposedGeoms* composed(int geom) const {
+    const int index = solid_of_geom[static_cast<std::size_t>(geom)];
+    return index < 0 ? nullptr : &solids[static_cast<std::size_t>(index)];
+  }
+  /// Whether the geom is a solid, or names one: the other geoms of a composed solid do not touch
+  /// anything by themselves.
+  bool is_solid(int geom) const {
+    const ComposedGeoms* solid = composed(geom);
+    return !solid || solid->parts[0].geom == geom;
+  }
 };
 
 /// Reads the keys; docs/plugin.md, "Keys". Names may carry the prefix that MjSpec.attach puts

@@ -14,6 +14,35 @@ const char* type_name(const mjModel* m, int geom) {
   return type >= 0 && type < static_cast<int>(std::size(kNames)) ? kNames[type] : "unknown";
 }
 
+namespace {
+
+// Pose of a geom in its body.
+Pose pose_in_body(const mjModel* m, int geom) {
+  mjtNum rotation[9];
+  mju_quat2Mat(rotation, m->geom_quat + 4 * geom);
+  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  return {Eigen::Map<const RowMajor>(rotation), vec3_at(m->geom_pos, geom)};
+}
+
+}  // namespace
+
+Shape composed_solid(const mjModel* m, const ComposedGeoms& solid) {
+  const int first = solid.parts[0].geom;
+  const Pose X_SB = pose_in_body(m, first).inverse();
+  Csg whole = composed(solid_of_geom(m, first));
+  for (std::size_t i = 1; i < solid.parts.size(); ++i) {
+    const ComposedGeoms::Part& part = solid.parts[i];
+    const Pose X_SM = X_SB * pose_in_body(m, part.geom);
+    whole = Csg(part.adds ? Csg::Operation::kUnion : Csg::Operation::kDifference, whole,
+                composed(solid_of_geom(m, part.geom)).posed(X_SM));
+  }
+  whole.prepare();
+  require(
+      whole.own_metrics().volume > 0.0,
+      solid.key + ": the geoms with prm=\"-1\" cut everything away; check their sizes and poses");
+  return whole;
+}
+
 Shape solid_of_geom(const mjModel* m, int geom) {
   const Vec3 size = vec3_at(m->geom_size, geom);
   switch (m->geom_type[geom]) {

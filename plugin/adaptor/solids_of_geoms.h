@@ -2,6 +2,7 @@
 #pragma once
 
 #include "adaptor/mujoco_compat.h"
+#include "adaptor/scene_keys.h"
 #include "volcontact/base/types.h"
 #include "volcontact/shape/shapes.h"
 
@@ -11,6 +12,10 @@ namespace volcontact::adaptor {
 /// MuJoCo's own collision. Throws std::invalid_argument for meshes, height fields and signed
 /// distance fields.
 Shape solid_of_geom(const mjModel* m, int geom);
+
+/// The solid that a volcontact/solid/... makes of its geoms, in the frame of the first one, ready
+/// to be used.
+Shape composed_solid(const mjModel* m, const ComposedGeoms& solid);
 
 /// MuJoCo's word for the geom's type: "box", "mesh".
 const char* type_name(const mjModel* m, int geom);

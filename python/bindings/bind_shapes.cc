@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nanobind/eigen/dense.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/variant.h>
 
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arrays.h"
 #include "bindings.h"
 #include "fields.h"
 #include "volcontact/shape/shapes.h"
@@ -16,6 +23,41 @@ using Vertices = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 template <typename Solid>
 std::string shape_doc() {
   return "Solid '" + std::string(Solid::kName) + "' in its own frame." + describe_fields<Solid>();
+}
+
+// "Sphere(radius=0.1)".
+template <typename Solid>
+std::string shape_text(const Solid& solid) {
+  std::string text = camel_case(Solid::kName) + "(";
+  if constexpr (requires { solid.params(); }) {
+    for (const auto& field : Solid::kFields) {
+      text += (text.back() == '(' ? "" : ", ") + std::string(field.name) + "=";
+      std::string numbers;
+      for (int i = 0; i < field.size(); ++i) {
+        numbers += (i ? ", " : "") +
+                   std::string(nb::repr(nb::float_(field.get(solid.params(), i))).c_str());
+      }
+      text += field.size() == 1 ? numbers : "(" + numbers + ")";
+    }
+  }
+  return text + ")";
+}
+
+// "(Box(half_sizes=(...)) - Cylinder(...))"; poses are left out.
+std::string csg_text(const Csg& solid) {
+  std::vector<std::string> waiting;
+  for (const Csg::Step& step : solid.steps()) {
+    if (step.member >= 0) {
+      waiting.push_back(std::visit([](const auto& shape) { return shape_text(shape); },
+                                   solid.members()[step.member].shape));
+      continue;
+    }
+    const std::string b = std::move(waiting.back());
+    waiting.pop_back();
+    constexpr const char* kSigns[] = {" + ", " & ", " - "};
+    waiting.back() = "(" + waiting.back() + kSigns[static_cast<int>(step.operation)] + b + ")";
+  }
+  return waiting.back();
 }
 
 template <typename Solid>
@@ -35,39 +77,83 @@ void def_init(nb::class_<Solid>& type) {
   }
 }
 
+// What all solids have. `Csg` takes part in every operator, so it must be bound first.
+template <typename Solid>
+void def_solid(nb::class_<Solid>& type) {
+  using Operation = Csg::Operation;
+  const auto join = [&type](const char* name, Operation operation, const char* doc) {
+    type.def(
+        name,
+        [operation](const Solid& a, const Shape& b) {
+          return Csg(operation, composed(a), composed(b));
+        },
+        nb::arg("other"), nb::is_operator(), doc);
+  };
+  join("__add__", Operation::kUnion, "Union with another solid, in one common frame");
+  join("__and__", Operation::kIntersection, "What both solids hold, in one common frame");
+  join("__sub__", Operation::kDifference, "This solid without the other, in one common frame");
+  type.def(
+          "posed",
+          [](const Solid& self, const Matrix4& X) {
+            return composed(self).posed(pose_from(X, "posed: X"));
+          },
+          nb::arg("X"), R"(The same solid elsewhere, as a member of a composed solid.
+
+Args:
+    X: pose of this solid in the frame of the new one, shape (4, 4)
+
+Returns:
+    Csg: the solid in its place
+
+Raises:
+    ValueError: X is no pose)")
+      .def(
+          "own_metrics", [](const Solid& self) { return self.own_metrics(); },
+          "Volume, centroid and inertia of the whole solid")
+      .def(
+          "signed_distance",
+          [](const Solid& self, const Vec3& point) { return self.signed_distance(point); },
+          nb::arg("point"),
+          "Negative inside; never larger in magnitude than the distance to the surface [m]")
+      .def_prop_ro(
+          "bounds",
+          [](const Solid& self) {
+            const Aabb box = self.bounds();
+            return std::pair(box.min, box.max);
+          },
+          "Corners (low, high) of a box around the solid [m], shape (3,) each; infinite where the "
+          "solid is unbounded");
+}
+
+void bind_csg(nb::module_& m) {
+  nb::class_<Csg> type(m, "Csg",
+                       R"(Solid 'csg', composed of others: a + b, a & b, a - b, nested as wanted.
+
+Made by the operators of any solid, and by solid.posed(X), which puts a member in its place:
+
+    bored = vc.Box((0.1, 0.1, 0.02)) - vc.Cylinder(0.01, 0.05).posed(X)
+
+A half-space may be a member; where the solid stays unbounded it can only meet bounded ones.)");
+  def_solid(type);
+  type.def_prop_ro(
+          "members", [](const Csg& self) { return self.members().size(); },
+          "How many simple solids it is made of")
+      .def("__repr__", [](const Csg& self) { return csg_text(self); });
+}
+
 }  // namespace
 
 void bind_shapes(nb::module_& m) {
+  bind_csg(m);
   for_each_type(SimpleShapes{}, [&](auto tag) {
     using Solid = typename decltype(tag)::Type;
     nb::class_<Solid> type(m, camel_case(Solid::kName).c_str(), shape_doc<Solid>().c_str());
     def_init<Solid>(type);
+    def_solid(type);
     type.def(
-            "own_metrics", [](const Solid& self) { return self.own_metrics(); },
-            "Volume, centroid and inertia of the whole solid")
-        .def(
-            "signed_distance",
-            [](const Solid& self, const Vec3& point) { return self.signed_distance(point); },
-            nb::arg("point"),
-            "Negative inside; never larger in magnitude than the distance to the surface [m]")
-        .def(
             "support", [](const Solid& self, const Vec3& e) { return self.support(e); },
             nb::arg("direction"), "A point of the solid farthest along the direction [m]")
-        .def("__repr__", [](const Solid& self) {
-          std::string text = camel_case(Solid::kName) + "(";
-          if constexpr (requires { self.params(); }) {
-            for (const auto& field : Solid::kFields) {
-              text += (text.back() == '(' ? "" : ", ") + std::string(field.name) + "=";
-              std::string numbers;
-              for (int i = 0; i < field.size(); ++i) {
-                numbers += (i ? ", " : "") +
-                           std::string(nb::repr(nb::float_(field.get(self.params(), i))).c_str());
-              }
-              text += field.size() == 1 ? numbers : "(" + numbers + ")";
-            }
-          }
-          return text + ")";
-        });
+        .def("__repr__", [](const Solid& self) { return shape_text(self); });
   });
 }
 

@@ -24,7 +24,7 @@ std::string scene(const std::string& ball_name) {
 class ModelContentTest : public ::testing::Test {
  protected:
   ModelContentTest()
-      : m(testing::compile(scene("ball"))), content(m.get(), read_scene_keys(m.get()).numerics) {}
+      : m(testing::compile(scene("ball"))), content(m.get(), read_scene_keys(m.get())) {}
 
   ModelPointer m;
   ModelContent content;

@@ -141,6 +141,7 @@ MISTAKES = {
     + SPRING
     + tuple_of("material/stone", "floor")
     + number("material/stone/normal_law/hunt_crossley", 1),
+    "neither adds nor cuts": tuple_of("solid/part", "crate"),
     "no such field": WOOD + SPRING + number("material/wood/damping", 1),
 }
 
