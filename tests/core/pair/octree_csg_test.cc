@@ -3,7 +3,7 @@
 // that knows neither cells nor pieces.
 #include <gtest/gtest.h>
 
-#include "support/csg_solids.h"
+#include "core/support/csg_solids.h"
 #include "volcontact/pair/octree.h"
 #include "volcontact/shape/csg_metrics.h"
 

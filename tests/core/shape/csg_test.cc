@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "support/csg_solids.h"
+#include "core/support/csg_solids.h"
 #include "volcontact/shape/csg_metrics.h"
 
 namespace volcontact {
