@@ -27,7 +27,7 @@ class BoreRun {
  public:
   BoreRun(const ConvexView& a, const ConvexView& b, const Pose& X_AB, const RoundFace& bore,
           const InterferenceOptions& options, LinesScratch& lines, BoreScratch& scratch,
-          std::vector<LinesRegion>& regions)
+          LinesRegions& regions)
       : a_(a),
         b_(b),
         X_AB_(X_AB),
@@ -229,7 +229,7 @@ class BoreRun {
       }
       const bool is_lobe = inner.rho <= 1.0 && last > k + 1;
       if (is_lobe && !add_lobe(inner, top, outline_[(first + last - 1) % n], k + 1, last, first)) {
-        regions_.resize(begun);
+        regions_.cut(begun);
         return false;
       }
       k = is_lobe ? last : k + 1;
@@ -393,10 +393,9 @@ class BoreRun {
     m.depth = share * (sums.bore.reach - 1.0) * radius_ + (1.0 - share) * (sums.high - sums.low);
     m.volume_error = error_ + kInnerError * m.volume;
     if (error_ > options_.tolerance * m.volume) m.status = Status::kApproximate;
-    LinesRegion region;
+    LinesRegion& region = regions_.add();
     region.metrics = transformed(m, Pose{Mat3::Identity(), frame_.center});
     add_patches(s_.fan, s_.faces.active, frame_, region.patches);
-    regions_.push_back(std::move(region));
   }
 
   const ConvexView& a_;
@@ -407,7 +406,7 @@ class BoreRun {
   LinesScratch& s_;
   std::vector<Place>& outline_;
   std::vector<double>& breaks_;
-  std::vector<LinesRegion>& regions_;
+  LinesRegions& regions_;
   LinesWindow window_;
   FanFrame frame_;
   Vec3 axis_, side_u_, side_v_;
@@ -419,7 +418,7 @@ class BoreRun {
 
 bool bored_lines(const ConvexView& a, const ConvexView& b, const Pose& X_AB, const RoundFace& bore,
                  const InterferenceOptions& options, LinesScratch& lines, BoreScratch& scratch,
-                 std::vector<LinesRegion>& regions) noexcept {
+                 LinesRegions& regions) noexcept {
   return BoreRun(a, b, X_AB, bore, options, lines, scratch, regions).run();
 }
 

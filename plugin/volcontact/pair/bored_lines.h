@@ -23,6 +23,6 @@ struct BoreScratch {
 /// the bore sideways. docs/theory.md, "Bores".
 bool bored_lines(const ConvexView& a, const ConvexView& b, const Pose& X_AB, const RoundFace& bore,
                  const InterferenceOptions& options, LinesScratch& lines, BoreScratch& scratch,
-                 std::vector<LinesRegion>& regions) noexcept;
+                 LinesRegions& regions) noexcept;
 
 }  // namespace volcontact

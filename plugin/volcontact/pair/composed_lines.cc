@@ -39,7 +39,7 @@ class ComposedRun {
       : X_AB_(X_AB), options_(options), lines_(lines), s_(scratch), out_(out) {}
 
   bool run() {
-    s_.regions.clear();
+    s_.regions.cut(0);
     for (std::size_t a = 0; a < s_.pieces[0].size(); ++a) {
       for (std::size_t b = 0; b < s_.pieces[1].size(); ++b) {
         const std::size_t before = s_.regions.size();

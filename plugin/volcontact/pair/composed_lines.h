@@ -32,7 +32,7 @@ inline bool has_lines_pieces(const Csg& solid) { return solid.is_carved(); }
 struct ComposedScratch {
   std::vector<LinesPiece> pieces[2];  ///< by owner
   std::vector<RoundFace> bores;
-  std::vector<LinesRegion> regions;
+  LinesRegions regions;
   std::vector<int> site_of;
   BoreScratch bore;
 };

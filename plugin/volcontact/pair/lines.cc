@@ -357,13 +357,13 @@ void lines_interference(const ConvexView& a, const ConvexView& b, const Pose& X_
 
 void add_lines_region(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
                       const InterferenceOptions& options, LinesScratch& scratch,
-                      std::vector<LinesRegion>& regions) noexcept {
+                      LinesRegions& regions) noexcept {
   LinesRun run(a, b, X_AB, options, scratch);
-  LinesRegion region;
-  region.metrics = run.run(true);
-  if (!region.metrics.touching()) return;
+  const VolumeMetrics metrics = run.run(true);
+  if (!metrics.touching()) return;
+  LinesRegion& region = regions.add();
+  region.metrics = metrics;
   run.add_patches(region.patches);
-  regions.push_back(std::move(region));
 }
 
 }  // namespace volcontact

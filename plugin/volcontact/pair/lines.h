@@ -37,6 +37,6 @@ void lines_interference(const ConvexView& a, const ConvexView& b, const Pose& X_
 /// Adds the overlap of two convex bodies that are pieces of solids, if there is one.
 void add_lines_region(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
                       const InterferenceOptions& options, LinesScratch& scratch,
-                      std::vector<LinesRegion>& regions) noexcept;
+                      LinesRegions& regions) noexcept;
 
 }  // namespace volcontact

@@ -224,7 +224,12 @@ TEST(Interference, AWarmEvaluationAllocatesNothing) {
   Random random(11);
   InterferenceWorkspace workspace;
   Interference result;
-  for (const Served& pair : kServed) {
+  std::vector<Served> pairs(std::begin(kServed), std::end(kServed));
+  const Csg bored(Csg::Operation::kDifference, Csg(Box({.half_sizes = Vec3(0.5, 0.5, 0.4)})),
+                  Csg(Cylinder({.radius = 0.31, .half_length = 1.0})));
+  pairs.push_back({kBox, kCan, Engine::kLines});
+  pairs.push_back({bored, kCan, Engine::kLines});
+  for (const Served& pair : pairs) {
     for (const auto& [a, b] : {std::pair{pair.a, pair.b}, std::pair{pair.b, pair.a}}) {
       std::vector<Pose> poses;
       for (int i = 0; i < 50; ++i) poses.push_back({random.rotation(), random.in_box(0.9)});
