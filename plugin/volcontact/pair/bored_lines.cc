@@ -12,16 +12,11 @@ namespace {
 
 using OuterRule = GaussRule<kLanes>;
 
-constexpr int kOutline = 32;          // places tried on the outline of the overlap
-constexpr int kNarrowings = 3;        // of a place where the outline comes near the wall
-constexpr int kEndNarrowings = 2;     // of a place where it crosses the wall
 constexpr double kTarget = 1e-2;      // share of the tolerance at which an arc is no longer divided
 constexpr double kInnerError = 3e-6;  // of the rule along a half-plane, per V; as measured
 constexpr int kMaxDepth = 4;          // of divisions of an arc
 constexpr double kWidestAngle = 1.6;  // of an undivided arc [rad]
 constexpr double kSameAngle = 1e-9;
-
-double wrapped(double angle) { return angle - 2.0 * kPi * std::floor(angle / (2.0 * kPi) + 0.5); }
 
 class BoreRun {
  public:
@@ -34,166 +29,39 @@ class BoreRun {
         bore_(bore),
         options_(options),
         s_(lines),
-        outline_(scratch.outline),
         breaks_(scratch.breaks),
-        regions_(regions) {
-    axis_ = bore.map.row(0).cross(bore.map.row(1)).normalized();
-    radius_ = 1.0 / bore.map.row(0).norm();
-  }
+        regions_(regions),
+        outline_(bore, window_, lines, scratch.outline) {}
 
   bool run() {
     window_ = find_lines_window(a_, b_, X_AB_, s_.path, true, s_.faces);
     if (window_.kind == LinesWindow::Kind::kApart) return true;
-    trace_outline();
-    const auto [nearest, farthest] =
-        std::minmax_element(outline_.begin(), outline_.end(),
-                            [](const Place& p, const Place& q) { return p.rho < q.rho; });
+    outline_.trace();
+    const std::vector<Place>& places = outline_.places();
+    const auto [nearest, farthest] = std::minmax_element(
+        places.begin(), places.end(), [](const Place& p, const Place& q) { return p.rho < q.rho; });
     if (farthest->rho <= 1.0) return true;  // all of it in the bore
     if (nearest->rho > 1.0) return outside_all_round();
     return each_lobe();
   }
 
  private:
-  using Place = BoreScratch::Place;
-
-  Vec3 from_axis(const Vec3& x) const {
-    const Vec3 d = x - bore_.center;
-    return d - axis_ * axis_.dot(d);
-  }
-
-  // A fan along the bore's axis through the middle of the overlap, in which its outline is about
-  // round.
-  void set_outline_frame() {
-    const Mat3 basis = basis_with_z(axis_);
-    const Mat3 seen = basis.transpose() * window_.spread;
-    const Eigen::Matrix2d square = (seen * seen.transpose()).topLeftCorner<2, 2>();
-    const Eigen::Matrix2d l = Eigen::LLT<Eigen::Matrix2d>(square).matrixL();
-    frame_.center = window_.center;
-    frame_.t = axis_;
-    frame_.u = basis.col(0) * l(0, 0) + basis.col(1) * l(1, 0);
-    frame_.v = basis.col(1) * l(1, 1);
-    s_.faces.active.has_bore = false;
-    s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
-  }
-
-  // Eight places of the outline at these angles.
-  void places_at(const double* angles, Place* places) {
-    double u[kLanes], v[kLanes], rho[kLanes], height[kLanes];
-    for (int i = 0; i < kLanes; ++i) {
-      u[i] = std::cos(angles[i]);
-      v[i] = std::sin(angles[i]);
-    }
-    s_.fan.ends(s_.path, u, v, rho, height);
-    for (int i = 0; i < kLanes; ++i) {
-      Place& p = places[i];
-      p.angle = angles[i];
-      p.point = frame_.center + rho[i] * (u[i] * frame_.u + v[i] * frame_.v) + height[i] * frame_.t;
-      p.rho = from_axis(p.point).norm() / radius_;
-    }
-  }
-
-  void trace_outline() {
-    set_outline_frame();
-    outline_.resize(kOutline);
-    double angles[kLanes];
-    for (int k = 0; k < kOutline; k += kLanes) {
-      for (int i = 0; i < kLanes; ++i) angles[i] = 2.0 * kPi * (k + i) / kOutline;
-      places_at(angles, &outline_[k]);
-    }
-    // Places that come nearest to the wall from within may hide a lobe between them.
-    const int n = kOutline;
-    for (int k = 0; k < n; ++k) {
-      const Place p = outline_[k], before = outline_[(k + n - 1) % n],
-                  after = outline_[(k + 1) % n];
-      if (p.rho > 1.0 || p.rho < before.rho || p.rho < after.rho) continue;
-      if (p.rho + 2.0 * (p.rho - std::min(before.rho, after.rho)) < 1.0) continue;
-      const Place top = summit(p.angle - 2.0 * kPi / n, p.angle + 2.0 * kPi / n);
-      if (top.rho > 1.0) outline_.push_back(top);
-    }
-    std::sort(outline_.begin(), outline_.end(),
-              [](const Place& p, const Place& q) { return p.angle < q.angle; });
-  }
-
-  // Where the outline is farthest from the axis between two angles.
-  Place summit(double from, double to) {
-    Place places[kLanes];
-    Place top;
-    for (int step = 0; step < kNarrowings; ++step) {
-      double angles[kLanes];
-      for (int i = 0; i < kLanes; ++i) angles[i] = from + (to - from) * (i + 1) / (kLanes + 1);
-      places_at(angles, places);
-      const int best = static_cast<int>(
-          std::max_element(places, places + kLanes,
-                           [](const Place& p, const Place& q) { return p.rho < q.rho; }) -
-          places);
-      top = places[best];
-      const double width = (to - from) / (kLanes + 1);
-      if (step + 1 == kNarrowings && best > 0 && best + 1 < kLanes) {
-        // The summit of the parabola through three places.
-        const double low = places[best - 1].rho, high = places[best + 1].rho;
-        const double bend = low - 2.0 * top.rho + high;
-        if (bend < 0.0) {
-          std::fill_n(angles, kLanes, top.angle + 0.5 * width * (low - high) / bend);
-          places_at(angles, places);
-          if (places[0].rho > top.rho) top = places[0];
-        }
-      }
-      from = top.angle - width;
-      to = top.angle + width;
-    }
-    top.angle = std::fmod(top.angle + 2.0 * kPi, 2.0 * kPi);
-    return top;
-  }
-
-  // Where the outline crosses the wall, between two pairs of an inner and an outer place.
-  void crossings(Place (&inner)[2], Place (&outer)[2], Place (&found)[2]) {
-    constexpr int kShare = kLanes / 2;
-    double angles[kLanes];
-    Place places[kLanes];
-    for (int side : {0, 1}) {
-      outer[side].angle = inner[side].angle + wrapped(outer[side].angle - inner[side].angle);
-    }
-    for (int step = 0; step < kEndNarrowings; ++step) {
-      for (int i = 0; i < kLanes; ++i) {
-        const int side = i / kShare;
-        const double part = (i % kShare + 1.0) / (kShare + 1.0);
-        angles[i] = (1.0 - part) * inner[side].angle + part * outer[side].angle;
-      }
-      places_at(angles, places);
-      for (int i = 0; i < kLanes; ++i) {
-        const int side = i / kShare;
-        if (places[i].rho <= 1.0) {
-          inner[side] = places[i];
-        } else {
-          outer[side] = places[i];
-          i = kShare * (side + 1) - 1;  // on to the other side
-        }
-      }
-    }
-    // The last step goes to where the chord crosses.
-    for (int i = 0; i < kLanes; ++i) {
-      const Place &from = inner[i / kShare], &to = outer[i / kShare];
-      angles[i] = from.angle + (to.angle - from.angle) * (1.0 - from.rho) / (to.rho - from.rho);
-    }
-    places_at(angles, places);
-    found[0] = places[0];
-    found[1] = places[kShare];
-  }
+  using Place = BoreOutline::Place;
 
   double angle_of(const Vec3& x) const {
-    const Vec3 d = from_axis(x);
+    const Vec3 d = outline_.from_axis(x);
     return std::atan2(d.dot(side_v_), d.dot(side_u_));
   }
 
   // The frame about the axis of the bore for a lobe about the place x: angles count from there.
   void set_bore_frame(const Vec3& x) {
-    const Vec3 d = from_axis(x);
+    const Vec3 d = outline_.from_axis(x);
     side_u_ = d.normalized();
-    side_v_ = axis_.cross(side_u_);
+    side_v_ = outline_.axis().cross(side_u_);
     frame_.center = x - d;
-    frame_.t = axis_;
-    frame_.u = radius_ * side_u_;
-    frame_.v = radius_ * side_v_;
+    frame_.t = outline_.axis();
+    frame_.u = outline_.radius() * side_u_;
+    frame_.v = outline_.radius() * side_v_;
     s_.faces.active.has_bore = true;
     s_.faces.active.bore = bore_;
     s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
@@ -202,10 +70,10 @@ class BoreRun {
   // All of the outline lies outside of the bore: the overlap goes round it, or misses it.
   bool outside_all_round() {
     double turn = 0.0;
-    set_bore_frame(outline_[0].point);
-    for (std::size_t i = 0; i < outline_.size(); ++i) {
-      turn += wrapped(angle_of(outline_[(i + 1) % outline_.size()].point) -
-                      angle_of(outline_[i].point));
+    set_bore_frame(outline_.places()[0].point);
+    for (std::size_t i = 0; i < outline_.places().size(); ++i) {
+      turn += wrapped(angle_of(outline_.places()[(i + 1) % outline_.places().size()].point) -
+                      angle_of(outline_.places()[i].point));
     }
     if (std::abs(turn) < kPi) return false;
     integrate(-kPi, kPi, false);
@@ -213,22 +81,24 @@ class BoreRun {
   }
 
   bool each_lobe() {
-    const std::size_t n = outline_.size();
+    const std::size_t n = outline_.places().size();
     std::size_t first = 0;  // an inner place whose next one is outer
-    while (first < n && !(outline_[first].rho <= 1.0 && outline_[(first + 1) % n].rho > 1.0))
+    while (first < n &&
+           !(outline_.places()[first].rho <= 1.0 && outline_.places()[(first + 1) % n].rho > 1.0))
       ++first;
     const std::size_t begun = regions_.size();
     for (std::size_t k = 0; k < n;) {
-      const Place inner = outline_[(first + k) % n];
+      const Place inner = outline_.places()[(first + k) % n];
       std::size_t last = k + 1;
-      Place top = outline_[(first + last) % n];
-      while (last < n && outline_[(first + last) % n].rho > 1.0) {
-        const Place& p = outline_[(first + last) % n];
+      Place top = outline_.places()[(first + last) % n];
+      while (last < n && outline_.places()[(first + last) % n].rho > 1.0) {
+        const Place& p = outline_.places()[(first + last) % n];
         if (p.rho > top.rho) top = p;
         ++last;
       }
       const bool is_lobe = inner.rho <= 1.0 && last > k + 1;
-      if (is_lobe && !add_lobe(inner, top, outline_[(first + last - 1) % n], k + 1, last, first)) {
+      if (is_lobe &&
+          !add_lobe(inner, top, outline_.places()[(first + last - 1) % n], k + 1, last, first)) {
         regions_.cut(begun);
         return false;
       }
@@ -240,11 +110,11 @@ class BoreRun {
   // The places from number `from` to before `to` lie outside of the wall.
   bool add_lobe(const Place& inner, const Place& top, const Place& last_outer, std::size_t from,
                 std::size_t to, std::size_t first) {
-    const std::size_t n = outline_.size();
-    const Place outer = outline_[(first + from) % n], after = outline_[(first + to) % n];
-    set_outline_frame();
+    const std::size_t n = outline_.places().size();
+    const Place outer = outline_.places()[(first + from) % n],
+                after = outline_.places()[(first + to) % n];
     Place inner_two[2] = {inner, after}, outer_two[2] = {outer, last_outer}, found[2];
-    crossings(inner_two, outer_two, found);
+    outline_.crossings(inner_two, outer_two, found);
     const Place &begin = found[0], &end = found[1];
     set_bore_frame(top.point);
     double low = angle_of(begin.point), high = angle_of(end.point);
@@ -253,7 +123,7 @@ class BoreRun {
     if (low > high || high - low > 2.0 * kPi) return false;
     // Past the ends a half-plane would cut the overlap, but not at the wall.
     for (std::size_t k = from; k < to; ++k) {
-      const double angle = angle_of(outline_[(first + k) % n].point);
+      const double angle = angle_of(outline_.places()[(first + k) % n].point);
       const bool within =
           (angle >= low && angle <= high) || angle - 2.0 * kPi >= low || angle + 2.0 * kPi <= high;
       if (!within) return false;
@@ -263,7 +133,7 @@ class BoreRun {
   }
 
   void set_breaks(double low, double high, bool open) {
-    const double tolerance = 1e-9 * radius_;
+    const double tolerance = 1e-9 * outline_.radius();
     find_breaks(s_.faces.active, frame_, tolerance, s_.breaks);
     breaks_.clear();
     for (const Eigen::Vector2d& d : s_.breaks.directions) {
@@ -389,8 +259,10 @@ class BoreRun {
     if (!m.touching()) return;
     // Columns across the wall where this is what pushes, else along the axis.
     const double share = share_of_bore(s_.fan, s_.faces.active, frame_);
-    m.depth_moment = share * sums.bore.depth_moment * radius_ + (1.0 - share) * sums.depth_moment;
-    m.depth = share * (sums.bore.reach - 1.0) * radius_ + (1.0 - share) * (sums.high - sums.low);
+    m.depth_moment =
+        share * sums.bore.depth_moment * outline_.radius() + (1.0 - share) * sums.depth_moment;
+    m.depth = share * (sums.bore.reach - 1.0) * outline_.radius() +
+              (1.0 - share) * (sums.high - sums.low);
     m.volume_error = error_ + kInnerError * m.volume;
     if (error_ > options_.tolerance * m.volume) m.status = Status::kApproximate;
     LinesRegion& region = regions_.add();
@@ -404,13 +276,12 @@ class BoreRun {
   const RoundFace& bore_;
   const InterferenceOptions& options_;
   LinesScratch& s_;
-  std::vector<Place>& outline_;
   std::vector<double>& breaks_;
   LinesRegions& regions_;
   LinesWindow window_;
+  BoreOutline outline_;
   FanFrame frame_;
-  Vec3 axis_, side_u_, side_v_;
-  double radius_;
+  Vec3 side_u_, side_v_;
   double turned_by_ = 0.0, error_ = 0.0, volume_scale_ = 0.0;
 };
 

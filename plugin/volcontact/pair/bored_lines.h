@@ -3,18 +3,13 @@
 
 #include <vector>
 
-#include "volcontact/pair/lines.h"
+#include "volcontact/pair/bore_outline.h"
 
 namespace volcontact {
 
 /// Memory of the search for the parts of an overlap outside of a bore.
 struct BoreScratch {
-  struct Place {
-    double angle;  ///< about the middle of the overlap
-    double rho;    ///< from the axis of the bore, in its radii
-    Vec3 point;
-  };
-  std::vector<Place> outline;
+  std::vector<BoreOutline::Place> outline;
   std::vector<double> breaks;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/fan.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "volcontact/pair/gauss.h"
@@ -26,6 +27,14 @@ using InnerRule = GaussRule<kNodes>;
 #include "volcontact/base/simd_paths.inc"
 
 namespace volcontact {
+
+FanFrame round_frame(const Vec3& center, const Mat3& spread, const Vec3& t) {
+  const Mat3 basis = basis_with_z(t);
+  const Mat3 seen = basis.transpose() * spread;
+  const Eigen::Matrix2d square = (seen * seen.transpose()).topLeftCorner<2, 2>();
+  const Eigen::Matrix2d l = Eigen::LLT<Eigen::Matrix2d>(square).matrixL();
+  return {center, basis.col(0) * l(0, 0) + basis.col(1) * l(1, 0), basis.col(1) * l(1, 1), t};
+}
 
 void Fan::clear(FanSums& sums, std::vector<FanSums::OnPlane>& planes, int count) {
   sums = FanSums{};

@@ -18,6 +18,10 @@ struct FanFrame {
   double area_scale() const { return u.cross(v).dot(t); }
 };
 
+/// The frame about `center` with columns along the unit vector t, in which an ellipsoid that
+/// `spread` makes of the unit ball looks round along the columns.
+FanFrame round_frame(const Vec3& center, const Mat3& spread, const Vec3& t);
+
 /// A plane face in a fan: n_t height + rho (n_u cos + n_v sin) <= gap, with gap >= 0.
 struct FanPlane {
   double n_u, n_v, n_t, gap;

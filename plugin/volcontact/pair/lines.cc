@@ -95,14 +95,7 @@ class LinesRun {
     if (!(t.norm() > 0.0)) t = -X_AB_.translation;
     if (!(t.norm() > 0.0)) t = Vec3::UnitZ();
     t.normalize();
-    const Mat3 basis = basis_with_z(t);
-    const Mat3 seen = basis.transpose() * window_.spread;
-    const Eigen::Matrix2d square = (seen * seen.transpose()).topLeftCorner<2, 2>();
-    const Eigen::Matrix2d l = Eigen::LLT<Eigen::Matrix2d>(square).matrixL();
-    frame_.center = window_.center;
-    frame_.t = t;
-    frame_.u = basis.col(0) * l(0, 0) + basis.col(1) * l(1, 0);
-    frame_.v = basis.col(1) * l(1, 1);
+    frame_ = round_frame(window_.center, window_.spread, t);
   }
 
   // Eight ways to the rim tell its center and its shape, in which it is rounder.

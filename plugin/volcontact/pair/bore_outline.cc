@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/bore_outline.h"
+
+#include <algorithm>
+
+namespace volcontact {
+namespace {
+
+constexpr int kOutline = 32;       // places tried on the outline of the overlap
+constexpr int kNarrowings = 3;     // of a place where the outline comes near the wall
+constexpr int kEndNarrowings = 2;  // of a place where it crosses the wall
+
+}  // namespace
+
+BoreOutline::BoreOutline(const RoundFace& bore, const LinesWindow& window, LinesScratch& lines,
+                         std::vector<Place>& places)
+    : bore_(bore),
+      window_(window),
+      s_(lines),
+      places_(places),
+      axis_(bore.map.row(0).cross(bore.map.row(1)).normalized()),
+      radius_(1.0 / bore.map.row(0).norm()) {}
+
+Vec3 BoreOutline::from_axis(const Vec3& x) const {
+  const Vec3 d = x - bore_.center;
+  return d - axis_ * axis_.dot(d);
+}
+
+// A fan along the bore's axis through the middle of the overlap, in which its outline is about
+// round.
+void BoreOutline::set_frame() {
+  frame_ = round_frame(window_.center, window_.spread, axis_);
+  s_.faces.active.has_bore = false;
+  s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
+}
+
+// Eight places of the outline at these angles.
+void BoreOutline::places_at(const double* angles, Place* places) {
+  double u[kLanes], v[kLanes], rho[kLanes], height[kLanes];
+  for (int i = 0; i < kLanes; ++i) {
+    u[i] = std::cos(angles[i]);
+    v[i] = std::sin(angles[i]);
+  }
+  s_.fan.ends(s_.path, u, v, rho, height);
+  for (int i = 0; i < kLanes; ++i) {
+    Place& p = places[i];
+    p.angle = angles[i];
+    p.point = frame_.center + rho[i] * (u[i] * frame_.u + v[i] * frame_.v) + height[i] * frame_.t;
+    p.rho = from_axis(p.point).norm() / radius_;
+  }
+}
+
+void BoreOutline::trace() {
+  set_frame();
+  places_.resize(kOutline);
+  double angles[kLanes];
+  for (int k = 0; k < kOutline; k += kLanes) {
+    for (int i = 0; i < kLanes; ++i) angles[i] = 2.0 * kPi * (k + i) / kOutline;
+    places_at(angles, &places_[k]);
+  }
+  // Places that come nearest to the wall from within may hide a lobe between them.
+  const int n = kOutline;
+  for (int k = 0; k < n; ++k) {
+    const Place p = places_[k], before = places_[(k + n - 1) % n], after = places_[(k + 1) % n];
+    if (p.rho > 1.0 || p.rho < before.rho || p.rho < after.rho) continue;
+    if (p.rho + 2.0 * (p.rho - std::min(before.rho, after.rho)) < 1.0) continue;
+    const Place top = summit(p.angle - 2.0 * kPi / n, p.angle + 2.0 * kPi / n);
+    if (top.rho > 1.0) places_.push_back(top);
+  }
+  std::sort(places_.begin(), places_.end(),
+            [](const Place& p, const Place& q) { return p.angle < q.angle; });
+}
+
+// Where the outline is farthest from the axis between two angles.
+BoreOutline::Place BoreOutline::summit(double from, double to) {
+  Place places[kLanes];
+  Place top;
+  for (int step = 0; step < kNarrowings; ++step) {
+    double angles[kLanes];
+    for (int i = 0; i < kLanes; ++i) angles[i] = from + (to - from) * (i + 1) / (kLanes + 1);
+    places_at(angles, places);
+    const int best = static_cast<int>(
+        std::max_element(places, places + kLanes,
+                         [](const Place& p, const Place& q) { return p.rho < q.rho; }) -
+        places);
+    top = places[best];
+    const double width = (to - from) / (kLanes + 1);
+    if (step + 1 == kNarrowings && best > 0 && best + 1 < kLanes) {
+      // The summit of the parabola through three places.
+      const double low = places[best - 1].rho, high = places[best + 1].rho;
+      const double bend = low - 2.0 * top.rho + high;
+      if (bend < 0.0) {
+        std::fill_n(angles, kLanes, top.angle + 0.5 * width * (low - high) / bend);
+        places_at(angles, places);
+        if (places[0].rho > top.rho) top = places[0];
+      }
+    }
+    from = top.angle - width;
+    to = top.angle + width;
+  }
+  top.angle = std::fmod(top.angle + 2.0 * kPi, 2.0 * kPi);
+  return top;
+}
+
+// Where the outline crosses the wall, between two pairs of an inner and an outer place.
+void BoreOutline::crossings(Place (&inner)[2], Place (&outer)[2], Place (&found)[2]) {
+  set_frame();
+  constexpr int kShare = kLanes / 2;
+  double angles[kLanes];
+  Place places[kLanes];
+  for (int side : {0, 1}) {
+    outer[side].angle = inner[side].angle + wrapped(outer[side].angle - inner[side].angle);
+  }
+  for (int step = 0; step < kEndNarrowings; ++step) {
+    for (int i = 0; i < kLanes; ++i) {
+      const int side = i / kShare;
+      const double part = (i % kShare + 1.0) / (kShare + 1.0);
+      angles[i] = (1.0 - part) * inner[side].angle + part * outer[side].angle;
+    }
+    places_at(angles, places);
+    for (int i = 0; i < kLanes; ++i) {
+      const int side = i / kShare;
+      if (places[i].rho <= 1.0) {
+        inner[side] = places[i];
+      } else {
+        outer[side] = places[i];
+        i = kShare * (side + 1) - 1;  // on to the other side
+      }
+    }
+  }
+  // The last step goes to where the chord crosses.
+  for (int i = 0; i < kLanes; ++i) {
+    const Place &from = inner[i / kShare], &to = outer[i / kShare];
+    angles[i] = from.angle + (to.angle - from.angle) * (1.0 - from.rho) / (to.rho - from.rho);
+  }
+  places_at(angles, places);
+  found[0] = places[0];
+  found[1] = places[kShare];
+}
+
+}  // namespace volcontact

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "volcontact/pair/lines.h"
+
+namespace volcontact {
+
+/// The same angle from -pi to pi.
+inline double wrapped(double angle) {
+  return angle - 2.0 * kPi * std::floor(angle / (2.0 * kPi) + 0.5);
+}
+
+/// The outline of an overlap seen along the axis of a bore, a convex curve, and where it lies
+/// outside of the wall.
+class BoreOutline {
+ public:
+  struct Place {
+    double angle;  ///< about the middle of the overlap [rad]
+    double rho;    ///< from the axis of the bore, in its radii
+    Vec3 point;
+  };
+
+  /// `places` is memory to be used.
+  BoreOutline(const RoundFace& bore, const LinesWindow& window, LinesScratch& lines,
+              std::vector<Place>& places);
+
+  const Vec3& axis() const { return axis_; }
+  double radius() const { return radius_; }
+  /// The vector from the axis to x.
+  Vec3 from_axis(const Vec3& x) const;
+
+  /// Places all round, in the order of their angle. One outside lies on every part outside, however
+  /// small.
+  void trace();
+  const std::vector<Place>& places() const { return places_; }
+
+  /// Where the outline crosses the wall, between two pairs of an inner and an outer place.
+  void crossings(Place (&inner)[2], Place (&outer)[2], Place (&found)[2]);
+
+ private:
+  void set_frame();
+  void places_at(const double* angles, Place* places);
+  Place summit(double from, double to);
+
+  const RoundFace& bore_;
+  const LinesWindow& window_;
+  LinesScratch& s_;
+  std::vector<Place>& places_;
+  Vec3 axis_;
+  double radius_;
+  FanFrame frame_;
+};
+
+}  // namespace volcontact
