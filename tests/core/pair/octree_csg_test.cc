@@ -19,17 +19,26 @@ Interference octree(const Csg& a, const Csg& b) {
   return out;
 }
 
+// The sanitizers make every cell many times slower and look for other faults: fewer will do.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr std::size_t kEvery = 8;
+#else
+constexpr std::size_t kEvery = 1;
+#endif
+
 TEST(OctreeCsg, BoundsHoldTheVolumeOfEveryKindOfSolid) {
   const Csg rod = tube(.06, .15, turned({1, .4, .2}, .8, {.1, .05, .08}));
+  const std::vector<NamedSolid> kinds = kinds_of_solids();
   int touching = 0;
-  for (const NamedSolid& named : kinds_of_solids()) {
+  for (std::size_t i = 0; i < kinds.size(); i += kEvery) {
+    const NamedSolid& named = kinds[i];
     const double exact = csg_metrics_by_lines(named.solid & rod).volume;
     const Interference out = octree(named.solid, rod);
     EXPECT_LE(std::abs(out.total.volume - exact), out.total.volume_error + 1e-7 * exact)
         << named.name;
     touching += exact > 0.0;
   }
-  EXPECT_GT(touching, 20);
+  EXPECT_GT(touching, 20 / static_cast<int>(kEvery));
 }
 
 // A cell longer than the bore is wide: its columns leave the solid and enter it again.
