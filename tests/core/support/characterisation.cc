@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/support/characterisation.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "core/support/gradient.h"
+
+namespace volcontact::test {
+namespace {
+
+struct Case {
+  Pose X_AB;
+  Lookout lookout;
+  Reference reference;
+};
+
+// The overlaps of one pair that are worth a comparison.
+std::vector<Case> cases_of(const Example& a, const Example& b, const Effort& effort) {
+  constexpr double kLeast = 1e-9;   // of the smaller body
+  constexpr double kDoubt = 1e-5;   // worse references are dropped
+  std::vector<Case> cases;
+  Random random(20 + 97 * static_cast<std::uint64_t>(&a - examples().data()) +
+                static_cast<std::uint64_t>(&b - examples().data()));
+  const double size = std::min(a.size, b.size);
+  for (int i = 0; i < effort.poses; ++i) {
+    for (int attempt = 0; attempt < 20; ++attempt) {
+      ContactPose pose;
+      if (i % 3 == 0) pose = random_overlap(a, b, random);
+      if (i % 3 == 1) {
+        const double depth = random.log_uniform(1e-3, 0.1) * size;
+        pose = shallow_overlap(a, b, depth, i % 2 * random.uniform(0.0, 0.2), random);
+      }
+      if (i % 3 == 2) pose = aligned_overlap(a, b, random);
+      const Reference r = reference_integral(a.reference, b.reference, pose.X_AB, pose.lookout);
+      const double volume = r.metrics.volume;
+      if (!(volume > kLeast * std::min(a.own_volume, b.own_volume))) continue;
+      if (r.volume_error > kDoubt * volume) continue;
+      cases.push_back({pose.X_AB, pose.lookout, r});
+      break;
+    }
+  }
+  return cases;
+}
+
+double length_of(const VolumeMetrics& m) {
+  return std::sqrt(m.second_moment().trace() / m.volume);
+}
+
+class Judge {
+ public:
+  Judge(const Example& a, const Example& b, Engine engine, const Effort& effort)
+      : a_(a), b_(b), effort_(effort) {
+    options_.engine = engine;
+    if (engine == Engine::kOctree) options_.tolerance = effort.octree_tolerance;
+    row_.a = &a;
+    row_.b = &b;
+    row_.engine = engine;
+  }
+
+  void compare(const Pose& X_AB, const Reference& reference) {
+    const auto begin = std::chrono::steady_clock::now();
+    const VolumeMetrics m = evaluate(X_AB);
+    const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - begin;
+    const VolumeMetrics& r = reference.metrics;
+    ++row_.poses;
+    times_.push_back(time.count());
+    if (!m.touching()) ++row_.missed;
+    const double error = std::abs(m.volume - r.volume), length = length_of(r);
+    const double area = std::max(r.area, 1e-30);
+    volume_.push_back(error / r.volume);
+    centroid_.push_back((m.centroid - r.centroid).norm() / length);
+    inertia_.push_back((m.inertia - r.inertia).norm() / r.inertia.norm());
+    if (r.area > 0.0) {
+      area_vector_.push_back((m.area_vector - r.area_vector).norm() / area);
+      area_moment_.push_back((m.area_moment - r.area_moment).norm() /
+                             (area * (length + r.centroid.norm())));
+    }
+    const double doubt = reference.volume_error + 1e-8 * r.volume;
+    if (error <= m.volume_error + doubt) ++row_.bounds_held;
+    row_.reference = std::max(row_.reference, reference.volume_error / r.volume);
+    if (static_cast<int>(gradient_.size()) < effort_.gradient_poses && r.area > 0.0) {
+      compare_gradient(X_AB, m, r);
+    }
+  }
+
+  /// V along a smooth motion, one value a pose, against the same of the reference.
+  void compare_motion(const std::vector<Pose>& poses, const std::vector<double>& volumes) {
+    double error = 0.0, size = 0.0, before = 0.0;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const double volume = evaluate(poses[i]).volume;
+      if (i > 0) {
+        const double expected = volumes[i] - volumes[i - 1];
+        error += std::pow(volume - before - expected, 2);
+        size += expected * expected;
+      }
+      before = volume;
+    }
+    row_.noise = size > 0.0 ? std::sqrt(error / size) : 0.0;
+  }
+
+  Characterisation row() {
+    row_.volume = spread_of(volume_);
+    row_.centroid = spread_of(centroid_);
+    row_.inertia = spread_of(inertia_);
+    row_.area_vector = spread_of(area_vector_);
+    row_.area_moment = spread_of(area_moment_);
+    row_.gradient = spread_of(gradient_);
+    row_.turn = spread_of(turn_);
+    row_.microseconds = spread_of(times_).median;
+    return row_;
+  }
+
+ private:
+  VolumeMetrics evaluate(const Pose& X_AB) {
+    interference(a_.shape, b_.shape, X_AB, options_, workspace_, result_);
+    return result_.total;
+  }
+
+  // The octree is only as smooth as its tolerance: it gets a longer step.
+  void compare_gradient(const Pose& X_AB, const VolumeMetrics& m, const VolumeMetrics& r) {
+    const bool rough = options_.engine == Engine::kOctree;
+    const double step = (rough ? 0.1 : 1e-3) * r.volume / r.area;
+    const Gradient g = gradient_of_A(
+        [&](const Pose& X) { return evaluate(X).volume; }, X_AB, step);
+    gradient_.push_back((g.shift - m.area_vector).norm() / r.area);
+    turn_.push_back((g.turn - m.area_moment).norm() /
+                    (r.area * (length_of(r) + r.centroid.norm())));
+  }
+
+  const Example &a_, &b_;
+  const Effort& effort_;
+  InterferenceOptions options_;
+  InterferenceWorkspace workspace_;
+  Interference result_;
+  Characterisation row_;
+  std::vector<double> volume_, centroid_, inertia_, area_vector_, area_moment_, gradient_, turn_;
+  std::vector<double> times_;
+};
+
+Reference mirrored(const Reference& r, const Pose& X_AB) {
+  return {reversed(transformed(r.metrics, X_AB.inverse())), r.volume_error};
+}
+
+}  // namespace
+
+Spread spread_of(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  return {values[values.size() / 2], values.back()};
+}
+
+std::vector<Characterisation> characterise(const Example& a, const Example& b,
+                                           const Effort& effort) {
+  const std::vector<Case> cases = cases_of(a, b, effort);
+  // A slide with changing depth and tilt, from a tilted shallow pose.
+  Random random(5);
+  const double size = std::min(a.size, b.size);
+  std::vector<Pose> motion;
+  std::vector<double> volumes;
+  ContactPose start = shallow_overlap(a, b, 0.1 * size, 0.1, random);
+  start.lookout.all_axes = false;
+  for (int i = 0; i < effort.motion_steps; ++i) {
+    const double s = static_cast<double>(i) / effort.motion_steps;
+    const Vec3 normal = start.lookout.X_AF.rotation.col(2);
+    const Vec3 along = start.lookout.X_AF.rotation.col(0);
+    const Vec3 shift = size * (0.03 * s * along - 0.02 * s * (1.0 + s) * normal);
+    motion.push_back(moved(start.X_AB, shift, 0.02 * s * along));
+    const Reference r =
+        reference_integral(a.reference, b.reference, motion.back(), start.lookout);
+    volumes.push_back(r.metrics.volume);
+  }
+  std::vector<Characterisation> rows;
+  for (const Engine engine : kEngines) {
+    if (engine == Engine::kAuto || !serves(engine, a.shape, b.shape)) continue;
+    Judge judge(a, b, engine, effort);
+    for (const Case& c : cases) judge.compare(c.X_AB, c.reference);
+    judge.compare_motion(motion, volumes);
+    rows.push_back(judge.row());
+    if (&a == &b) continue;
+    Judge mirror(b, a, engine, effort);
+    for (const Case& c : cases) mirror.compare(c.X_AB.inverse(), mirrored(c.reference, c.X_AB));
+    std::vector<Pose> back;
+    for (const Pose& X : motion) back.push_back(X.inverse());
+    mirror.compare_motion(back, volumes);
+    rows.push_back(mirror.row());
+  }
+  return rows;
+}
+
+}  // namespace volcontact::test

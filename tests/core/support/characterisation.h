@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "core/support/contact_poses.h"
+#include "volcontact/pair/interference.h"
+
+namespace volcontact::test {
+
+/// Worst and median of an error.
+struct Spread {
+  double median = 0.0, worst = 0.0;
+};
+Spread spread_of(std::vector<double> values);
+
+/// How one engine did on one ordered pair of solids. Lengths are relative to the radius of gyration
+/// of the overlap, areas to A's area in it.
+struct Characterisation {
+  const Example* a = nullptr;
+  const Example* b = nullptr;
+  Engine engine = Engine::kAuto;
+  int poses = 0;  ///< with an overlap that the reference could integrate
+  Spread volume, centroid, inertia, area_vector, area_moment;
+  Spread gradient, turn;  ///< of the area vector and moment against finite differences of V
+  double noise = 0.0;     ///< rms error of the increments of V along a motion, of their rms
+  int bounds_held = 0;    ///< poses where |error of V| <= volume_error
+  int missed = 0;         ///< poses with an overlap that the engine answered with V = 0
+  double reference = 0.0;  ///< worst error of the reference's V
+  double microseconds = 0.0;  ///< median time
+};
+
+struct Effort {
+  int poses = 6;          ///< a third each: random, shallow, aligned
+  int gradient_poses = 2;
+  int motion_steps = 8;   ///< of the motion for the noise; 0: none
+  double octree_tolerance = 1e-2;  ///< relative error asked of the octree
+};
+
+/// Every engine that serves the pair, both orders.
+std::vector<Characterisation> characterise(const Example& a, const Example& b,
+                                           const Effort& effort);
+
+}  // namespace volcontact::test

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/support/characterisation.h"
+
+#include <gtest/gtest.h>
+
+namespace volcontact::test {
+namespace {
+
+// The sanitizers make every pose a hundred times slower and look for other faults: fewer will do.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr Effort kEffort{.poses = 1, .gradient_poses = 0, .motion_steps = 0};
+#else
+constexpr Effort kEffort{.poses = 3, .gradient_poses = 1, .motion_steps = 5};
+#endif
+
+/// What an engine promises. docs/accuracy.md has the measured values, over more poses.
+struct Promise {
+  double volume;       // relative, of every pose
+  double moments;      // centroid by radius of gyration, inertia relative
+  double area_vector;  // by A's area in the overlap, the median
+  double gradient;     // finite differences of V, likewise
+  double noise;        // of the increments of V
+};
+
+Promise promise_of(Engine engine) {
+  switch (engine) {
+    case Engine::kClosedForm:
+    case Engine::kClip:
+      // Exact: this is the error of the reference, whose areas are less good than its volumes.
+      return {1e-6, 1e-5, 1e-3, 1e-4, 1e-4};
+    case Engine::kOctree:
+      return {kEffort.octree_tolerance, 0.05, 0.1, 0.3, 0.2};
+    default:
+      return {1e-2, 0.05, 0.02, 0.05, 0.05};
+  }
+}
+
+// Every ordered pair and every engine that serves it, against an integral that shares nothing with
+// the engines. One test a solid, so that they run side by side.
+class Accuracy : public ::testing::TestWithParam<int> {};
+
+TEST_P(Accuracy, EveryEngineKeepsItsPromise) {
+  const Example& a = examples()[static_cast<std::size_t>(GetParam())];
+  int compared = 0;
+  for (std::size_t j = static_cast<std::size_t>(GetParam()); j < examples().size(); ++j) {
+    const Example& b = examples()[j];
+    if (std::isinf(a.own_volume) && std::isinf(b.own_volume)) continue;
+    for (const Characterisation& row : characterise(a, b, kEffort)) {
+      const Promise promise = promise_of(row.engine);
+      SCOPED_TRACE(row.a->name + " - " + row.b->name + ", " + to_string(row.engine));
+      compared += row.poses;
+      EXPECT_LE(row.volume.worst, promise.volume);
+      EXPECT_LE(row.centroid.worst, promise.moments);
+      EXPECT_LE(row.inertia.worst, promise.moments);
+      EXPECT_LE(row.area_vector.median, promise.area_vector);
+      EXPECT_LE(row.area_moment.median, promise.area_vector);
+      EXPECT_LE(row.gradient.median, promise.gradient);
+      EXPECT_LE(row.turn.median, promise.gradient);
+      EXPECT_LE(row.noise, promise.noise);
+      EXPECT_EQ(row.missed, 0);
+      if (row.engine == Engine::kOctree) {
+        EXPECT_EQ(row.bounds_held, row.poses);
+      }
+    }
+  }
+  EXPECT_GT(compared, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Pairs, Accuracy,
+                         ::testing::Range(0, static_cast<int>(examples().size())),
+                         [](const auto& info) {
+                           return examples()[static_cast<std::size_t>(info.param)].name;
+                         });
+
+TEST(Spread, MedianAndWorst) {
+  const Spread spread = spread_of({3.0, 1.0, 2.0});
+  EXPECT_EQ(spread.median, 2.0);
+  EXPECT_EQ(spread.worst, 3.0);
+  EXPECT_EQ(spread_of({}).worst, 0.0);
+}
+
+}  // namespace
+}  // namespace volcontact::test

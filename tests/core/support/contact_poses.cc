@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/support/contact_poses.h"
+
+#include <algorithm>
+
+namespace volcontact::test {
+namespace {
+
+Example example(const Shape& shape) {
+  Example e{name_of(shape), shape,    reference_solid(shape),
+            bounds_of(shape), 0.0, own_metrics_of(shape).volume};
+  if (!e.bounds.bounded()) e.bounds = {Vec3(-0.4, -0.4, -0.6), Vec3(0.4, 0.4, 0.0)};
+  e.size = e.bounds.half_sizes().norm();
+  e.reference.number_faces(0);
+  return e;
+}
+
+ConvexPolytope gem() {
+  Random random(3);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 18; ++i) points.push_back(0.4 * random.direction());
+  return ConvexPolytope(points);
+}
+
+struct SurfacePoint {
+  Vec3 point, normal, inside;
+};
+
+// Where a random line enters the solid, and a point of the line within it.
+SurfacePoint surface_point(const Example& e, Random& random) {
+  for (;;) {
+    const Mat3 r = random.rotation();
+    const Vec3 through = e.bounds.center() + Vec3(random.uniform(-1, 1), random.uniform(-1, 1),
+                                                  random.uniform(-1, 1))
+                                                 .cwiseProduct(e.bounds.half_sizes());
+    const Pose X_LE{r.transpose(), -(r.transpose() * through)};
+    ReferenceSolid solid = e.reference.posed(X_LE);
+    const ReferenceSpans spans = solid.column(0.0, 0.0);
+    if (spans.size() == 0) continue;
+    ReferenceSpan span = spans[static_cast<int>(random.uniform(0.0, spans.size()))];
+    if (!std::isfinite(span.enter) && !std::isfinite(span.leave)) continue;
+    if (!std::isfinite(span.leave)) span.leave = span.enter + e.size;
+    const bool ends = !std::isfinite(span.enter);
+    if (ends) span.enter = span.leave - e.size;
+    const double t = ends ? span.leave : span.enter;
+    const int face = ends ? span.leave_face : span.enter_face;
+    const double depth = random.uniform(0.1, 0.9);
+    const Vec3 inside(0.0, 0.0, span.enter + depth * (span.leave - span.enter));
+    return {through + r * Vec3(0, 0, t), r * solid.normal(face, Vec3(0, 0, t)),
+            through + r * inside};
+  }
+}
+
+double range_of(const Example& a, const Example& b) { return 2.0 * std::min(a.size, b.size); }
+
+}  // namespace
+
+const std::vector<Example>& examples() {
+  static const std::vector<Example> all = {
+      example(HalfSpace()),
+      example(Sphere({.radius = 0.35})),
+      example(Ellipsoid({.semi_axes = Vec3(0.5, 0.35, 0.2)})),
+      example(Capsule({.radius = 0.2, .half_length = 0.3})),
+      example(Cylinder({.radius = 0.3, .half_length = 0.25})),
+      example(Frustum({.bottom_radius = 0.35, .top_radius = 0.15, .half_length = 0.3})),
+      example(Box({.half_sizes = Vec3(0.4, 0.3, 0.2)})),
+      example(Torus({.major_radius = 0.35, .minor_radius = 0.12})),
+      example(gem()),
+  };
+  return all;
+}
+
+ContactPose random_overlap(const Example& a, const Example& b, Random& random) {
+  const Vec3 in_a = surface_point(a, random).inside, in_b = surface_point(b, random).inside;
+  const Mat3 r = random.rotation();
+  return {{r, in_a - r * in_b}, {{random.rotation(), in_a}, range_of(a, b)}};
+}
+
+ContactPose shallow_overlap(const Example& a, const Example& b, double depth, double tilt,
+                            Random& random) {
+  const SurfacePoint on_a = surface_point(a, random), on_b = surface_point(b, random);
+  const Mat3 spin = turn(Vec3::UnitZ(), random.uniform(0.0, 2.0 * kPi));
+  const Mat3 lean = tilt > 0.0 ? turn(random.direction(), tilt) : Mat3(Mat3::Identity());
+  const Mat3 r =
+      basis_with_z(-on_a.normal) * lean * spin * basis_with_z(on_b.normal).transpose();
+  const Vec3 low = on_a.point - depth * on_a.normal;
+  const Mat3 look = basis_with_z(on_a.normal) * turn(Vec3::UnitZ(), random.uniform(0.0, kPi));
+  return {{r, low - r * on_b.point},
+          {{look, 0.5 * (low + on_a.point)}, range_of(a, b)}};
+}
+
+ContactPose aligned_overlap(const Example& a, const Example& b, Random& random) {
+  const auto grid = [&random] { return std::floor(random.uniform(-1.0, 2.0)); };
+  const auto place = [&](const Example& e) {
+    const Vec3 where(grid(), grid(), grid());
+    return Vec3(e.bounds.center() + where.cwiseProduct(e.bounds.half_sizes()));
+  };
+  const Vec3 on_a = place(a), on_b = place(b);
+  Mat3 r = Mat3::Zero();  // one of the 24 rotations that map axes to axes
+  const int first = static_cast<int>(random.uniform(0.0, 3.0));
+  const int second = (first + (random.uniform() < 0.5 ? 1 : 2)) % 3;
+  r(first, 0) = random.uniform() < 0.5 ? 1.0 : -1.0;
+  r(second, 1) = random.uniform() < 0.5 ? 1.0 : -1.0;
+  r.col(2) = r.col(0).cross(r.col(1));
+  const Vec3 p = on_a - r * on_b;
+  // The middle of the overlap of the bounds.
+  const Vec3 center_b = r * b.bounds.center() + p, half_b = (r * b.bounds.half_sizes()).cwiseAbs();
+  const Vec3 low = a.bounds.min.cwiseMax(center_b - half_b);
+  const Vec3 high = a.bounds.max.cwiseMin(center_b + half_b);
+  return {{r, p}, {{random.rotation(), 0.5 * (low + high)}, range_of(a, b)}};
+}
+
+}  // namespace volcontact::test

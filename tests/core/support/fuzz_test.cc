@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/support/fuzz.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace volcontact::test {
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr int kSlower = 20;
+#else
+constexpr int kSlower = 1;
+#endif
+
+// A sample of the run that tests/benchmarks/results/fuzz.md tells of.
+TEST(Fuzz, NoPairFailsOnRandomAndDegeneratePoses) {
+  const FuzzPlan plan{.random_poses = 2400 / kSlower,
+                      .degenerate_poses = 1200 / kSlower,
+                      .octree_share = 0.01,
+                      .reference_share = 0.2,
+                      .seed = 7};
+  const FuzzReport report = fuzz(plan);
+  int overlapping = 0;
+  for (const FuzzCount& count : report.counts) overlapping += count.overlapping;
+  EXPECT_GT(overlapping, 100 / kSlower);
+  for (const FuzzFailure& f : report.failures) {
+    ADD_FAILURE() << to_string(f.engine) << ", " << f.a << " - " << f.b << ": " << f.what
+                  << ", V = " << f.volume << ", expected " << f.expected << "; X_AB = "
+                  << literal(f.X_AB);
+  }
+}
+
+// Solids without volume overlap nothing; the answer is finite and says so.
+TEST(Fuzz, SolidsOfZeroSize) {
+  const std::vector<Shape> flat = {Sphere({.radius = 0.0}),
+                                   Ellipsoid({.semi_axes = Vec3(0.3, 0.2, 0.0)}),
+                                   Capsule({.radius = 0.0, .half_length = 0.3}),
+                                   Cylinder({.radius = 0.3, .half_length = 0.0}),
+                                   Box({.half_sizes = Vec3(0.3, 0.2, 0.0)}),
+                                   Torus({.major_radius = 0.3, .minor_radius = 0.0})};
+  Random random(8);
+  InterferenceWorkspace workspace;
+  Interference out;
+  for (const Shape& a : flat) {
+    for (const Example& b : examples()) {
+      for (int i = 0; i < 4; ++i) {
+        const Pose X_AB = i == 0 ? Pose{} : random.pose(0.2);
+        for (const bool swap : {false, true}) {
+          interference(swap ? b.shape : a, swap ? a : b.shape, X_AB, {.tolerance = 0.1}, workspace,
+                       out);
+          EXPECT_TRUE(is_finite(out.total)) << name_of(a) << " - " << b.name;
+          EXPECT_LE(out.total.volume, 1e-9) << name_of(a) << " - " << b.name;
+        }
+      }
+    }
+  }
+}
+
+TEST(Fuzz, NumbersThatAreNone) {
+  InterferenceWorkspace workspace;
+  Interference out;
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity}) {
+    for (int i = 0; i < 12; ++i) {
+      Pose X_AB;
+      if (i < 9) X_AB.rotation(i / 3, i % 3) = bad;
+      if (i >= 9) X_AB.translation[i - 9] = bad;
+      for (const Example& a : examples()) {
+        for (const Example& b : examples()) {
+          interference(a.shape, b.shape, X_AB, {}, workspace, out);
+          EXPECT_EQ(out.total.status, Status::kInvalid) << a.name << " - " << b.name;
+          EXPECT_EQ(out.total.volume, 0.0);
+          EXPECT_TRUE(out.sites.empty());
+        }
+      }
+    }
+  }
+}
+
+TEST(Fuzz, PosesAreWrittenSoThatTheyCanBeReadBack) {
+  EXPECT_EQ(literal(Pose{}),
+            "Pose{(Mat3() << 1, 0, 0, 0, 1, 0, 0, 0, 1).finished(), Vec3(0, 0, 0)}");
+}
+
+}  // namespace
+}  // namespace volcontact::test

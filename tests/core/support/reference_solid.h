@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "volcontact/shape/shapes.h"
+
+namespace volcontact::test {
+
+// Solids written down once more, from their definitions alone: quadric and torus inequalities under
+// union, intersection and difference. They share no formula with the shapes of the core, and serve
+// the reference integral and the search for poses.
+
+/// Part of a line inside a solid, with the faces that bound it.
+struct ReferenceSpan {
+  double enter, leave;
+  int enter_face, leave_face;
+};
+
+/// Parts of one line, in order.
+class ReferenceSpans {
+ public:
+  int size() const { return size_; }
+  const ReferenceSpan& operator[](int i) const { return spans_[static_cast<std::size_t>(i)]; }
+  void add(const ReferenceSpan& span) {
+    if (span.enter < span.leave && size_ < kMost) spans_[static_cast<std::size_t>(size_++)] = span;
+  }
+  void clear() { size_ = 0; }
+
+ private:
+  static constexpr int kMost = 16;
+  std::array<ReferenceSpan, kMost> spans_;
+  int size_ = 0;
+};
+
+ReferenceSpans both(const ReferenceSpans& a, const ReferenceSpans& b);
+ReferenceSpans either(const ReferenceSpans& a, const ReferenceSpans& b);
+ReferenceSpans without(const ReferenceSpans& a, const ReferenceSpans& b);
+
+/// F(x) = 1/2 x^T H x + g . x + k <= 0.
+struct ReferenceFace {
+  Mat3 hessian = Mat3::Zero();
+  Vec3 linear = Vec3::Zero();
+  double constant = 0.0;
+};
+
+class ReferenceSolid {
+ public:
+  /// Half-spaces and quadrics that hold together on a convex set; planes come first.
+  static ReferenceSolid piece(std::vector<ReferenceFace> faces);
+  static ReferenceSolid torus(double major_radius, double minor_radius);
+  /// Union of a tube and two balls, as one face: where they meet they are tangent, and rounding
+  /// would decide which of them bounds a line.
+  static ReferenceSolid capsule(double radius, double half_length, const ReferenceSolid& parts);
+  friend ReferenceSolid operator|(const ReferenceSolid& a, const ReferenceSolid& b);
+  friend ReferenceSolid operator&(const ReferenceSolid& a, const ReferenceSolid& b);
+  friend ReferenceSolid operator-(const ReferenceSolid& a, const ReferenceSolid& b);
+
+  /// The solid placed in W at X_WS.
+  ReferenceSolid posed(const Pose& X_WS) const;
+
+  /// Numbers the faces from `first`; returns the next free number.
+  int number_faces(int first);
+
+  /// The line (u, v, t), all t.
+  ReferenceSpans column(double u, double v) const;
+
+  /// Outward normal of the numbered face at a point of it.
+  Vec3 normal(int face, const Vec3& x) const;
+
+ private:
+  enum class Kind { kPiece, kTorus, kCapsule, kUnion, kIntersection, kDifference };
+  static ReferenceSolid joined(Kind kind, const ReferenceSolid& a, const ReferenceSolid& b);
+  ReferenceSpans piece_column(double u, double v) const;
+  ReferenceSpans torus_column(double u, double v) const;
+
+  Kind kind_ = Kind::kPiece;
+  int first_face_ = 0;
+  std::vector<ReferenceFace> faces_;
+  double major_radius_ = 0.0, minor_radius_ = 0.0;  // of a capsule: half length and radius
+  Pose X_TW_;                                       // of a torus or capsule
+  std::vector<ReferenceSolid> parts_;
+};
+
+/// The solid of a shape.
+ReferenceSolid reference_solid(const Shape& shape);
+
+}  // namespace volcontact::test
