@@ -22,18 +22,20 @@ struct Characterisation {
   Engine engine = Engine::kAuto;
   int poses = 0;  ///< with an overlap that the reference could integrate
   Spread volume, centroid, inertia, area_vector, area_moment;
-  Spread gradient, turn;  ///< of the area vector and moment against finite differences of V
-  double noise = 0.0;     ///< rms error of the increments of V along a motion, of their rms
-  int bounds_held = 0;    ///< poses where |error of V| <= volume_error
-  int missed = 0;         ///< poses with an overlap that the engine answered with V = 0
-  double reference = 0.0;  ///< worst error of the reference's V
+  Spread gradient, turn;      ///< of the area vector and moment against finite differences of V
+  double noise = 0.0;         ///< rms error of the increments of V along a motion, of their rms
+  int bounds_held = 0;        ///< poses where |error of V| <= volume_error
+  int missed = 0;             ///< poses with an overlap that the engine answered with V = 0
+  double reference = 0.0;     ///< worst error of the reference's V
   double microseconds = 0.0;  ///< median time
 };
 
 struct Effort {
-  int poses = 6;          ///< a third each: random, shallow, aligned
-  int gradient_poses = 2;
-  int motion_steps = 8;   ///< of the motion for the noise; 0: none
+  int poses = 6;                   ///< a third each: random, shallow, aligned
+  int gradient_poses = 2;          ///< no gradients, and no motion, of the octree: it is slow, and
+                                   ///< smooth to its tolerance only
+  int motion_steps = 8;            ///< of the motion for the noise; 0: none
+  int octree_poses = 2;            ///< of them, those that the octree gets too
   double octree_tolerance = 1e-2;  ///< relative error asked of the octree
 };
 

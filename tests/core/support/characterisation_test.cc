@@ -8,9 +8,11 @@ namespace {
 
 // The sanitizers make every pose a hundred times slower and look for other faults: fewer will do.
 #if defined(__SANITIZE_ADDRESS__)
-constexpr Effort kEffort{.poses = 1, .gradient_poses = 0, .motion_steps = 0};
+constexpr Effort kEffort{
+    .poses = 1, .gradient_poses = 0, .motion_steps = 0, .octree_poses = 0};
 #else
-constexpr Effort kEffort{.poses = 3, .gradient_poses = 1, .motion_steps = 5};
+constexpr Effort kEffort{
+    .poses = 3, .gradient_poses = 1, .motion_steps = 5, .octree_poses = 1};
 #endif
 
 /// What an engine promises. docs/accuracy.md has the measured values, over more poses.
@@ -41,10 +43,11 @@ class Accuracy : public ::testing::TestWithParam<int> {};
 
 TEST_P(Accuracy, EveryEngineKeepsItsPromise) {
   const Example& a = examples()[static_cast<std::size_t>(GetParam())];
-  int compared = 0;
+  int compared = 0, pairs = 0;
   for (std::size_t j = static_cast<std::size_t>(GetParam()); j < examples().size(); ++j) {
     const Example& b = examples()[j];
-    if (std::isinf(a.own_volume) && std::isinf(b.own_volume)) continue;
+    if (!is_pair(a, b)) continue;
+    ++pairs;
     for (const Characterisation& row : characterise(a, b, kEffort)) {
       const Promise promise = promise_of(row.engine);
       SCOPED_TRACE(row.a->name + " - " + row.b->name + ", " + to_string(row.engine));
@@ -63,13 +66,12 @@ TEST_P(Accuracy, EveryEngineKeepsItsPromise) {
       }
     }
   }
-  EXPECT_GT(compared, 0);
+  EXPECT_TRUE(compared > 0 || pairs == 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Pairs, Accuracy,
-                         ::testing::Range(0, static_cast<int>(examples().size())),
-                         [](const auto& info) {
-                           return examples()[static_cast<std::size_t>(info.param)].name;
+INSTANTIATE_TEST_SUITE_P(Pairs, Accuracy, ::testing::Range(0, static_cast<int>(examples().size())),
+                         [](const auto& test) {
+                           return examples()[static_cast<std::size_t>(test.param)].name;
                          });
 
 TEST(Spread, MedianAndWorst) {

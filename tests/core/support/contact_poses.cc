@@ -6,9 +6,9 @@
 namespace volcontact::test {
 namespace {
 
-Example example(const Shape& shape) {
-  Example e{name_of(shape), shape,    reference_solid(shape),
-            bounds_of(shape), 0.0, own_metrics_of(shape).volume};
+Example example(const Shape& shape, const char* name = nullptr) {
+  Example e{name ? name : name_of(shape), shape, reference_solid(shape), bounds_of(shape), 0.0,
+            own_metrics_of(shape).volume};
   if (!e.bounds.bounded()) e.bounds = {Vec3(-0.4, -0.4, -0.6), Vec3(0.4, 0.4, 0.0)};
   e.size = e.bounds.half_sizes().norm();
   e.reference.number_faces(0);
@@ -22,6 +22,31 @@ ConvexPolytope gem() {
   return ConvexPolytope(points);
 }
 
+Csg placed(const SimpleShape& shape, double height = 0.0) {
+  return Csg(shape, Pose{Mat3::Identity(), Vec3(0.0, 0.0, height)});
+}
+Csg without(const Csg& a, const Csg& b) { return Csg(Csg::Operation::kDifference, a, b); }
+
+Csg bored_block() {
+  return without(placed(Box({.half_sizes = Vec3(0.4, 0.4, 0.25)})),
+                 placed(Cylinder({.radius = 0.2, .half_length = 0.5})));
+}
+// The mouth of the bore widens by 0.08 m over the last 0.1 m.
+Csg chamfered_hole() {
+  const Frustum mouth({.bottom_radius = 0.2, .top_radius = 0.28, .half_length = 0.05});
+  return without(bored_block(), placed(mouth, 0.2));
+}
+Csg hollow_cylinder() {
+  return without(placed(Cylinder({.radius = 0.35, .half_length = 0.3})),
+                 placed(Cylinder({.radius = 0.22, .half_length = 0.5})));
+}
+// A cone with a conical hollow that leaves a floor.
+Csg cup() {
+  return without(
+      placed(Frustum({.bottom_radius = 0.2, .top_radius = 0.35, .half_length = 0.3})),
+      placed(Frustum({.bottom_radius = 0.12, .top_radius = 0.3, .half_length = 0.25}), 0.1));
+}
+
 struct SurfacePoint {
   Vec3 point, normal, inside;
 };
@@ -30,9 +55,9 @@ struct SurfacePoint {
 SurfacePoint surface_point(const Example& e, Random& random) {
   for (;;) {
     const Mat3 r = random.rotation();
-    const Vec3 through = e.bounds.center() + Vec3(random.uniform(-1, 1), random.uniform(-1, 1),
-                                                  random.uniform(-1, 1))
-                                                 .cwiseProduct(e.bounds.half_sizes());
+    const Vec3 through = e.bounds.center() +
+                         Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))
+                             .cwiseProduct(e.bounds.half_sizes());
     const Pose X_LE{r.transpose(), -(r.transpose() * through)};
     ReferenceSolid solid = e.reference.posed(X_LE);
     const ReferenceSpans spans = solid.column(0.0, 0.0);
@@ -51,6 +76,16 @@ SurfacePoint surface_point(const Example& e, Random& random) {
   }
 }
 
+}  // namespace
+
+bool is_pair(const Example& a, const Example& b) {
+  const auto composed = [](const Example& e) { return std::holds_alternative<Csg>(e.shape); };
+  if (std::isinf(a.own_volume) && std::isinf(b.own_volume)) return false;
+  return !(composed(a) && composed(b));
+}
+
+namespace {
+
 double range_of(const Example& a, const Example& b) { return 2.0 * std::min(a.size, b.size); }
 
 }  // namespace
@@ -66,6 +101,10 @@ const std::vector<Example>& examples() {
       example(Box({.half_sizes = Vec3(0.4, 0.3, 0.2)})),
       example(Torus({.major_radius = 0.35, .minor_radius = 0.12})),
       example(gem()),
+      example(bored_block(), "bored_block"),
+      example(chamfered_hole(), "chamfered_hole"),
+      example(hollow_cylinder(), "hollow_cylinder"),
+      example(cup(), "cup"),
   };
   return all;
 }
@@ -81,12 +120,10 @@ ContactPose shallow_overlap(const Example& a, const Example& b, double depth, do
   const SurfacePoint on_a = surface_point(a, random), on_b = surface_point(b, random);
   const Mat3 spin = turn(Vec3::UnitZ(), random.uniform(0.0, 2.0 * kPi));
   const Mat3 lean = tilt > 0.0 ? turn(random.direction(), tilt) : Mat3(Mat3::Identity());
-  const Mat3 r =
-      basis_with_z(-on_a.normal) * lean * spin * basis_with_z(on_b.normal).transpose();
+  const Mat3 r = basis_with_z(-on_a.normal) * lean * spin * basis_with_z(on_b.normal).transpose();
   const Vec3 low = on_a.point - depth * on_a.normal;
   const Mat3 look = basis_with_z(on_a.normal) * turn(Vec3::UnitZ(), random.uniform(0.0, kPi));
-  return {{r, low - r * on_b.point},
-          {{look, 0.5 * (low + on_a.point)}, range_of(a, b)}};
+  return {{r, low - r * on_b.point}, {{look, 0.5 * (low + on_a.point)}, range_of(a, b)}};
 }
 
 ContactPose aligned_overlap(const Example& a, const Example& b, Random& random) {

@@ -18,7 +18,7 @@ struct FuzzPlan {
   double reference_share = 1.0;  ///< of the overlaps, compared with the reference; all are with the
                                  ///< other order of the pair, and all that seem apart
   std::uint64_t seed = 1;
-  std::string only;  ///< "a-b" for one pair, empty for all
+  std::string only = {};  ///< "a-b" for one pair, empty for all
 };
 
 struct FuzzFailure {

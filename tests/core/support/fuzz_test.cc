@@ -27,8 +27,8 @@ TEST(Fuzz, NoPairFailsOnRandomAndDegeneratePoses) {
   EXPECT_GT(overlapping, 100 / kSlower);
   for (const FuzzFailure& f : report.failures) {
     ADD_FAILURE() << to_string(f.engine) << ", " << f.a << " - " << f.b << ": " << f.what
-                  << ", V = " << f.volume << ", expected " << f.expected << "; X_AB = "
-                  << literal(f.X_AB);
+                  << ", V = " << f.volume << ", expected " << f.expected
+                  << "; X_AB = " << literal(f.X_AB);
   }
 }
 

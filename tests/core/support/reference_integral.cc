@@ -28,6 +28,7 @@ struct Fineness {
   int zooms;         // and on each side of the origin, closer and closer
   double tolerance;  // of V, of each stretch
   double end;        // how closely a change is located, of the range
+  long budget;       // lines; when they are spent the search for changes and halving end
 };
 
 // Gauss-Kronrod rule of 21 points with its Gauss rule of 10, on [0, 1] under x = s^2 (3 - 2 s):
@@ -80,8 +81,13 @@ struct Range {
 template <typename Function>
 class Stretches {
  public:
-  Stretches(Function& f, double range, const Fineness& fine, bool creeping, const Range& likely)
-      : f_(f), end_(fine.end * range), tolerance_(fine.tolerance), creeping_(creeping) {
+  Stretches(Function& f, double range, const Fineness& fine, const long& left, bool creeping,
+            const Range& likely)
+      : f_(f),
+        end_(fine.end * range),
+        tolerance_(fine.tolerance),
+        left_(left),
+        creeping_(creeping) {
     std::vector<double> scan;
     for (int i = 0; i <= fine.scan; ++i) scan.push_back(range * (2.0 * i / fine.scan - 1.0));
     for (int i = 0; i < fine.zooms; ++i) {
@@ -128,7 +134,7 @@ class Stretches {
       const Piece piece = pieces_[i];
       const bool rough = piece.doubt > tolerance_ * volume ||
                          piece.area_doubt > kAreaTolerance * tolerance_ * area;
-      if (rough && piece.halvings < kHalvings) {
+      if (rough && piece.halvings < kHalvings && left_ > 0) {
         const double middle = 0.5 * (piece.from + piece.to);
         pieces_[i].values.setZero();
         pieces_.push_back(integrated(piece.from, middle, piece.halvings + 1));
@@ -166,7 +172,7 @@ class Stretches {
   Start creep(double from, double to, std::uint64_t signature) {
     Start here{from, signature};
     double step = 0.5 * (to - from);
-    for (int i = 0; i < 400 && std::abs(step) > end_; ++i) {
+    for (int i = 0; i < 400 && std::abs(step) > end_ && left_ > 0; ++i) {
       const std::uint64_t next = f_(here.x + step, false).signature;
       if (next == 0) {
         step *= 0.4;
@@ -179,7 +185,8 @@ class Stretches {
   }
 
   void chain(double x, std::uint64_t signature) {
-    for (int changes = 0; points_.back().signature != signature && changes < 12; ++changes) {
+    for (int changes = 0; points_.back().signature != signature && changes < 12 && left_ > 0;
+         ++changes) {
       double low = last_, high = x;
       std::uint64_t next = signature;
       while (high - low > end_) {
@@ -227,7 +234,7 @@ class Stretches {
   void add_pieces(double from, double to, std::uint64_t signature, int cuts) {
     for (const double part : {0.5, 0.03, 0.97, 0.25, 0.75}) {
       const double x = from + (to - from) * part;
-      if (cuts == 0 || (to - from) * 0.03 < 4.0 * end_) break;
+      if (cuts == 0 || left_ <= 0 || (to - from) * 0.03 < 4.0 * end_) break;
       const std::uint64_t inner = f_(x, false).signature;
       if (inner == signature) continue;
       const double left = edge(from + 2.0 * end_, x, signature);
@@ -249,6 +256,7 @@ class Stretches {
 
   Function& f_;
   double end_, tolerance_;
+  const long& left_;  // lines of the budget
   bool creeping_;
   std::vector<Piece> pieces_;
   std::vector<Start> points_;
@@ -262,20 +270,20 @@ constexpr double kNothing = 1e-13;
 class Columns {
  public:
   Columns(const ReferenceSolid& a, const ReferenceSolid& b, double range, const Fineness& fine)
-      : a_(a), b_(b), range_(range), fine_(fine) {
+      : a_(a), b_(b), range_(range), fine_(fine), left_(fine.budget) {
     first_of_b_ = a_.number_faces(0);
     b_.number_faces(first_of_b_);
   }
 
   Values sum() {
     auto section = [this](double u, bool with_values) { return section_at(u, with_values); };
-    return Stretches(section, range_, fine_, true, {0.0, 0.0}).sum(true).values;
+    return Stretches(section, range_, fine_, left_, true, {0.0, 0.0}).sum(true).values;
   }
 
  private:
   Sample section_at(double u, bool with_values) {
     auto line = [this, u](double v, bool wanted) { return line_at(u, v, wanted); };
-    Stretches stretches(line, range_, fine_, false, likely_at(u));
+    Stretches stretches(line, range_, fine_, left_, false, likely_at(u));
     const Range range = stretches.seen();
     if (range.low < range.high) seen_[u] = range;
     return stretches.sum(with_values);
@@ -304,6 +312,7 @@ class Columns {
   }
 
   Sample line_at(double u, double v, bool with_values) {
+    --left_;
     const ReferenceSpans in_a = a_.column(u, v);
     Sample sample;
     if (in_a.size() == 0) return sample;
@@ -345,6 +354,7 @@ class Columns {
   ReferenceSolid a_, b_;
   double range_;
   Fineness fine_;
+  long left_;
   int first_of_b_;
   std::map<double, Range> seen_;  // sections that were not empty
 };
@@ -352,8 +362,8 @@ class Columns {
 // One direction, expressed in the axes of the frame F.
 struct Direction {
   MomentSum moments;
-  double flux = 0.0;                     // int n_k dS
-  Vec3 first_flux = Vec3::Zero();        // int x n_k dS
+  double flux = 0.0;                      // int n_k dS
+  Vec3 first_flux = Vec3::Zero();         // int x n_k dS
   double area = 0.0, counter_area = 0.0;  // int n_k^2 dS
 };
 
@@ -414,10 +424,11 @@ Reference reference_integral(const ReferenceSolid& a, const ReferenceSolid& b, c
   const Pose X_FA = lookout.X_AF.inverse();
   const ReferenceSolid a_F = a.posed(X_FA), b_F = b.posed(X_FA * X_AB);
   const bool coarse = lookout.tolerance > 1e-6;
-  const Reference quick = integrate(a_F, b_F, lookout, coarse ? Fineness{10, 10, lookout.tolerance, 1e-8}
-                                                        : Fineness{20, 18, lookout.tolerance, 1e-11});
+  const Reference quick = integrate(a_F, b_F, lookout,
+                                    coarse ? Fineness{10, 10, lookout.tolerance, 1e-8, 200000}
+                                           : Fineness{20, 18, lookout.tolerance, 1e-11, 1500000});
   if (!lookout.all_axes || quick.volume_error <= kAgreement * quick.metrics.volume) return quick;
-  const Reference careful = integrate(a_F, b_F, lookout, {40, 22, 1e-9, 1e-12});
+  const Reference careful = integrate(a_F, b_F, lookout, {40, 22, 1e-9, 1e-12, 3000000});
   return careful.volume_error < quick.volume_error ? careful : quick;
 }
 

@@ -16,10 +16,10 @@ namespace volcontact::test {
 /// Where to look. Any frame gives the same numbers; one whose z axis is the contact normal and
 /// whose origin lies in the overlap finds thin overlaps too.
 struct Lookout {
-  Pose X_AF;             ///< of the frame of the lines in A
-  double half_range;     ///< the overlap lies within this distance of its origin [m]
-  bool all_axes = true;      ///< false: lines along z alone; no area vector and no error
-  double tolerance = 1e-8;   ///< of V, of each stretch; coarser than 1e-6: fewer lines look
+  Pose X_AF;                ///< of the frame of the lines in A
+  double half_range;        ///< the overlap lies within this distance of its origin [m]
+  bool all_axes = true;     ///< false: lines along z alone; no area vector and no error
+  double tolerance = 1e-8;  ///< of V, of each stretch; coarser than 1e-6: fewer lines look
 };
 
 struct Reference {

@@ -19,8 +19,8 @@ Reference integral(const Shape& a, const Shape& b, const Pose& X_AB, const Vec3&
 TEST(ReferenceIntegral, CapOfABall) {
   constexpr double kRadius = 0.5, kHeight = 0.2;
   const Pose X_AB{Mat3::Identity(), Vec3(0.0, 0.0, kRadius - kHeight)};
-  const Reference r = integral(HalfSpace(), Sphere({.radius = kRadius}), X_AB,
-                               Vec3(0.0, 0.0, -kHeight / 2.0), 1.0);
+  const Reference r =
+      integral(HalfSpace(), Sphere({.radius = kRadius}), X_AB, Vec3(0.0, 0.0, -kHeight / 2.0), 1.0);
   const double volume = kPi * kHeight * kHeight * (kRadius - kHeight / 3.0);
   const double disc = kPi * kHeight * (2.0 * kRadius - kHeight);
   EXPECT_NEAR(r.metrics.volume, volume, 1e-7 * volume);
@@ -88,8 +88,7 @@ TEST(ContactPoses, ShallowPosesOverlapAndTheSurfaceNormalsAreOpposed) {
   for (int i = 0; i < 10; ++i) {
     // A ball under a face: a cap of the wanted depth, unless an edge cuts it.
     const ContactPose pose = shallow_overlap(box, ball, 1e-3, 0.0, random);
-    const Reference r =
-        reference_integral(box.reference, ball.reference, pose.X_AB, pose.lookout);
+    const Reference r = reference_integral(box.reference, ball.reference, pose.X_AB, pose.lookout);
     const double cap = kPi * 1e-6 * (0.35 - 1e-3 / 3.0);
     EXPECT_GT(r.metrics.volume, 0.0);
     EXPECT_LT(r.metrics.volume, cap * (1.0 + 1e-6));

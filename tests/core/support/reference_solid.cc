@@ -40,9 +40,9 @@ Solid solid_of(const Ellipsoid& e) {
 }
 Solid solid_of(const Capsule& c) {
   const Vec3 up(0.0, 0.0, c.half_length());
-  return Solid::capsule(c.radius(), c.half_length(),
-                        tube(c.radius(), c.half_length()) | ball(c.radius(), up) |
-                            ball(c.radius(), -up));
+  return Solid::capsule(
+      c.radius(), c.half_length(),
+      tube(c.radius(), c.half_length()) | ball(c.radius(), up) | ball(c.radius(), -up));
 }
 Solid solid_of(const Cylinder& c) { return tube(c.radius(), c.half_length()); }
 Solid solid_of(const Frustum& f) {
@@ -71,6 +71,33 @@ Solid solid_of(const ConvexPolytope& polytope) {
   std::vector<ReferenceFace> faces;
   for (const auto& face : polytope.faces()) faces.push_back(plane(face.normal, face.offset));
   return Solid::piece(faces);
+}
+
+Solid solid_of(const Csg& csg) {
+  std::vector<Solid> stack;
+  for (const Csg::Step& step : csg.steps()) {
+    if (step.member >= 0) {
+      const Csg::Member& member = csg.members()[static_cast<std::size_t>(step.member)];
+      const auto make = [](const auto& solid) { return solid_of(solid); };
+      stack.push_back(std::visit(make, member.shape).posed(member.X_SM));
+      continue;
+    }
+    const Solid b = stack.back();
+    stack.pop_back();
+    const Solid a = stack.back();
+    switch (step.operation) {
+      case Csg::Operation::kUnion:
+        stack.back() = a | b;
+        break;
+      case Csg::Operation::kIntersection:
+        stack.back() = a & b;
+        break;
+      case Csg::Operation::kDifference:
+        stack.back() = a - b;
+        break;
+    }
+  }
+  return stack.back();
 }
 
 // The root of a monotone stretch of t^4 + p t^2 + q t + r, by Newton steps kept in the bracket.
