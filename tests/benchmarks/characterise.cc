@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The table of docs/accuracy.md as CSV: characterise [POSES_A_PAIR].
+// Measures every engine on every pair and prints a table as CSV: characterise [POSES_A_PAIR].
 #include <cstdio>
 #include <cstdlib>
 

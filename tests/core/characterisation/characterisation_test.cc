@@ -13,7 +13,7 @@ constexpr Effort kEffort{.poses = 1, .gradient_poses = 0, .motion_steps = 0, .oc
 constexpr Effort kEffort{.poses = 3, .gradient_poses = 1, .motion_steps = 5, .octree_poses = 1};
 #endif
 
-/// What an engine promises. docs/accuracy.md has the measured values, over more poses.
+/// What an engine promises. tests/benchmarks/characterise measures it over more poses.
 struct Promise {
   double volume;       // relative, of every pose
   double moments;      // centroid by radius of gyration, inertia relative

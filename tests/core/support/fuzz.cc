@@ -27,20 +27,26 @@ class Search {
       for (const Example& b : examples()) {
         if (!is_pair(a, b)) continue;
         if (!plan_.only.empty() && plan_.only != a.name + "-" + b.name) continue;
+        if (plan_.octree_share == 0.0 && may_need_octree(a, b)) continue;
         pairs.emplace_back(&a, &b);
       }
     }
     const int total = plan_.random_poses + plan_.degenerate_poses;
+    if (pairs.empty()) return report_;
     for (int i = 0; i < total; ++i) {
       const auto& [a, b] = pairs[static_cast<std::size_t>(i) % pairs.size()];
-      const bool slow = engine_for(a->shape, b->shape) == Engine::kOctree;
-      if (slow && random_.uniform() >= plan_.octree_share) continue;
+      if (may_need_octree(*a, *b) && random_.uniform() >= plan_.octree_share) continue;
       check(*a, *b, i < plan_.random_poses ? any_pose(*a, *b) : degenerate_pose(*a, *b));
     }
     return report_;
   }
 
  private:
+  static bool may_need_octree(const Example& a, const Example& b) {
+    const auto composed = [](const Example& e) { return std::holds_alternative<Csg>(e.shape); };
+    return composed(a) || composed(b) || engine_for(a.shape, b.shape) == Engine::kOctree;
+  }
+
   ContactPose any_pose(const Example& a, const Example& b) {
     if (random_.uniform() < 0.3) return random_overlap(a, b, random_);
     const double depth = random_.log_uniform(1e-6, 0.1) * std::min(a.size, b.size);

@@ -13,7 +13,8 @@ namespace volcontact::test {
 struct FuzzPlan {
   int random_poses = 0;       ///< any overlap, and shallow ones of depth 1e-6 to 0.1 of the size
   int degenerate_poses = 0;   ///< coplanar, coaxial, contained, touching, identical, flush
-  double octree_share = 1.0;  ///< of the poses of pairs that only the octree serves
+  double octree_share = 1.0;  ///< of the poses of pairs that the octree serves, or may have to: a
+                              ///< composed solid can be beyond lines in some poses; 0: none
   double octree_tolerance = 1e-2;
   double reference_share = 1.0;  ///< of the overlaps, compared with the reference; all are with the
                                  ///< other order of the pair, and all that seem apart
