@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Time of one interference query of the exact engines, over 256 random poses of each kind, warm.
-// The targets (docs/accuracy.md) are for the generic x86-64 build.
+// For the generic x86-64 build.
 #include <benchmark/benchmark.h>
 
 #include <vector>

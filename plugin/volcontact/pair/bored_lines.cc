@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/bored_lines.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "volcontact/pair/fan_metrics.h"
