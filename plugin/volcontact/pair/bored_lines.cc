@@ -40,7 +40,7 @@ class BoreRun {
     const auto [nearest, farthest] = std::minmax_element(
         places.begin(), places.end(), [](const Place& p, const Place& q) { return p.rho < q.rho; });
     if (farthest->rho <= 1.0) return true;  // all of it in the bore
-    if (nearest->rho > 1.0) return outside_all_round();
+    if (nearest->rho > 1.0) return outside_all_round(*nearest);
     return each_lobe();
   }
 
@@ -66,17 +66,31 @@ class BoreRun {
     s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
   }
 
-  // All of the outline lies outside of the bore: the overlap goes round it, or misses it.
-  bool outside_all_round() {
+  // All of the outline lies outside of the bore: the overlap goes round it, or misses it, unless it
+  // dips in between two places.
+  bool outside_all_round(const Place& nearest) {
     double turn = 0.0;
     set_bore_frame(outline_.places()[0].point);
     for (std::size_t i = 0; i < outline_.places().size(); ++i) {
       turn += wrapped(angle_of(outline_.places()[(i + 1) % outline_.places().size()].point) -
                       angle_of(outline_.places()[i].point));
     }
-    if (std::abs(turn) < kPi) return false;
-    integrate(-kPi, kPi, false);
+    if (std::abs(turn) >= kPi) {
+      integrate(-kPi, kPi, false);
+    } else if (keeps_off(nearest)) {
+      add_lines_region(a_, b_, X_AB_, options_, s_, regions_);
+    } else {
+      return false;
+    }
     return true;
+  }
+
+  // Whether a plane along the axis, across the way to this place, keeps a body off the bore.
+  bool keeps_off(const Place& nearest) const {
+    const Vec3 out = outline_.from_axis(nearest.point).normalized();
+    const double wall = out.dot(bore_.center) + outline_.radius();
+    return (a_.bounded() && -a_.support_height(Pose{}, -out) >= wall) ||
+           (b_.bounded() && -b_.support_height(X_AB_, -out) >= wall);
   }
 
   bool each_lobe() {

@@ -152,6 +152,21 @@ TEST(BoredLines, VolumeIsContinuousWhileASiteLeavesAndComesBack) {
   EXPECT_LE(largest, 5.1e-7 * 2.0 * kBore * 2.0 * kHalf);
 }
 
+// A bar that lies beside the bore, with its middle farther along: no plane across the way to the
+// middle keeps the two apart.
+TEST(BoredLines, ABodyBesideTheBoreIsAsOnAWholeBlock) {
+  const Shape bar = Box({.half_sizes = {0.03, 0.004, 0.004}});
+  const Shape whole = Box({.half_sizes = {0.03, 0.03, kHalf}});
+  const Mat3 turned = test::turn(Vec3::UnitZ(), 0.75);
+  const Pose X{turned, turned * Vec3(0.02, -0.0165, kHalf + 0.0035)};
+  const Interference out = evaluated(bored_block(), bar, X);
+  EXPECT_EQ(out.engine, Engine::kLines);
+  ASSERT_EQ(out.sites.size(), 1u);
+  const VolumeMetrics expected = evaluated(whole, bar, X, Engine::kClip).total;
+  EXPECT_NEAR(out.total.volume, expected.volume, 1e-6 * expected.volume);
+  EXPECT_TRUE(out.total.area_vector.isApprox(expected.area_vector, 1e-6));
+}
+
 TEST(BoredLines, AFreePegTouchesNothing) {
   const Shape peg = Cylinder({.radius = kBore - 2e-5, .half_length = 0.04});
   for (double shift : {0.0, 1e-5, 1.9e-5}) {
