@@ -3,10 +3,11 @@
 
 #include <algorithm>
 
+#include "volcontact/pair/even_turn.h"
+
 namespace volcontact {
 namespace {
 
-constexpr int kOutline = 32;       // places tried on the outline of the overlap
 constexpr int kNarrowings = 3;     // of a place where the outline comes near the wall
 constexpr int kEndNarrowings = 2;  // of a place where it crosses the wall
 
@@ -36,11 +37,17 @@ void BoreOutline::set_frame() {
 
 // Eight places of the outline at these angles.
 void BoreOutline::places_at(const double* angles, Place* places) {
-  double u[kLanes], v[kLanes], rho[kLanes], height[kLanes];
+  double u[kLanes], v[kLanes];
   for (int i = 0; i < kLanes; ++i) {
     u[i] = std::cos(angles[i]);
     v[i] = std::sin(angles[i]);
   }
+  places_at(angles, u, v, places);
+}
+
+// The same with the cosines and sines of the angles.
+void BoreOutline::places_at(const double* angles, const double* u, const double* v, Place* places) {
+  double rho[kLanes], height[kLanes];
   s_.fan.ends(s_.path, u, v, rho, height);
   for (int i = 0; i < kLanes; ++i) {
     Place& p = places[i];
@@ -52,14 +59,18 @@ void BoreOutline::places_at(const double* angles, Place* places) {
 
 void BoreOutline::trace() {
   set_frame();
-  places_.resize(kOutline);
-  double angles[kLanes];
-  for (int k = 0; k < kOutline; k += kLanes) {
-    for (int i = 0; i < kLanes; ++i) angles[i] = 2.0 * kPi * (k + i) / kOutline;
-    places_at(angles, &places_[k]);
+  places_.resize(kEvenTurn);
+  double angles[kLanes], u[kLanes], v[kLanes];
+  Place places[kLanes];
+  constexpr int kStep = kEvenTurn / kLanes;
+  for (int k = 0; k < kStep; ++k) {
+    for (int i = 0; i < kLanes; ++i) angles[i] = 2.0 * kPi * (k + kStep * i) / kEvenTurn;
+    even_directions(kEvenTurn, k, u, v);
+    places_at(angles, u, v, places);
+    for (int i = 0; i < kLanes; ++i) places_[k + kStep * i] = places[i];
   }
   // Places that come nearest to the wall from within may hide a lobe between them.
-  const int n = kOutline;
+  const int n = kEvenTurn;
   for (int k = 0; k < n; ++k) {
     const Place p = places_[k], before = places_[(k + n - 1) % n], after = places_[(k + 1) % n];
     if (p.rho > 1.0 || p.rho < before.rho || p.rho < after.rho) continue;

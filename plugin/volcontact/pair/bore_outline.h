@@ -43,6 +43,7 @@ class BoreOutline {
  private:
   void set_frame();
   void places_at(const double* angles, Place* places);
+  void places_at(const double* angles, const double* u, const double* v, Place* places);
   Place summit(double from, double to);
 
   const RoundFace& bore_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "volcontact/pair/even_turn.h"
 #include "volcontact/pair/fan_metrics.h"
 #include "volcontact/pair/gauss.h"
 
@@ -69,13 +70,8 @@ class BoreRun {
   // All of the outline lies outside of the bore: the overlap goes round it, or misses it, unless it
   // dips in between two places.
   bool outside_all_round(const Place& nearest) {
-    double turn = 0.0;
     set_bore_frame(outline_.places()[0].point);
-    for (std::size_t i = 0; i < outline_.places().size(); ++i) {
-      turn += wrapped(angle_of(outline_.places()[(i + 1) % outline_.places().size()].point) -
-                      angle_of(outline_.places()[i].point));
-    }
-    if (std::abs(turn) >= kPi) {
+    if (goes_round_axis()) {
       integrate(-kPi, kPi, false);
     } else if (keeps_off(nearest)) {
       add_lines_region(a_, b_, X_AB_, options_, s_, regions_);
@@ -83,6 +79,24 @@ class BoreRun {
       return false;
     }
     return true;
+  }
+
+  // Whether the axis pierces the outline, a convex curve: then it crosses the ray along -u, in the
+  // frame of the bore, once.
+  bool goes_round_axis() const {
+    const std::vector<Place>& places = outline_.places();
+    Vec3 from = outline_.from_axis(places.back().point);
+    int crossings = 0;
+    for (const Place& place : places) {
+      const Vec3 to = outline_.from_axis(place.point);
+      const double v0 = from.dot(side_v_), v1 = to.dot(side_v_);
+      if ((v0 > 0.0) != (v1 > 0.0)) {
+        const double u0 = from.dot(side_u_), u1 = to.dot(side_u_);
+        if ((u0 * v1 - u1 * v0) * (v1 - v0) < 0.0) ++crossings;
+      }
+      from = to;
+    }
+    return crossings % 2 == 1;
   }
 
   // Whether a plane along the axis, across the way to this place, keeps a body off the bore.
@@ -247,11 +261,7 @@ class BoreRun {
       std::fill_n(weight, kLanes, 2.0 * kPi / (batches * kLanes));
       s_.fan.clear();
       for (int k = 0; k < batches; ++k) {
-        for (int i = 0; i < kLanes; ++i) {
-          const double angle = 2.0 * kPi * (i * batches + k) / (batches * kLanes);
-          u[i] = std::cos(angle);
-          v[i] = std::sin(angle);
-        }
+        even_directions(batches * kLanes, k, u, v);
         s_.fan.integrate(s_.path, u, v, weight, section);
         s_.fan.accept_batch();
         volume[k % 2] += s_.fan.batch().moments[0];

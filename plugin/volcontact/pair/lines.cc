@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "volcontact/pair/even_turn.h"
 #include "volcontact/pair/fan_metrics.h"
 #include "volcontact/pair/gauss.h"
 
@@ -24,7 +25,7 @@ constexpr double kMostTurn = 0.5;  // of the columns towards the normal of the r
 constexpr double kAligned = 0.1;   // a turn after which the next one would be too small to matter
 constexpr double kWhole = 0.999;   // share of a solid in the overlap, that is all of it
 constexpr double kInnerError = 3e-6;  // of the rule along a half-plane, per V; as measured
-constexpr double kWidestAngle = 1.8;  // of an arc between corners [rad]
+constexpr double kWidestAngle = 2.3;  // of an arc between corners [rad]
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -101,7 +102,7 @@ class LinesRun {
   // Eight ways to the rim tell its center and its shape, in which it is rounder.
   void recenter() {
     double u[kLanes], v[kLanes], rho[kLanes], height[kLanes];
-    set_directions(0, u, v);
+    even_directions(kLanes, 0, u, v);
     for (int step = 0; step < kMaxRecenterings; ++step) {
       s_.fan.ends(s_.path, u, v, rho, height);
       const bool aligned = !along_normal_ || align(u, v, rho, height);
@@ -127,15 +128,6 @@ class LinesRun {
     frame_.v = turned * frame_.v;
     frame_.t = sum;
     return turn < kAligned;
-  }
-
-  // Every second one of 16 directions, evenly spread.
-  static void set_directions(int first, double* u, double* v) {
-    for (int i = 0; i < kLanes; ++i) {
-      const double angle = kPi * (2 * i + first) / kLanes;
-      u[i] = std::cos(angle);
-      v[i] = std::sin(angle);
-    }
   }
 
   void recenter(const double* u, const double* v, const double* rho) {
@@ -170,7 +162,7 @@ class LinesRun {
     double u[kLanes], v[kLanes], weight[kLanes], section[kLanes], volume[2];
     std::fill_n(weight, kLanes, kPi / kLanes);
     for (int half = 0; half < 2; ++half) {
-      set_directions(half, u, v);
+      even_directions(2 * kLanes, half, u, v);
       s_.fan.integrate(s_.path, u, v, weight, section);
       s_.fan.accept_batch();
       volume[half] = s_.fan.batch().moments[0];

@@ -88,7 +88,7 @@ TEST(BoredLines, ABallOnTheRimIsARing) {
         evaluated(bored_block(), Sphere({.radius = r}), {Mat3::Identity(), {0.0, 0.0, z}});
     EXPECT_EQ(out.engine, Engine::kLines);
     EXPECT_EQ(out.sites.size(), 1u);
-    EXPECT_NEAR(out.total.volume, expected, 1e-6 * expected + 1e-20) << "depth " << depth;
+    EXPECT_NEAR(out.total.volume, expected, 1e-8 * expected + 1e-20) << "depth " << depth;
     EXPECT_GT(out.total.area_vector.z(), 0.99 * out.total.area_vector.norm());
   }
 }
