@@ -5,16 +5,11 @@
 
 #include "volcontact/pair/even_turn.h"
 #include "volcontact/pair/fan_metrics.h"
-#include "volcontact/pair/gauss.h"
+#include "volcontact/pair/outer_rule.h"
 
 namespace volcontact {
 namespace {
 
-using OuterRule = GaussRule<kLanes>;
-
-constexpr double kTarget = 1e-2;      // share of the tolerance at which an arc is no longer divided
-constexpr double kInnerError = 3e-6;  // of the rule along a half-plane, per V; as measured
-constexpr int kMaxDepth = 4;          // of divisions of an arc
 constexpr double kWidestAngle = 1.6;  // of an undivided arc [rad]
 constexpr double kSameAngle = 1e-9;
 
@@ -244,7 +239,8 @@ class BoreRun {
     for (int i = 0; i < kLanes; ++i) volume += section[i] *= weight[i];
     const double error = legendre_error(section);
     volume_scale_ = std::max(volume_scale_, volume);
-    if (error > kTarget * options_.tolerance * volume_scale_ && depth < kMaxDepth) {
+    if (error > outer_rule::kTarget * options_.tolerance * volume_scale_ &&
+        depth < outer_rule::kMaxDepth) {
       const double middle = 0.5 * (x_from + x_to);
       integrate_arc(arc, x_from, middle, depth + 1);
       integrate_arc(arc, middle, x_to, depth + 1);
@@ -266,10 +262,8 @@ class BoreRun {
         s_.fan.accept_batch();
         volume[k % 2] += s_.fan.batch().moments[0];
       }
-      const double sum = volume[0] + volume[1];
-      const double relative = std::abs(volume[0] - volume[1]) / sum;
-      error_ = relative * std::sqrt(relative) * sum;
-      if (error_ <= kTarget * options_.tolerance * sum) return true;
+      error_ = even_error(volume[0], volume[1]);
+      if (error_ <= outer_rule::kTarget * options_.tolerance * (volume[0] + volume[1])) return true;
     }
     s_.fan.clear();
     error_ = 0.0;
@@ -286,7 +280,7 @@ class BoreRun {
         share * sums.bore.depth_moment * outline_.radius() + (1.0 - share) * sums.depth_moment;
     m.depth = share * (sums.bore.reach - 1.0) * outline_.radius() +
               (1.0 - share) * (sums.high - sums.low);
-    m.volume_error = error_ + kInnerError * m.volume;
+    m.volume_error = error_ + outer_rule::kInnerError * m.volume;
     if (error_ > options_.tolerance * m.volume) m.status = Status::kApproximate;
     LinesRegion& region = regions_.add();
     region.metrics = transformed(m, Pose{Mat3::Identity(), frame_.center});

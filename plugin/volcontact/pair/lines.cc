@@ -7,24 +7,20 @@
 
 #include "volcontact/pair/even_turn.h"
 #include "volcontact/pair/fan_metrics.h"
-#include "volcontact/pair/gauss.h"
+#include "volcontact/pair/outer_rule.h"
 
 namespace volcontact {
 namespace {
 
 using Vec2 = Eigen::Vector2d;
-using OuterRule = GaussRule<kLanes>;
 
 constexpr double kClear = 0.02;       // |S| / area below which S gives no direction to look along
 constexpr double kSameCorner = 1e-7;  // squared distance of directions that count as one
-constexpr double kTarget = 1e-2;      // share of the tolerance at which an arc is no longer divided
-constexpr int kMaxDepth = 4;          // of divisions of an arc
 constexpr int kMaxRecenterings = 6;
 constexpr double kRoundRim = 2.0;  // longest by shortest way to the rim; then one step is enough
 constexpr double kMostTurn = 0.5;  // of the columns towards the normal of the rim; more: no normal
 constexpr double kAligned = 0.1;   // a turn after which the next one would be too small to matter
 constexpr double kWhole = 0.999;   // share of a solid in the overlap, that is all of it
-constexpr double kInnerError = 3e-6;  // of the rule along a half-plane, per V; as measured
 constexpr double kWidestAngle = 2.3;  // of an arc between corners [rad]
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -167,11 +163,8 @@ class LinesRun {
       s_.fan.accept_batch();
       volume[half] = s_.fan.batch().moments[0];
     }
-    // Twice the lines square the error of a smooth rim.
-    const double sum = volume[0] + volume[1];
-    const double relative = std::abs(volume[0] - volume[1]) / sum;
-    error_ = relative * std::sqrt(relative) * sum;
-    return error_ <= kTarget * options_.tolerance * sum;
+    error_ = even_error(volume[0], volume[1]);
+    return error_ <= outer_rule::kTarget * options_.tolerance * (volume[0] + volume[1]);
   }
 
   void integrate_arcs() {
@@ -208,7 +201,6 @@ class LinesRun {
       s_.corners.push_back(d[i]);
       fill(d[i], d[i + 1 < d.size() ? i + 1 : 0], d.size() == 1);
     }
-    put_on_rim(s_.corners);
   }
 
   // Directions between two corners, none inclusive, so that no angle is wide.
@@ -237,17 +229,15 @@ class LinesRun {
     }
   }
 
+  // From corner to corner, over a place half way between them.
   void set_arcs() {
     const std::size_t n = s_.corners.size();
-    std::vector<Vec2>& middles = s_.breaks.directions;
-    middles.clear();
-    for (std::size_t i = 0; i < n; ++i) {
-      middles.push_back(0.5 * (s_.corners[i] + s_.corners[(i + 1) % n]));
-    }
-    put_on_rim(middles);
+    for (std::size_t i = 0; i < n; ++i)
+      s_.corners.push_back(s_.corners[i] + s_.corners[(i + 1) % n]);
+    put_on_rim(s_.corners);
     s_.arcs.clear();
     for (std::size_t i = 0; i < n; ++i) {
-      s_.arcs.push_back({s_.corners[i], middles[i], s_.corners[(i + 1) % n], 0});
+      s_.arcs.push_back({s_.corners[i], s_.corners[n + i], s_.corners[(i + 1) % n], 0});
     }
   }
 
@@ -269,7 +259,8 @@ class LinesRun {
     s_.fan.integrate(s_.path, u, v, weight, section);
     for (int i = 0; i < kLanes; ++i) section[i] *= weight[i];
     const double error = legendre_error(section);
-    if (error > kTarget * options_.tolerance * window_.volume && arc.depth < kMaxDepth) {
+    if (error > outer_rule::kTarget * options_.tolerance * window_.volume &&
+        arc.depth < outer_rule::kMaxDepth) {
       divide(arc);
       return;
     }
@@ -303,7 +294,7 @@ class LinesRun {
     }
     result.depth_moment = sums.depth_moment;
     result.depth = std::max(sums.high, s_.breaks.high) - std::min(sums.low, s_.breaks.low);
-    result.volume_error = error_ + kInnerError * result.volume;
+    result.volume_error = error_ + outer_rule::kInnerError * result.volume;
     if (error_ > options_.tolerance * result.volume) result.status = Status::kApproximate;
     return transformed(result, Pose{Mat3::Identity(), frame_.center});
   }
