@@ -9,12 +9,14 @@
 namespace volcontact {
 
 /// A face of A (owner 0) or B (owner 1) in the octree's frame W: a quadric, or, for a solid known
-/// by its signed distance only, the solid itself.
+/// by its signed distance only, the solid itself. A sampled field is read from the cell's samples.
 struct CellFace {
   Quadric quadric;
   int owner = 0;
   const SolidView* field = nullptr;  ///< null for a quadric
   Pose X_SW;                         ///< of the field
+
+  bool sampled() const { return field && !field->curvature_bound; }
 };
 
 /// What a cell contributes. Moments about the cell's centre, in W.
@@ -40,6 +42,8 @@ struct Cell {
   int face_count = 0;
   std::int16_t listed = -1;  ///< ... of which these may pass through the cell; -1: any
   std::array<std::uint16_t, kListed> list;
+  /// Signed distances of a sampled field, by owner: at the centre and the eight corners.
+  std::array<std::array<double, 9>, 2> samples;
 
   bool divided = false;    ///< has children instead
   bool empty = false;      ///< certainly no overlap in it

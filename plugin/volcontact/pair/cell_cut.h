@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "volcontact/pair/cell.h"
@@ -29,18 +30,19 @@ class CellCut {
   /// with more doubt than `rough_above` [m^3], which will be divided anyway, is left rough.
   void evaluate(const std::vector<CellFace>& faces, Cell& cell, double rough_above = kInfinity);
 
-  /// Points of a quadrature, exact to degree 4 on triangles, of the surfaces in the cell that look
-  /// along `e`: calls visit(point). Each triangle is divided in four `levels` times.
+  /// Points of a quadrature on triangles, exact to degree 4 when `fine`, else 2, of the surfaces in
+  /// the cell that look along `e`: calls visit(point). Each triangle is divided in four `levels`
+  /// times.
   template <typename Visit>
   void for_each_surface_point(const std::vector<CellFace>& faces, Cell& cell, const Vec3& e,
-                              int levels, Visit&& visit) {
+                              int levels, bool fine, Visit&& visit) {
     if (!collect(faces, cell) || tangents_.empty()) return;
     cut(cell.half);
-    read_loops();
+    loops_ = polytope_.faces();
     for (const FaceLoop& loop : loops_) {
       const Tangent* tangent = tangent_of(loop);
       if (!tangent || tangent->seam || !looks_along(*tangent, e)) continue;
-      sample_surface(*tangent, loop, levels, true);
+      sample_surface(*tangent, loop, levels, fine);
       for (const SurfacePoint& point : sample_) visit(point);
     }
   }
@@ -95,14 +97,24 @@ class CellCut {
     Mat3 second = Mat3::Zero();
   };
   struct Columns;
+  // A plane that bounds the gap, seen along a column: its height there is near(x, y) + slope w, w
+  // the way from the tangent plane into the gap. `near` is an under-estimate and `far` an
+  // over-estimate, as far as the other face bends.
+  struct Limit {
+    Linear2 near, far;
+    double slope;
+    // Heights that are negative where columns of up to this length touch, or lie whole in, the
+    // inside.
+    Linear2 touched(double length) const { return near.raised(std::min(0.0, slope * length)); }
+    Linear2 whole(double length) const { return far.raised(std::max(0.0, slope * length)); }
+  };
 
   enum class Side { kOutside, kThrough, kInside };
   static Side classify(const Quadric& face, const Cell& cell, Tangent& tangent);
   static Side classify_field(const CellFace& face, const Cell& cell, Tangent& tangent);
-  static void fit_plane(const CellFace& face, const Cell& cell, Tangent& tangent);
+  static Side classify_samples(const CellFace& face, const Cell& cell, Tangent& tangent);
   bool collect(const std::vector<CellFace>& faces, Cell& cell);
   void cut(const Vec3& half);
-  void read_loops();
   const Tangent* tangent_of(const FaceLoop& loop) const;
   static bool looks_along(const Tangent& tangent, const Vec3& e);
   double polytope_volume() const;
@@ -115,25 +127,25 @@ class CellCut {
                        int levels, bool fine);
   void sample_point(const Normal& normal, const Vec3& x, double weight);
   double room(const Normal& normal, const Vec3& x, const Vec3& outward, int across) const;
-  void sample_edge(const Normal& normal, int from, int to, double area);
-  int face_across(int from, int to) const;
+  void sample_edge(const Normal& normal, const Vec3& p, const Vec3& q, int across, double area);
   Gap gap_of(int index, const Vec3& half);
   Gap bent_gap(int index, Columns& columns);
   void keep_touched(int index, const Columns& columns);
-  void keep_filled(int index, const Columns& columns);
+  struct BentColumns;
+  double most_bend(const Tangent& other, const Columns& columns, double length) const;
+  void find_limits(int index, const Columns& columns, double length);
+  void add_band(std::size_t k, const BentColumns& bent, Gap& gap);
   void bound(Cell& cell);
   void estimate(Cell& cell);
   void choose_split(Cell& cell) const;
   bool draw_back(const Vec3& half, const Vec3& e, Vec3& corner) const;
 
   CutPolytope polytope_;
-  std::vector<FaceLoop> loops_;
-  std::vector<std::array<std::array<int, 2>, 3>>
-      edges_;  // by vertex: end and left face of the three
-  std::vector<int> edge_count_;
+  std::span<FaceLoop> loops_;
   std::vector<SurfacePoint> sample_;
   Moments gap_sample_;  // between plane and face, of the loop last sampled
-  ConvexPolygon polygon_;
+  ConvexPolygon polygon_, band_, part_;
+  std::vector<Limit> limits_;
   std::vector<Tangent> tangents_;
   bool all_flat_ = false;
   Vec3 half_;                     // of the cell that was cut

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
+#include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace volcontact {
@@ -10,6 +11,9 @@ namespace volcontact {
 struct Linear2 {
   double a, b, c;
   double operator()(double x, double y) const { return a + b * x + c * y; }
+  Linear2 raised(double height) const { return {a + height, b, c}; }
+  Linear2 scaled(double factor) const { return {factor * a, factor * b, factor * c}; }
+  Linear2 plus(const Linear2& other) const { return {a + other.a, b + other.b, c + other.c}; }
 };
 
 /// Convex polygon in a coordinate plane, cut by lines. Keeps its memory from one use to the next.
@@ -28,10 +32,9 @@ class ConvexPolygon {
 
   /// Keeps what has height <= 0.
   void cut(const Linear2& height) {
-    const std::size_t count = points_.size();
-    if (count == 0) return;
+    if (!(highest(height) > 0.0)) return;
     kept_.clear();
-    Point last = points_[count - 1];
+    Point last = points_.back();
     double last_height = height(last.x, last.y);
     for (const Point& p : points_) {
       const double h = height(p.x, p.y);
@@ -46,34 +49,35 @@ class ConvexPolygon {
     points_.swap(kept_);
   }
 
+  double highest(const Linear2& height) const {
+    double highest = -std::numeric_limits<double>::infinity();
+    for (const Point& p : points_) highest = std::max(highest, height(p.x, p.y));
+    return highest;
+  }
   double area() const {
     double twice = 0.0;
-    for_each_triangle([&](double twice_area, const std::array<Point, 3>&) { twice += twice_area; });
+    for (std::size_t i = 2; i < points_.size(); ++i) twice += twice_area(i);
     return 0.5 * twice;
   }
 
-  /// Integral of f, exact for quadratic f.
+  /// Integral of f, exact for cubic f (four points a triangle: Strang and Fix, 1973).
   template <typename F>
   double integral(F&& f) const {
     double sum = 0.0;
-    for_each_triangle([&](double twice_area, const std::array<Point, 3>& middles) {
-      sum += twice_area * (f(middles[0].x, middles[0].y) + f(middles[1].x, middles[1].y) +
-                           f(middles[2].x, middles[2].y));
-    });
-    return sum / 6.0;
+    for (std::size_t i = 2; i < points_.size(); ++i) {
+      const Point &p = points_[0], &q = points_[i - 1], &r = points_[i];
+      const double x = p.x + q.x + r.x, y = p.y + q.y + r.y;
+      double corners = 0.0;
+      for (const Point* c : {&p, &q, &r}) corners += f(0.2 * x + 0.4 * c->x, 0.2 * y + 0.4 * c->y);
+      sum += twice_area(i) * (25.0 / 96.0 * corners - 27.0 / 96.0 * f(x / 3.0, y / 3.0));
+    }
+    return sum;
   }
 
  private:
-  // visit(twice the area, middles of the three edges)
-  template <typename Visit>
-  void for_each_triangle(Visit&& visit) const {
-    for (std::size_t i = 2; i < points_.size(); ++i) {
-      const Point &p = points_[0], &q = points_[i - 1], &r = points_[i];
-      const double twice = (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
-      visit(twice, std::array<Point, 3>{{{0.5 * (p.x + q.x), 0.5 * (p.y + q.y)},
-                                         {0.5 * (q.x + r.x), 0.5 * (q.y + r.y)},
-                                         {0.5 * (r.x + p.x), 0.5 * (r.y + p.y)}}});
-    }
+  double twice_area(std::size_t i) const {
+    const Point &p = points_[0], &q = points_[i - 1], &r = points_[i];
+    return (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
   }
 
   std::vector<Point> points_, kept_;

@@ -11,14 +11,18 @@ namespace volcontact {
 
 /// The least the octree needs of a solid, convex or not; meaning as in ConvexSolid. May also offer
 ///  pieces(list)                 exact faces: see PieceList
-///  curvature_bound(p, reach)    bound of the second derivatives of signed_distance within `reach`
-///                               of p [1/m], infinite where it has a kink
-/// With neither, the error the octree reports is an estimate and no bound.
+///  gradient(p)                  with curvature_bound(p, reach), a bound of the second derivatives of
+///                               signed_distance within `reach` of p [1/m], infinite where it has a
+///                               kink
+///  lipschitz()                  bound of the slope of signed_distance [-], 1 when left out
+///  bend_bound()                 bound of its second derivatives everywhere [1/m], when there is one
+///  signed_distances(p, n, f)    the signed distances of n points at once
+/// What bounds the slope and the bend bounds the error: the octree's bounds are certain when these
+/// are.
 template <typename S>
 concept DistanceField = requires(const S& solid, const Vec3& x) {
   { solid.bounds() } -> std::same_as<Aabb>;
   { solid.signed_distance(x) } -> std::same_as<double>;
-  { solid.gradient(x) } -> std::same_as<Vec3>;
 };
 
 /// A solid of any type through one table of functions, so that the octree is compiled once. It
@@ -28,7 +32,10 @@ struct SolidView {
   Aabb bounds;
   VolumeMetrics own;  ///< of the whole solid; volume -1 where unknown
   bool convex = false;
+  double lipschitz = 1.0;          ///< of signed_distance [-]
+  double bend_bound = kInfinity;   ///< of its second derivatives [1/m]
   double (*signed_distance)(const void*, const Vec3&) = nullptr;
+  void (*signed_distances)(const void*, const Vec3*, int, double*) = nullptr;
   Vec3 (*gradient)(const void*, const Vec3&) = nullptr;
   double (*curvature_bound)(const void*, const Vec3&, double) = nullptr;
   void (*pieces)(const void*, PieceList&) = nullptr;
@@ -46,10 +53,26 @@ SolidView view_of(const S& solid) {
   view.signed_distance = [](const void* s, const Vec3& p) {
     return static_cast<const S*>(s)->signed_distance(p);
   };
-  view.gradient = [](const void* s, const Vec3& p) -> Vec3 {
-    return static_cast<const S*>(s)->gradient(p);
-  };
-  if constexpr (requires(const Vec3& p) { solid.curvature_bound(p, 1.0); }) {
+  if constexpr (requires(const Vec3* p, double* f) { solid.signed_distances(p, 1, f); }) {
+    view.signed_distances = [](const void* s, const Vec3* p, int count, double* f) {
+      static_cast<const S*>(s)->signed_distances(p, count, f);
+    };
+  } else {
+    view.signed_distances = [](const void* s, const Vec3* p, int count, double* f) {
+      for (int i = 0; i < count; ++i) f[i] = static_cast<const S*>(s)->signed_distance(p[i]);
+    };
+  }
+  if constexpr (requires { solid.lipschitz(); }) view.lipschitz = solid.lipschitz();
+  if constexpr (requires { solid.bend_bound(); }) view.bend_bound = solid.bend_bound();
+  if constexpr (requires(const Vec3& p) { solid.gradient(p); }) {
+    view.gradient = [](const void* s, const Vec3& p) -> Vec3 {
+      return static_cast<const S*>(s)->gradient(p);
+    };
+  }
+  if constexpr (requires(const Vec3& p) {
+                  solid.curvature_bound(p, 1.0);
+                  solid.gradient(p);
+                }) {
     view.curvature_bound = [](const void* s, const Vec3& p, double reach) -> double {
       return static_cast<const S*>(s)->curvature_bound(p, reach);
     };

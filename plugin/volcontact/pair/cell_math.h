@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+
+#include "volcontact/base/types.h"
+
+namespace volcontact::cell_math {
+
+inline constexpr int kFirstFace = 6;  ///< polytope face number of tangent 0; below: the cell's sides
+/// Share of |slope|; where a bent face rises less than that there is no use in following it.
+inline constexpr double kSteepEnough = 0.05;
+
+/// Corner i of the cube of half size 1, by the bits of i.
+inline Vec3 corner_signs(int i) {
+  return {i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0};
+}
+
+/// The cell's sides as the box graph numbers them: -z, +z, -y, +y, -x, +x.
+inline int cell_side(int axis, bool high) { return 2 * (2 - axis) + (high ? 1 : 0); }
+inline Vec3 cell_side_normal(int side) {
+  return (side & 1 ? 1.0 : -1.0) * Vec3::Unit(2 - side / 2);
+}
+
+}  // namespace volcontact::cell_math

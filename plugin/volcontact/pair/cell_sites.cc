@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/cell_sites.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace volcontact {
+namespace {
+
+constexpr double kSpeck = 1e-3;  // of the volume
+
+// The leaves and their regions: union-find, the least leaf of a region is its root.
+class Regions {
+ public:
+  Regions(std::span<const Cell> cells, const std::vector<int>& leaves, SiteScratch& scratch)
+      : cells_(cells), leaves_(leaves), s_(scratch), count_(static_cast<int>(leaves.size())) {
+    s_.parent.resize(leaves.size());
+    std::iota(s_.parent.begin(), s_.parent.end(), 0);
+  }
+
+  const Cell& cell(int i) const { return cells_[leaves_[i]]; }
+  int root(int i) {
+    while (s_.parent[i] != i) i = s_.parent[i] = s_.parent[s_.parent[i]];
+    return i;
+  }
+  void join(int i, int j) {
+    i = root(i);
+    j = root(j);
+    s_.parent[std::max(i, j)] = std::min(i, j);
+  }
+
+  void join_neighbours(double slack);
+  void join_specks();
+
+ private:
+  int sweep_axis() const;
+
+  std::span<const Cell> cells_;
+  const std::vector<int>& leaves_;
+  SiteScratch& s_;
+  const int count_;
+};
+
+// The axis along which fewest leaves stand side by side.
+int Regions::sweep_axis() const {
+  Vec3 low = Vec3::Constant(kInfinity), high = -low, sum = Vec3::Zero();
+  for (int i = 0; i < count_; ++i) {
+    low = low.cwiseMin(cell(i).center);
+    high = high.cwiseMax(cell(i).center);
+    sum += cell(i).half;
+  }
+  Eigen::Index axis;
+  (high - low).cwiseQuotient(sum).maxCoeff(&axis);
+  return static_cast<int>(axis);
+}
+
+void Regions::join_neighbours(double slack) {
+  const int axis = sweep_axis();
+  const auto start = [&](int i) { return cell(i).center[axis] - cell(i).half[axis]; };
+  s_.order.clear();
+  for (int i = 0; i < count_; ++i) {
+    if (cell(i).sums.volume > 0.0) s_.order.push_back(i);
+  }
+  std::sort(s_.order.begin(), s_.order.end(),
+            [&](int i, int j) { return start(i) != start(j) ? start(i) < start(j) : i < j; });
+  const auto touching = [&](const Cell& p, const Cell& q) {
+    const Vec3 overlap = p.half + q.half - (p.center - q.center).cwiseAbs();
+    return overlap.minCoeff() >= -slack && (overlap.array() > slack).count() >= 2;
+  };
+  for (auto i = s_.order.begin(); i != s_.order.end(); ++i) {
+    const double end = cell(*i).center[axis] + cell(*i).half[axis] + slack;
+    for (auto j = i + 1; j != s_.order.end() && start(*j) <= end; ++j) {
+      if (touching(cell(*i), cell(*j))) join(*i, *j);
+    }
+  }
+}
+
+// A speck of estimated volume beside the overlap would come and go with the pose.
+void Regions::join_specks() {
+  double total = 0.0;
+  for (int i = 0; i < count_; ++i) total += cell(i).sums.volume;
+  s_.weight.assign(leaves_.size(), 0.0);
+  for (int i = 0; i < count_; ++i) {
+    s_.weight[root(i)] += cell(i).sums.volume + (cell(i).low > 0.0 ? total : 0.0);
+  }
+  const auto stands = [&](int i) { return s_.weight[root(i)] > kSpeck * total; };
+  int last = 0;
+  while (last < count_ && !stands(last)) ++last;
+  if (last == count_) return;
+  for (int i = 0; i < count_; ++i) {
+    if (stands(i)) {
+      last = i;
+      continue;
+    }
+    int nearest = last;  // good enough where there is no volume at all
+    if (cell(i).sums.volume > 0.0) {
+      double least = kInfinity;
+      for (int j = 0; j < count_; ++j) {
+        const double distance = (cell(j).center - cell(i).center).squaredNorm();
+        if (!(distance < least) || !(cell(j).sums.volume > 0.0) || !stands(j)) continue;
+        least = distance;
+        nearest = j;
+      }
+    }
+    const double weight = s_.weight[root(nearest)];
+    join(i, nearest);
+    s_.weight[root(i)] = weight;
+  }
+}
+
+}  // namespace
+
+void sort_by_site(std::span<const Cell> cells, double slack, std::vector<int>& leaves,
+                  std::vector<int>& ends, SiteScratch& scratch) {
+  ends.clear();
+  if (leaves.empty()) return;
+  Regions regions(cells, leaves, scratch);
+  regions.join_neighbours(slack);
+  regions.join_specks();
+  const int count = static_cast<int>(leaves.size());
+  // Counting sort by region, in the order of their first leaves.
+  scratch.order.assign(leaves.size(), -1);
+  for (int i = 0; i < count; ++i) {
+    int& site = scratch.order[regions.root(i)];
+    if (site < 0) {
+      site = static_cast<int>(ends.size());
+      ends.push_back(0);
+    }
+    ++ends[site];
+  }
+  int next = 0;
+  for (int& end : ends) {
+    const int size = end;
+    end = next;
+    next += size;
+  }
+  scratch.sorted.resize(leaves.size());
+  for (int i = 0; i < count; ++i) {
+    scratch.sorted[ends[scratch.order[regions.root(i)]]++] = leaves[i];
+  }
+  leaves.swap(scratch.sorted);
+}
+
+}  // namespace volcontact

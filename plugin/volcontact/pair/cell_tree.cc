@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/cell_tree.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "volcontact/base/ordered_sum.h"
+#include "volcontact/pair/cell_math.h"
+
+namespace volcontact {
+namespace {
+
+constexpr int kMostCells = 60000;  // about 35 MB and 30 ms
+constexpr int kEvaluateGrain = 8;  // cells a thread takes at a time
+// Of the doubt from which cells are divided: a new cell with more is divided in the next round.
+constexpr double kRoughShare = 0.5;
+constexpr double kRestShare = 1.0;  // of the tolerance, left to the cells that are not divided
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+// The root box is a little larger than the hull, and not in the middle of it, so that neither its
+// sides nor the halvings coincide with faces of the solids.
+constexpr double kMarginLow = 0.0137, kMarginHigh = 0.0091;
+
+}  // namespace
+
+// ---- the root cells
+// ------------------------------------------------------------------------------
+
+void CellTree::plant() {
+  s_.cell_count = 0;
+  s_.faces.clear();
+  s_.pieces_a.clear();
+  s_.pieces_b.clear();
+  if (task_.a.pieces) task_.a.pieces(task_.a.solid, s_.pieces_a);
+  if (task_.b.pieces) task_.b.pieces(task_.b.solid, s_.pieces_b);
+  Vec3 high = Vec3::Zero();
+  for (const Vec3& p : s_.hull.points()) high = high.cwiseMax(p.cwiseAbs());
+  task_.scale = task_.window.X_AW.translation.norm() + task_.window.X_BW.translation.norm() + high.norm();
+  task_.rounding = 8.0 * kEpsilon * task_.scale *
+              (high.x() * high.y() + high.y() * high.z() + high.z() * high.x()) * 4.0;
+  for (int i = 0; i < std::max(1, s_.pieces_a.size()); ++i) {
+    for (int j = 0; j < std::max(1, s_.pieces_b.size()); ++j) add_region(i, j);
+  }
+}
+
+void CellTree::add_faces(const SolidView& view, int owner, const PieceList& list, int piece,
+                       const Pose& X_SW) {
+  if (list.size() == 0) {
+    CellFace& face = s_.faces.emplace_back();
+    face.owner = owner;
+    face.field = &view;
+    face.X_SW = X_SW;
+    return;
+  }
+  for (const Quadric* q = list.begin(piece); q != list.end(piece); ++q) {
+    CellFace& face = s_.faces.emplace_back();
+    face.owner = owner;
+    face.quadric = transformed(*q, X_SW);
+  }
+}
+
+// A piece of A with a piece of B.
+void CellTree::add_region(int piece_a, int piece_b) {
+  const int first_face = static_cast<int>(s_.faces.size());
+  add_faces(task_.a, 0, s_.pieces_a, piece_a, task_.window.X_AW);
+  add_faces(task_.b, 1, s_.pieces_b, piece_b, task_.window.X_BW);
+  const bool seams = std::any_of(s_.faces.begin() + first_face, s_.faces.end(),
+                                 [](const CellFace& face) { return face.quadric.seam; });
+  if (!seams) return add_root(first_face, s_.hull);
+  if (cut_by_seams(first_face)) add_root(first_face, s_.part);
+}
+
+bool CellTree::cut_by_seams(int first_face) {
+  s_.part = s_.hull;
+  for (std::size_t i = first_face; i < s_.faces.size(); ++i) {
+    const Quadric& face = s_.faces[i].quadric;
+    if (!face.seam || face.bend != Bend::kFlat) continue;
+    const auto height = [&face](const Vec3& p) { return face.linear.dot(p) + face.constant; };
+    if (!s_.part.cut(height, 0, 0.0)) return false;
+  }
+  return true;
+}
+
+void CellTree::add_root(int first_face, const CutPolytope& hull) {
+  Vec3 low = Vec3::Constant(kInfinity), high = -low;
+  for (const Vec3& p : hull.points()) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const Vec3 extent = high - low;
+  low -= kMarginLow * extent;
+  high += kMarginHigh * extent;
+  Cell& cell = new_cell();
+  cell.center = 0.5 * (low + high);
+  cell.half = 0.5 * (high - low);
+  cell.first_face = first_face;
+  cell.face_count = static_cast<int>(s_.faces.size()) - first_face;
+  cell.listed = -1;
+}
+
+Cell& CellTree::new_cell() {
+  if (s_.cell_count == static_cast<int>(s_.cells.size())) s_.cells.resize(2 * s_.cells.size() + 64);
+  Cell& cell = s_.cells[s_.cell_count++];
+  cell.divided = false;
+  return cell;
+}
+
+// ---- refinement
+// ------------------------------------------------------------------------------------
+
+// Asks a field, all cells at once, for the signed distances at the centres, and at the corners of
+// those it may pass through.
+void CellTree::sample(int owner, int first, int last) {
+  const SolidView& view = task_.solid(owner);
+  const Pose& X_SW = task_.X_SW(owner);
+  const auto ask = [&] {
+    s_.sample_values.resize(s_.sample_points.size());
+    view.signed_distances(view.solid, s_.sample_points.data(),
+                          static_cast<int>(s_.sample_points.size()), s_.sample_values.data());
+  };
+  s_.sample_points.clear();
+  for (int i = first; i < last; ++i) s_.sample_points.push_back(X_SW * s_.cells[i].center);
+  ask();
+  s_.sample_points.clear();
+  s_.sampled.clear();
+  for (int i = first; i < last; ++i) {
+    Cell& cell = s_.cells[i];
+    const double distance = cell.samples[owner][0] = s_.sample_values[i - first];
+    if (!(std::abs(distance) < view.lipschitz * cell.half.norm())) continue;
+    s_.sampled.push_back(i);
+    for (int k = 0; k < 8; ++k) {
+      const Vec3 corner = cell.center + cell_math::corner_signs(k).cwiseProduct(cell.half);
+      s_.sample_points.push_back(X_SW * corner);
+    }
+  }
+  if (s_.sampled.empty()) return;
+  ask();
+  const double* value = s_.sample_values.data();
+  for (const int i : s_.sampled) {
+    std::copy(value, value + 8, s_.cells[i].samples[owner].begin() + 1);
+    value += 8;
+  }
+}
+
+void CellTree::sample_fields(int first, int last) {
+  const auto sampled = [](const SolidView& view, const PieceList& list) {
+    return list.size() == 0 && !view.curvature_bound;
+  };
+  if (first == last) return;
+  if (sampled(task_.a, s_.pieces_a)) sample(0, first, last);
+  if (sampled(task_.b, s_.pieces_b)) sample(1, first, last);
+}
+
+void CellTree::evaluate(int first, int last, double rough_above) {
+  sample_fields(first, last);
+  const int count = last - first;
+  for_each_task(count, task_.threads_for(count), kEvaluateGrain, [&](int i) {
+    s_.cutters[task_.thread()].evaluate(s_.faces, s_.cells[first + i], rough_above);
+  });
+}
+
+// New leaves: those without doubt are settled, the others pending.
+void CellTree::take_up(int first, int last) {
+  for (int i = first; i < last; ++i) {
+    const Cell& cell = s_.cells[i];
+    if (cell.empty) continue;
+    if (cell.high > cell.low) {
+      s_.next_pending.push_back({i, cell.sums.volume, cell.low, cell.high});
+    } else {
+      settled_ += cell.sums.volume;
+    }
+  }
+  s_.pending.swap(s_.next_pending);
+  s_.next_pending.clear();
+  low_ = volume_ = high_ = settled_;
+  for (const OctreeScratch::Pending& leaf : s_.pending) {
+    low_ += leaf.low;
+    volume_ += leaf.volume;
+    high_ += leaf.high;
+  }
+}
+
+// Leaves with at least this doubt are divided; the doubts of the others add up to a share of the
+// tolerance at most. By powers of two, so that one pass is enough.
+double CellTree::threshold() const {
+  constexpr int kBins = 64;
+  double largest = 0.0;
+  for (const auto& leaf : s_.pending) largest = std::max(largest, leaf.high - leaf.low);
+  const int top = std::ilogb(largest);
+  std::array<double, kBins> bins{};
+  for (const auto& leaf : s_.pending) {
+    const double doubt = leaf.high - leaf.low;
+    const int bin = top - std::ilogb(doubt);
+    if (bin < kBins) bins[bin] += doubt;
+  }
+  double rest = 0.0;
+  int bin = kBins - 1;
+  while (bin > 0 && rest + bins[bin] <= kRestShare * task_.tolerance * volume_) rest += bins[bin--];
+  return std::ldexp(1.0, top - bin);
+}
+
+void CellTree::divide(int index) {
+  s_.cells[index].divided = true;
+  const std::uint8_t split = s_.cells[index].split;
+  for (int child = 0; child < 8; ++child) {
+    if (child & ~split) continue;
+    Cell& cell = new_cell();  // may move the parent
+    const Cell& parent = s_.cells[index];
+    cell.center = parent.center;
+    cell.half = parent.half;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!(split >> axis & 1)) continue;
+      cell.half[axis] *= 0.5;
+      cell.center[axis] += child >> axis & 1 ? cell.half[axis] : -cell.half[axis];
+    }
+    cell.first_face = parent.first_face;
+    cell.face_count = parent.face_count;
+    cell.listed = parent.listed;
+    cell.list = parent.list;
+  }
+}
+
+bool CellTree::precise() const {
+  return std::max(high_ - volume_, volume_ - low_) <= std::max(task_.tolerance * volume_, task_.rounding);
+}
+
+// Works out the leaves that were left rough; their estimates take the place of the middle of their
+// bounds.
+void CellTree::smooth() {
+  const int count = static_cast<int>(s_.pending.size());
+  for_each_task(count, task_.threads_for(count), kEvaluateGrain, [&](int i) {
+    OctreeScratch::Pending& leaf = s_.pending[i];
+    Cell& cell = s_.cells[leaf.cell];
+    if (!cell.rough) return;
+    s_.cutters[task_.thread()].evaluate(s_.faces, cell);
+    leaf.volume = cell.sums.volume;
+  });
+  s_.next_pending.swap(s_.pending);
+  s_.pending.clear();
+  take_up(0, 0);
+}
+
+// Divides the leaves with much doubt. False when the budget of cells does not allow it.
+bool CellTree::divide_worst() {
+  const double least = threshold();
+  const int first = s_.cell_count;
+  int children = 0;
+  for (const auto& leaf : s_.pending) {
+    if (leaf.high - leaf.low >= least) children += 1 << std::popcount(s_.cells[leaf.cell].split);
+  }
+  if (first + children > kMostCells) return false;
+  for (const auto& leaf : s_.pending) {
+    if (leaf.high - leaf.low >= least) {
+      divide(leaf.cell);
+    } else {
+      s_.next_pending.push_back(leaf);
+    }
+  }
+  evaluate(first, s_.cell_count, kRoughShare * least);
+  take_up(first, s_.cell_count);
+  return true;
+}
+
+void CellTree::refine() {
+  s_.pending.clear();
+  s_.next_pending.clear();
+  evaluate(0, s_.cell_count, 0.0);
+  take_up(0, s_.cell_count);
+  do {
+    while (!precise() && !approximate_) approximate_ = !divide_worst();
+    smooth();
+  } while (!precise() && !approximate_);
+  approximate_ = !precise();
+}
+
+void CellTree::grow() {
+  plant();
+  refine();
+  s_.leaves.clear();
+  for (int i = 0; i < s_.cell_count; ++i) {
+    if (!s_.cells[i].divided && !s_.cells[i].empty) s_.leaves.push_back(i);
+  }
+}
+
+}  // namespace volcontact

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "volcontact/pair/octree_scratch.h"
+
+namespace volcontact {
+
+/// The cells of an octree: planted on the overlap's window and divided where the doubt about the
+/// volume is largest, until its bounds are within the tolerance or the budget of cells ends.
+/// docs/theory.md, "Octree".
+class CellTree {
+ public:
+  CellTree(OctreeTask& task, OctreeScratch& scratch) : task_(task), s_(scratch) {}
+
+  /// Leaves the leaves that may hold volume in `scratch.leaves`.
+  void grow();
+  double high() const { return high_; }
+  bool approximate() const { return approximate_; }
+
+ private:
+  void plant();
+  void add_region(int piece_a, int piece_b);
+  void add_faces(const SolidView& view, int owner, const PieceList& list, int piece,
+                 const Pose& X_SW);
+  bool cut_by_seams(int first_face);
+  void add_root(int first_face, const CutPolytope& hull);
+  Cell& new_cell();
+  void sample_fields(int first, int last);
+  void sample(int owner, int first, int last);
+  void evaluate(int first, int last, double rough_above);
+  void take_up(int first, int last);
+  bool precise() const;
+  void smooth();
+  bool divide_worst();
+  void refine();
+  double threshold() const;
+  void divide(int index);
+
+  OctreeTask& task_;
+  OctreeScratch& s_;
+  double low_ = 0.0, volume_ = 0.0, high_ = 0.0;
+  double settled_ = 0.0;  // volume of the leaves without doubt
+  bool approximate_ = false;
+};
+
+}  // namespace volcontact
