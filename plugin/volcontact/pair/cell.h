@@ -53,6 +53,7 @@ struct Cell {
   double high = 0.0;       ///< ... and not more
   std::array<double, 2> doubt = {0.0, 0.0};  ///< share of high - low by the owner of the face
   CellSums sums;
+  Vec3 content_low, content_high;  ///< box that holds the overlap in the cell, from its centre
 };
 
 }  // namespace volcontact

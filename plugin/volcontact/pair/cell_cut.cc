@@ -97,6 +97,23 @@ void CellCut::estimate(Cell& cell) {
 }
 
 // Halving an axis helps against a bend along it; a straight cylinder is never cut across.
+// From the corners of the polytope, and as far outside as the faces bend.
+void CellCut::enclose(Cell& cell) const {
+  double slack = 0.0;
+  for (const Tangent& t : tangents_) {
+    if (t.beyond() > 0.0) slack = std::max(slack, t.beyond() / t.slope.norm());
+  }
+  cell.content_low = cell.half;
+  cell.content_high = -cell.half;
+  for (const Vec3& p : polytope_.points()) {
+    cell.content_low = cell.content_low.cwiseMin(p);
+    cell.content_high = cell.content_high.cwiseMax(p);
+  }
+  if (!(slack < kInfinity) || polytope_.size() == 0) slack = 2.0 * cell.half.maxCoeff();
+  cell.content_low = (cell.content_low.array() - slack).matrix().cwiseMax(-cell.half);
+  cell.content_high = (cell.content_high.array() + slack).matrix().cwiseMin(cell.half);
+}
+
 void CellCut::choose_split(Cell& cell) const {
   const auto share_of = [&](std::size_t i) -> Vec3 {
     const Tangent& t = tangents_[i];
@@ -125,6 +142,8 @@ void CellCut::evaluate(const std::vector<CellFace>& faces, Cell& cell, double ro
   cell.empty = !collect(faces, cell);
   if (cell.empty) return;
   cut(cell.half);
+  cell.content_low = -cell.half;
+  cell.content_high = cell.half;
   if (tangents_.empty()) {
     cell.sums.volume = cell.low = cell.high = 8.0 * cell.half.prod();
     cell.sums.second = (cell.sums.volume / 3.0 * cell.half.cwiseAbs2()).asDiagonal();
@@ -137,6 +156,7 @@ void CellCut::evaluate(const std::vector<CellFace>& faces, Cell& cell, double ro
   loops_ = polytope_.faces();
   bound(cell);
   choose_split(cell);
+  enclose(cell);
   cell.rough = cell.high - cell.low > rough_above;
   if (cell.rough) {
     cell.sums.volume = 0.5 * (cell.low + cell.high);

@@ -138,6 +138,7 @@ class CellCut {
   void bound(Cell& cell);
   void estimate(Cell& cell);
   void choose_split(Cell& cell) const;
+  void enclose(Cell& cell) const;
   bool draw_back(const Vec3& half, const Vec3& e, Vec3& corner) const;
 
   CutPolytope polytope_;

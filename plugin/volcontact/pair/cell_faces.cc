@@ -84,9 +84,9 @@ CellCut::Side CellCut::classify_field(const CellFace& face, const Cell& cell, Ta
 CellCut::Side CellCut::classify_samples(const CellFace& face, const Cell& cell, Tangent& t) {
   const SolidView& view = *face.field;
   const std::array<double, 9>& f = cell.samples[face.owner];
-  const double radius = cell.half.norm(), reach = view.lipschitz * radius;
-  if (f[0] >= reach) return Side::kOutside;
-  if (f[0] <= -reach) return Side::kInside;
+  const double radius = cell.half.norm();
+  if (f[0] >= radius) return Side::kOutside;
+  if (f[0] <= -radius) return Side::kInside;
   t.seam = false;
   t.bend = Bend::kFlat;
   t.level = f[0];
@@ -94,8 +94,10 @@ CellCut::Side CellCut::classify_samples(const CellFace& face, const Cell& cell, 
   for (int i = 0; i < 8; ++i) difference += 0.125 * f[i + 1] * corner_signs(i);
   t.slope = difference.cwiseQuotient(cell.half);
   const double across = difference.cwiseAbs().sum();
-  const double bend = 1.25 * view.bend_bound * radius * radius;
-  t.most = t.slack = std::min(bend, reach + across);
+  // Within a cell of this size the function stays where the bound of its bend holds.
+  const bool bounded = 4.0 * view.bend_bound * radius <= 1.0;
+  const double bend = bounded ? 1.25 * view.bend_bound * radius * radius : kInfinity;
+  t.most = t.slack = std::min(bend, radius + across);
   if (t.level >= across + t.slack) return Side::kOutside;
   if (t.level <= -across - t.slack) return Side::kInside;
   return Side::kThrough;

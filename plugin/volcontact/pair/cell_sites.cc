@@ -2,6 +2,7 @@
 #include "volcontact/pair/cell_sites.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace volcontact {
@@ -19,6 +20,9 @@ class Regions {
   }
 
   const Cell& cell(int i) const { return cells_[leaves_[i]]; }
+  // Box of the volume in the leaf.
+  Vec3 low(int i) const { return cell(i).center + cell(i).content_low; }
+  Vec3 high(int i) const { return cell(i).center + cell(i).content_high; }
   int root(int i) {
     while (s_.parent[i] != i) i = s_.parent[i] = s_.parent[s_.parent[i]];
     return i;
@@ -45,32 +49,32 @@ class Regions {
 int Regions::sweep_axis() const {
   Vec3 low = Vec3::Constant(kInfinity), high = -low, sum = Vec3::Zero();
   for (int i = 0; i < count_; ++i) {
-    low = low.cwiseMin(cell(i).center);
-    high = high.cwiseMax(cell(i).center);
-    sum += cell(i).half;
+    low = low.cwiseMin(this->low(i));
+    high = high.cwiseMax(this->high(i));
+    sum += this->high(i) - this->low(i);
   }
   Eigen::Index axis;
-  (high - low).cwiseQuotient(sum).maxCoeff(&axis);
+  (high - low).cwiseQuotient(sum.cwiseMax(std::numeric_limits<double>::min())).maxCoeff(&axis);
   return static_cast<int>(axis);
 }
 
 void Regions::join_neighbours(double slack) {
   const int axis = sweep_axis();
-  const auto start = [&](int i) { return cell(i).center[axis] - cell(i).half[axis]; };
+  const auto start = [&](int i) { return low(i)[axis]; };
   s_.order.clear();
   for (int i = 0; i < count_; ++i) {
     if (cell(i).sums.volume > 0.0) s_.order.push_back(i);
   }
   std::sort(s_.order.begin(), s_.order.end(),
             [&](int i, int j) { return start(i) != start(j) ? start(i) < start(j) : i < j; });
-  const auto touching = [&](const Cell& p, const Cell& q) {
-    const Vec3 overlap = p.half + q.half - (p.center - q.center).cwiseAbs();
+  const auto touching = [&](int i, int j) {
+    const Vec3 overlap = high(i).cwiseMin(high(j)) - low(i).cwiseMax(low(j));
     return overlap.minCoeff() >= -slack && (overlap.array() > slack).count() >= 2;
   };
   for (auto i = s_.order.begin(); i != s_.order.end(); ++i) {
-    const double end = cell(*i).center[axis] + cell(*i).half[axis] + slack;
+    const double end = high(*i)[axis] + slack;
     for (auto j = i + 1; j != s_.order.end() && start(*j) <= end; ++j) {
-      if (touching(cell(*i), cell(*j))) join(*i, *j);
+      if (touching(*i, *j)) join(*i, *j);
     }
   }
 }

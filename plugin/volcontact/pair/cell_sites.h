@@ -17,9 +17,9 @@ struct SiteScratch {
 };
 
 /// Sorts the leaves (indices of `cells`) by connected region, keeping their order within one, and
-/// writes to `ends` where each region ends. Leaves that share a part of a side, up to `slack` [m],
-/// belong together when both hold volume. A speck of which no volume is certain is no site of its own
-/// and goes with the nearest region that is. docs/theory.md, "Sites".
+/// writes to `ends` where each region ends. Leaves whose contents share a part of a side, up to
+/// `slack` [m], belong together when both hold volume. A speck of which no volume is certain is no
+/// site of its own and goes with the nearest region that is. docs/theory.md, "Sites".
 void sort_by_site(std::span<const Cell> cells, double slack, std::vector<int>& leaves,
                   std::vector<int>& ends, SiteScratch& scratch);
 

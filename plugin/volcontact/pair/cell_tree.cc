@@ -37,21 +37,33 @@ void CellTree::plant() {
   if (task_.b.pieces) task_.b.pieces(task_.b.solid, s_.pieces_b);
   Vec3 high = Vec3::Zero();
   for (const Vec3& p : s_.hull.points()) high = high.cwiseMax(p.cwiseAbs());
-  task_.scale = task_.window.X_AW.translation.norm() + task_.window.X_BW.translation.norm() + high.norm();
+  task_.scale =
+      task_.window.X_AW.translation.norm() + task_.window.X_BW.translation.norm() + high.norm();
   task_.rounding = 8.0 * kEpsilon * task_.scale *
-              (high.x() * high.y() + high.y() * high.z() + high.z() * high.x()) * 4.0;
+                   (high.x() * high.y() + high.y() * high.z() + high.z() * high.x()) * 4.0;
   for (int i = 0; i < std::max(1, s_.pieces_a.size()); ++i) {
     for (int j = 0; j < std::max(1, s_.pieces_b.size()); ++j) add_region(i, j);
   }
 }
 
 void CellTree::add_faces(const SolidView& view, int owner, const PieceList& list, int piece,
-                       const Pose& X_SW) {
+                         const Pose& X_SW) {
   if (list.size() == 0) {
     CellFace& face = s_.faces.emplace_back();
     face.owner = owner;
     face.field = &view;
     face.X_SW = X_SW;
+    const bool cut = face.sampled();
+    // A field may go on outside of its bounds; the solid does not.
+    for (int axis = 0; cut && axis < 3; ++axis) {
+      for (const double side : {-1.0, 1.0}) {
+        const double edge = side > 0.0 ? view.bounds.max[axis] : -view.bounds.min[axis];
+        if (!std::isfinite(edge)) continue;
+        CellFace& plane = s_.faces.emplace_back();
+        plane.owner = owner;
+        plane.quadric = transformed(Quadric::plane(side * Vec3::Unit(axis), edge), X_SW);
+      }
+    }
     return;
   }
   for (const Quadric* q = list.begin(piece); q != list.end(piece); ++q) {
@@ -66,17 +78,15 @@ void CellTree::add_region(int piece_a, int piece_b) {
   const int first_face = static_cast<int>(s_.faces.size());
   add_faces(task_.a, 0, s_.pieces_a, piece_a, task_.window.X_AW);
   add_faces(task_.b, 1, s_.pieces_b, piece_b, task_.window.X_BW);
-  const bool seams = std::any_of(s_.faces.begin() + first_face, s_.faces.end(),
-                                 [](const CellFace& face) { return face.quadric.seam; });
-  if (!seams) return add_root(first_face, s_.hull);
-  if (cut_by_seams(first_face)) add_root(first_face, s_.part);
+  if (cut_by_planes(first_face)) add_root(first_face, s_.part);
 }
 
-bool CellTree::cut_by_seams(int first_face) {
+// Leaves in `part` what the region's plane faces leave of the hull. False when that is nothing.
+bool CellTree::cut_by_planes(int first_face) {
   s_.part = s_.hull;
   for (std::size_t i = first_face; i < s_.faces.size(); ++i) {
     const Quadric& face = s_.faces[i].quadric;
-    if (!face.seam || face.bend != Bend::kFlat) continue;
+    if (s_.faces[i].field || face.bend != Bend::kFlat) continue;
     const auto height = [&face](const Vec3& p) { return face.linear.dot(p) + face.constant; };
     if (!s_.part.cut(height, 0, 0.0)) return false;
   }
@@ -119,6 +129,11 @@ void CellTree::sample(int owner, int first, int last) {
     s_.sample_values.resize(s_.sample_points.size());
     view.signed_distances(view.solid, s_.sample_points.data(),
                           static_cast<int>(s_.sample_points.size()), s_.sample_values.data());
+    for (double& value : s_.sample_values) {
+      if (!std::isnan(value)) continue;
+      value = 0.0;
+      invalid_ = true;
+    }
   };
   s_.sample_points.clear();
   for (int i = first; i < last; ++i) s_.sample_points.push_back(X_SW * s_.cells[i].center);
@@ -128,7 +143,7 @@ void CellTree::sample(int owner, int first, int last) {
   for (int i = first; i < last; ++i) {
     Cell& cell = s_.cells[i];
     const double distance = cell.samples[owner][0] = s_.sample_values[i - first];
-    if (!(std::abs(distance) < view.lipschitz * cell.half.norm())) continue;
+    if (!(std::abs(distance) < cell.half.norm())) continue;
     s_.sampled.push_back(i);
     for (int k = 0; k < 8; ++k) {
       const Vec3 corner = cell.center + cell_math::corner_signs(k).cwiseProduct(cell.half);
@@ -139,8 +154,10 @@ void CellTree::sample(int owner, int first, int last) {
   ask();
   const double* value = s_.sample_values.data();
   for (const int i : s_.sampled) {
-    std::copy(value, value + 8, s_.cells[i].samples[owner].begin() + 1);
-    value += 8;
+    std::array<double, 9>& f = s_.cells[i].samples[owner];
+    const double radius = s_.cells[i].half.norm();
+    // A function that is steeper than it may be must still not upset the numbers.
+    for (int k = 1; k < 9; ++k) f[k] = std::clamp(*value++, f[0] - radius, f[0] + radius);
   }
 }
 
@@ -223,7 +240,8 @@ void CellTree::divide(int index) {
 }
 
 bool CellTree::precise() const {
-  return std::max(high_ - volume_, volume_ - low_) <= std::max(task_.tolerance * volume_, task_.rounding);
+  return std::max(high_ - volume_, volume_ - low_) <=
+         std::max(task_.tolerance * volume_, task_.rounding);
 }
 
 // Works out the leaves that were left rough; their estimates take the place of the middle of their

@@ -16,13 +16,15 @@ class CellTree {
   void grow();
   double high() const { return high_; }
   bool approximate() const { return approximate_; }
+  /// A field was no number somewhere.
+  bool invalid() const { return invalid_; }
 
  private:
   void plant();
   void add_region(int piece_a, int piece_b);
   void add_faces(const SolidView& view, int owner, const PieceList& list, int piece,
                  const Pose& X_SW);
-  bool cut_by_seams(int first_face);
+  bool cut_by_planes(int first_face);
   void add_root(int first_face, const CutPolytope& hull);
   Cell& new_cell();
   void sample_fields(int first, int last);
@@ -41,6 +43,7 @@ class CellTree {
   double low_ = 0.0, volume_ = 0.0, high_ = 0.0;
   double settled_ = 0.0;  // volume of the leaves without doubt
   bool approximate_ = false;
+  bool invalid_ = false;
 };
 
 }  // namespace volcontact

@@ -103,6 +103,10 @@ void run(OctreeTask& task, OctreeScratch& s, Interference& out) {
   if (s.columns.size() < threads) s.columns.resize(threads);
   CellTree tree(task, s);
   tree.grow();
+  if (tree.invalid()) {
+    out.total.status = Status::kInvalid;
+    return;
+  }
   if (task.a.convex && task.b.convex) {  // the overlap is convex too
     s.site_ends.assign(1, static_cast<int>(s.leaves.size()));
   } else {

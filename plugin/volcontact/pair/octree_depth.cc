@@ -14,8 +14,8 @@ constexpr int kLeavesPerTask = 16;
 constexpr double kColumnShare = 2.0;  // of the tolerance, for the volume that columns add up to
 constexpr double kColumnTolerance = 1e-4;  // ... which is not asked to be finer than this
 constexpr double kPatches = 4.0;  // over the tolerance: to so many leaves are divided for columns
-constexpr double kNudge = 1e-6;            // from the surface, in sizes of the scene
-constexpr int kMostSteps = 100;            // of a signed distance, along one column
+constexpr double kNudge = 1e-6;   // from the surface, in sizes of the scene
+constexpr int kMostSteps = 100;   // of a signed distance, along one column
 
 // Columns along n that end on the side `side` n in the surface of a leaf.
 class ColumnPass {
@@ -70,6 +70,16 @@ void ColumnPass::follow(int owner, OctreeScratch::Columns& columns) const {
   }
 }
 
+// How far p + t d stays in the box.
+double way_in_box(const Aabb& box, const Vec3& p, const Vec3& d) {
+  double way = kInfinity;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double edge = d[axis] > 0.0 ? box.max[axis] : box.min[axis];
+    if (d[axis] != 0.0) way = std::min(way, (edge - p[axis]) / d[axis]);
+  }
+  return std::max(0.0, way);
+}
+
 // Steps of the signed distance from just below each start to the far side, all columns together.
 void ColumnPass::follow_field(int owner, OctreeScratch::Columns& columns) const {
   const SolidView& view = task_.solid(owner);
@@ -89,16 +99,18 @@ void ColumnPass::follow_field(int owner, OctreeScratch::Columns& columns) const 
                           static_cast<int>(columns.points.size()), columns.distances.data());
     std::size_t open = 0;
     for (std::size_t k = 0; k < columns.open.size(); ++k) {
-      const double way = -columns.distances[k] / view.lipschitz;
+      const double way = -columns.distances[k];
       if (!(way > 0.01 * nudge)) continue;
       within[columns.open[k]].leave += way;
       columns.open[open++] = columns.open[k];
     }
     columns.open.resize(open);
   }
-  for (RayInterval& interval : within) {
-    if (!(interval.leave > nudge)) interval = {};
-    if (side_ > 0.0) interval = {-interval.leave, 0.0};
+  const Vec3 d_S = X_SW.rotation * (-side_ * n_);
+  for (std::size_t i = 0; i < within.size(); ++i) {
+    double way = within[i].leave > nudge ? within[i].leave : 0.0;
+    way = std::min(way, way_in_box(view.bounds, X_SW * columns.starts[i].p_W, d_S));
+    within[i] = side_ > 0.0 ? RayInterval{-way, 0.0} : RayInterval{0.0, way};
   }
 }
 
@@ -143,6 +155,10 @@ OctreeScratch::ColumnSum ColumnPass::sum(LeafRange leaves, int levels, bool fine
   return all;
 }
 
+bool holds(const Aabb& box, const Vec3& p) {
+  return (p - box.min).minCoeff() >= 0.0 && (box.max - p).minCoeff() >= 0.0;
+}
+
 // When a farthest point of one convex solid lies in the other, it is the overlap's.
 bool farthest_support(const OctreeTask& task, const Vec3& e, double& height) {
   for (const int owner : {0, 1}) {
@@ -154,7 +170,7 @@ bool farthest_support(const OctreeTask& task, const Vec3& e, double& height) {
     const Vec3 p_other = task.X_SW(1 - owner) * p_W;
     double distance;
     other.signed_distances(other.solid, &p_other, 1, &distance);
-    if (distance > 1e-12 * task.scale) continue;
+    if (distance > 1e-12 * task.scale || !holds(other.bounds, p_other)) continue;
     height = e.dot(p_W);
     return true;
   }
@@ -169,16 +185,15 @@ double farthest_in(const OctreeTask& task, OctreeScratch& s, int leaf, const Vec
   if (!(cell.sums.volume > 0.0) || center + e.cwiseAbs().dot(cell.half) <= least) return least;
   CellCut& cutter = s.cutters[task.thread()];
   cutter.evaluate(s.faces, cell);
-  cutter.for_each_corner(cell.half, e, [&](const Vec3& corner) {
-    least = std::max(least, center + e.dot(corner));
-  });
+  cutter.for_each_corner(
+      cell.half, e, [&](const Vec3& corner) { least = std::max(least, center + e.dot(corner)); });
   return least;
 }
 
 }  // namespace
 
-// L may have kinks where no leaf ends; the volume, known better, tells whether the columns saw them.
-// Columns are followed from one side, then from the other, then more densely.
+// L may have kinks where no leaf ends; the volume, known better, tells whether the columns saw
+// them. Columns are followed from one side, then from the other, then more densely.
 double depth_moment(const OctreeTask& task, OctreeScratch& scratch, LeafRange leaves, const Vec3& n,
                     double first_side, double volume) {
   struct Density {

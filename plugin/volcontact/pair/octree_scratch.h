@@ -59,8 +59,8 @@ struct OctreeScratch {
   std::vector<int> sampled;  ///< cells that a field passes through, perhaps
   std::vector<Vec3> sample_points;
   std::vector<double> sample_values;
-  std::vector<CellCut> cutters;   ///< one per thread
-  std::vector<Columns> columns;   ///< one per thread
+  std::vector<CellCut> cutters;  ///< one per thread
+  std::vector<Columns> columns;  ///< one per thread
   std::vector<Totals> partial_totals;
   std::vector<ColumnSum> partial_columns;
   std::vector<double> partial_heights;
@@ -84,7 +84,8 @@ struct OctreeTask {
     constexpr int kWorthThreads = 256;  // cells, when their number is our choice
     return tasks < (asked_threads == 0 ? kWorthThreads : kWorthAsking) ? 1 : thread_limit;
   }
-  /// Of the calling thread, below thread_limit. A caller that is one of many of its own is number 0.
+  /// Of the calling thread, below thread_limit. A caller that is one of many of its own is number
+  /// 0.
   int thread() const {
 #ifdef _OPENMP
     return thread_limit == 1 ? 0 : omp_get_thread_num();

@@ -11,14 +11,13 @@ namespace volcontact {
 
 /// The least the octree needs of a solid, convex or not; meaning as in ConvexSolid. May also offer
 ///  pieces(list)                 exact faces: see PieceList
-///  gradient(p)                  with curvature_bound(p, reach), a bound of the second derivatives of
+///  gradient(p)                  with curvature_bound(p, reach), a bound of the second derivatives
+///  of
 ///                               signed_distance within `reach` of p [1/m], infinite where it has a
 ///                               kink
-///  lipschitz()                  bound of the slope of signed_distance [-], 1 when left out
-///  bend_bound()                 bound of its second derivatives everywhere [1/m], when there is one
+///  bend_bound()                 bound K of its second derivatives [1/m] where it is below 1/(2 K)
 ///  signed_distances(p, n, f)    the signed distances of n points at once
-/// What bounds the slope and the bend bounds the error: the octree's bounds are certain when these
-/// are.
+/// The octree's bounds are certain when signed_distance is nowhere steeper than 1 and these hold.
 template <typename S>
 concept DistanceField = requires(const S& solid, const Vec3& x) {
   { solid.bounds() } -> std::same_as<Aabb>;
@@ -32,8 +31,7 @@ struct SolidView {
   Aabb bounds;
   VolumeMetrics own;  ///< of the whole solid; volume -1 where unknown
   bool convex = false;
-  double lipschitz = 1.0;          ///< of signed_distance [-]
-  double bend_bound = kInfinity;   ///< of its second derivatives [1/m]
+  double bend_bound = kInfinity;  ///< K of the second derivatives where |signed_distance| < 1/(2 K)
   double (*signed_distance)(const void*, const Vec3&) = nullptr;
   void (*signed_distances)(const void*, const Vec3*, int, double*) = nullptr;
   Vec3 (*gradient)(const void*, const Vec3&) = nullptr;
@@ -62,7 +60,6 @@ SolidView view_of(const S& solid) {
       for (int i = 0; i < count; ++i) f[i] = static_cast<const S*>(s)->signed_distance(p[i]);
     };
   }
-  if constexpr (requires { solid.lipschitz(); }) view.lipschitz = solid.lipschitz();
   if constexpr (requires { solid.bend_bound(); }) view.bend_bound = solid.bend_bound();
   if constexpr (requires(const Vec3& p) { solid.gradient(p); }) {
     view.gradient = [](const void* s, const Vec3& p) -> Vec3 {

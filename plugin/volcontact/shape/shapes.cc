@@ -2,6 +2,7 @@
 #include "volcontact/shape/shapes.h"
 
 #include <optional>
+#include <stdexcept>
 #include <type_traits>
 
 namespace volcontact {
@@ -23,9 +24,14 @@ Shape make_shape(std::string_view name, const FieldValues& values) {
 
 Csg composed(const Shape& shape) {
   return std::visit(
-      [](const auto& solid) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(solid)>, Csg>) {
+      [](const auto& solid) -> Csg {
+        using Solid = std::decay_t<decltype(solid)>;
+        if constexpr (std::is_same_v<Solid, Csg>) {
           return solid;
+        } else if constexpr (std::is_same_v<Solid, SignedDistance>) {
+          throw std::invalid_argument(
+              "a solid with a signed distance cannot be composed: combine the distances instead, "
+              "min(a, b), max(a, b) or max(a, -b)");
         } else {
           return Csg(solid);
         }

@@ -4,12 +4,13 @@
 #include <string_view>
 
 #include "volcontact/shape/csg.h"
+#include "volcontact/shape/signed_distance.h"
 #include "volcontact/shape/simple_shapes.h"
 
 namespace volcontact {
 
 /// Every shape there is. A new one is added to the simple shapes and nowhere else.
-using Shapes = SimpleShapes::With<Csg>;
+using Shapes = SimpleShapes::With<Csg, SignedDistance>;
 
 /// One solid of any shape, in its own frame.
 using Shape = Shapes::Variant;
@@ -29,7 +30,8 @@ inline VolumeMetrics own_metrics_of(const Shape& shape) {
 /// composed solids from solids.
 Shape make_shape(std::string_view name, const FieldValues& values);
 
-/// The shape as a composed solid: itself, or a solid of one member.
+/// The shape as a composed solid: itself, or a solid of one member. Throws std::invalid_argument on
+/// a signed distance, which has no faces to compose.
 Csg composed(const Shape& shape);
 
 }  // namespace volcontact

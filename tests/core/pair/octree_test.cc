@@ -165,7 +165,7 @@ TEST(Octree, GivesTheSameBitsForAnyNumberOfThreads) {
   for (int k = 0; k < 5; ++k) {
     const Pose X_AB = random_pose(random, 0.2);
     const VolumeMetrics one = octree(peg, block, X_AB, 1e-3, 1).total;
-    for (const int threads : {2, 3, 4, 8}) {
+    for (const int threads : {2, 3, 4, 8, 16}) {
       const VolumeMetrics many = octree(peg, block, X_AB, 1e-3, threads).total;
       EXPECT_EQ(std::memcmp(&one.volume, &many.volume, sizeof(double)), 0);
       EXPECT_EQ(one.centroid, many.centroid);
@@ -174,6 +174,32 @@ TEST(Octree, GivesTheSameBitsForAnyNumberOfThreads) {
       EXPECT_EQ(one.depth_moment, many.depth_moment);
     }
   }
+}
+
+// A caller that shares pairs among threads of its own finds each of them serving one pair.
+TEST(Octree, GivesTheSameBitsInsideOfAParallelRegion) {
+  const Shape peg = Cylinder({.radius = 0.2, .half_length = 0.3});
+  const Shape block = Box({.half_sizes = {0.3, 0.2, 0.1}});
+  std::mt19937 random(17);
+  constexpr int kPairs = 12;
+  std::vector<Pose> poses;
+  std::vector<double> alone(kPairs), shared(kPairs);
+  for (int k = 0; k < kPairs; ++k) {
+    poses.push_back(random_pose(random, 0.2));
+    alone[k] = octree(peg, block, poses[k], 1e-3).total.volume;
+  }
+#pragma omp parallel num_threads(4)
+  {
+    InterferenceWorkspace workspace;
+    Interference out;
+#pragma omp for schedule(dynamic, 1)
+    for (int k = 0; k < kPairs; ++k) {
+      interference(peg, block, poses[k],
+                   {.tolerance = 1e-3, .engine = Engine::kOctree, .threads = 0}, workspace, out);
+      shared[k] = out.total.volume;
+    }
+  }
+  EXPECT_EQ(alone, shared);
 }
 
 TEST(Octree, BoundShrinksWithTheTolerance) {
