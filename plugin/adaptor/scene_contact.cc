@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "adaptor/applied_ledger.h"
 #include "adaptor/work_sharing.h"
@@ -13,16 +14,27 @@
 namespace volcontact::adaptor {
 namespace {
 
-// The octree shares the cells of one pair among threads; the other engines are too quick for that,
-// and their pairs are shared instead.
+// The octree can share the cells of one pair among threads; the other engines are too quick for
+// that, and their pairs are shared instead.
 bool shares_its_own_work(Engine engine) { return engine == Engine::kOctree; }
 
 // An engine may use the threads that are free: the guard of the evaluation sets how many there are.
 constexpr int kInnerThreads = 0;
 
-// Typical time of a pair of the quick engines, and the time from which OpenMP saves more than it
-// costs, also on a busy machine [s].
-constexpr double kPairTime = 1e-6;
+// Typical time of a pair [s].
+double typical_time(Engine engine) {
+  switch (engine) {
+    case Engine::kOctree:
+      return 2e-3;
+    case Engine::kClosedForm:
+    case Engine::kClip:
+      return 1e-6;
+    default:
+      return 5e-6;
+  }
+}
+
+// The time from which OpenMP saves more than it costs, also on a busy machine [s].
 constexpr double kWorthSharing = 200e-6;
 constexpr int kPairsPerTask = 16;
 
@@ -144,6 +156,51 @@ UserdataBlock SceneContact::block(const mjModel* m, const mjData* d) const {
   return {d->userdata + m->nuserdata, layout(m)};
 }
 
+SceneContact::Work SceneContact::plan_work(int threads, Scratch& scratch) const {
+  const std::vector<int>& near = scratch.cull.near;
+  const auto is_long = [&](int k) {
+    return shares_its_own_work(
+        pairs_[static_cast<std::size_t>(near[static_cast<std::size_t>(k)])].engine);
+  };
+  Work work;
+  work.pairs = static_cast<int>(near.size());
+  double time = 0.0;
+  scratch.order.clear();
+  for (const bool wanted : {true, false}) {
+    for (int k = 0; k < work.pairs; ++k) {
+      if (is_long(k) == wanted) scratch.order.push_back(k);
+    }
+    if (wanted) work.single_tasks = static_cast<int>(scratch.order.size());
+  }
+  for (const int pair : near) time += typical_time(pairs_[static_cast<std::size_t>(pair)].engine);
+  if (work.single_tasks < threads) {
+    time -= work.single_tasks * typical_time(Engine::kOctree);
+    work.own_sharing = std::exchange(work.single_tasks, 0);
+  }
+  work.threads = time < kWorthSharing ? 1 : threads;
+  return work;
+}
+
+void SceneContact::evaluate_one(const mjModel* m, const mjData* d, const LawState& states, int k,
+                                ContactModel::Workspace& workspace,
+                                Scratch& scratch) const noexcept {
+  const std::size_t index = static_cast<std::size_t>(k);
+  const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[index])];
+  const BodyMotion motion{pose_of_geom(d, pair.geoms.a), pose_of_geom(d, pair.geoms.b),
+                          twist_of_geom(m, d, pair.geoms.a), twist_of_geom(m, d, pair.geoms.b)};
+  const LawState state{states.committed + pair.first_state, states.pending + pair.first_state,
+                       states.elapsed};
+  ContactReport& report = scratch.reports[index];
+  pair.model.evaluate(motion, state, workspace, report);
+  scratch.invalid[index] =
+      workspace.interference.total.status == Status::kInvalid || !is_finite(report);
+  if (!scratch.invalid[index]) return;
+  report.sites.clear();
+  report.elastic_energy = 0.0;
+  report.power = {};
+  std::fill_n(state.pending, pair.model.state_size(), 0.0);
+}
+
 void SceneContact::evaluate(const mjModel* m, const mjData* d, const LawState& states,
                             Scratch& scratch) const noexcept {
   cull_.run(d, scratch.cull);
@@ -155,33 +212,28 @@ void SceneContact::evaluate(const mjModel* m, const mjData* d, const LawState& s
   std::fill_n(states.pending, states_, 0.0);
 
   const EvaluationGuard guard(keys_.options.threads);
-  const int count = static_cast<int>(near.size());
-  const int threads = count * kPairTime < kWorthSharing ? 1 : guard.threads();
-  if (scratch.workspaces.size() < static_cast<std::size_t>(threads)) {
-    scratch.workspaces.resize(static_cast<std::size_t>(threads));
+  const Work work = plan_work(guard.threads(), scratch);
+  if (scratch.workspaces.size() < static_cast<std::size_t>(work.threads)) {
+    scratch.workspaces.resize(static_cast<std::size_t>(work.threads));
   }
-  const auto evaluate_one = [&](std::size_t k, int thread, bool long_ones) {
-    const PairContact& pair = pairs_[static_cast<std::size_t>(near[k])];
-    if (shares_its_own_work(pair.engine) != long_ones) return;
-    const BodyMotion motion{pose_of_geom(d, pair.geoms.a), pose_of_geom(d, pair.geoms.b),
-                            twist_of_geom(m, d, pair.geoms.a), twist_of_geom(m, d, pair.geoms.b)};
-    const LawState state{states.committed + pair.first_state, states.pending + pair.first_state,
-                         states.elapsed};
+  const auto evaluate_some = [&](int first, int last, int thread) {
     ContactModel::Workspace& workspace = scratch.workspaces[static_cast<std::size_t>(thread)];
-    ContactReport& report = scratch.reports[k];
-    pair.model.evaluate(motion, state, workspace, report);
-    scratch.invalid[k] =
-        workspace.interference.total.status == Status::kInvalid || !is_finite(report);
-    if (!scratch.invalid[k]) return;
-    report.sites.clear();
-    report.elastic_energy = 0.0;
-    report.power = {};
-    std::fill_n(state.pending, pair.model.state_size(), 0.0);
+    for (int i = first; i < last; ++i) {
+      evaluate_one(m, d, states, scratch.order[static_cast<std::size_t>(i)], workspace, scratch);
+    }
   };
-  for (int k = 0; k < count; ++k) evaluate_one(static_cast<std::size_t>(k), 0, true);
-#pragma omp parallel for schedule(dynamic, kPairsPerTask) num_threads(threads) if (threads > 1)
-  for (int k = 0; k < count; ++k) {
-    evaluate_one(static_cast<std::size_t>(k), threads > 1 ? omp_get_thread_num() : 0, false);
+  evaluate_some(0, work.own_sharing, 0);
+  const int single = work.own_sharing + work.single_tasks;
+  const int tasks = work.single_tasks + (work.pairs - single + kPairsPerTask - 1) / kPairsPerTask;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(work.threads) if (work.threads > 1)
+  for (int task = 0; task < tasks; ++task) {
+    const int thread = work.threads > 1 ? omp_get_thread_num() : 0;
+    if (task < work.single_tasks) {
+      evaluate_some(work.own_sharing + task, work.own_sharing + task + 1, thread);
+    } else {
+      const int first = single + (task - work.single_tasks) * kPairsPerTask;
+      evaluate_some(first, std::min(first + kPairsPerTask, work.pairs), thread);
+    }
   }
 }
 

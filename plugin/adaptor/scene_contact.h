@@ -30,6 +30,7 @@ class SceneContact {
     Cull::Scratch cull;                  ///< `near`: the pairs evaluated
     std::vector<ContactReport> reports;  ///< of the pairs in `near`, finite numbers only
     std::vector<char> invalid;           ///< whether a report was left out, having no numbers
+    std::vector<int> order;              ///< of `near`, as worked off: the long pairs first
     std::vector<ContactModel::Workspace> workspaces;  ///< one per OpenMP thread
     std::vector<double> no_states;
     std::vector<double> unused_states;
@@ -67,11 +68,24 @@ class SceneContact {
   void release(const mjModel* m, mjData* d) const noexcept;
 
  private:
+  // How the pairs of one evaluation are worked off, in the order of Scratch::order: some one after
+  // the other, each sharing its own work; then, in one parallel region, some alone and the rest by
+  // the handful.
+  struct Work {
+    int threads = 1;
+    int pairs = 0;
+    int own_sharing = 0;
+    int single_tasks = 0;
+  };
+  Work plan_work(int threads, Scratch& scratch) const;
+
   void add_pair(const mjModel* m, const GeomPair& geoms);
   void warn_about_model(const mjModel* m);
   void warn_once(const std::string& warning);
   void evaluate(const mjModel* m, const mjData* d, const LawState& states,
                 Scratch& scratch) const noexcept;
+  void evaluate_one(const mjModel* m, const mjData* d, const LawState& states, int k,
+                    ContactModel::Workspace& workspace, Scratch& scratch) const noexcept;
   void write_forces(const mjModel* m, mjData* d, Scratch& scratch) const noexcept;
 
   SceneKeys keys_;

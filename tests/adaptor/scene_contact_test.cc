@@ -265,10 +265,11 @@ TEST(SceneContact, ThreadsOnTheirOwnDataEqualASingleRun) {
   for (const DataPointer& d : data) expect_equal_states(m, single, d);
 }
 
-// Some pairs for the octree, and so many quick ones that they are shared among threads.
-std::string many_bodies() {
+// Some pairs that take long, if the octree is forced, and so many quick ones that they are shared
+// among threads.
+std::string many_bodies(int bodies_count, const std::string& options) {
   std::string bodies;
-  for (int i = 0; i < 230; ++i) {
+  for (int i = 0; i < bodies_count; ++i) {
     const bool quick = i >= 4;
     bodies += "<body pos=\"" + std::to_string(0.5 * (i % 20)) + " " +
               std::to_string(0.5 * (i / 20)) +
@@ -281,20 +282,33 @@ std::string many_bodies() {
   return "<mujoco><option timestep=\"1e-3\"/><default><geom contype=\"1\" conaffinity=\"2\"/>"
          "</default><worldbody><geom type=\"box\" size=\"20 20 .1\" pos=\"0 0 -.1\" "
          "contype=\"2\" conaffinity=\"1\"/>" +
-         bodies + "</worldbody>" + testing::numeric("volcontact/option/tolerance", "0.02");
+         bodies + "</worldbody>" + testing::numeric("volcontact/option/tolerance", "0.02") +
+         options + "</mujoco>";
+}
+
+// Velocities after some steps, for each number of threads.
+std::vector<std::vector<double>> by_threads(int bodies, const std::string& options, int steps) {
+  std::vector<std::vector<double>> states;
+  for (const char* threads : {"1", "2", "3", "4", "8", "16", "0"}) {
+    const ModelPointer m = testing::load(
+        many_bodies(bodies, options + testing::numeric("volcontact/option/threads", threads)));
+    const DataPointer d = testing::make_data(m);
+    const Attached attached(m);
+    step(m, d, steps);
+    EXPECT_EQ(volcontact_sites(m.get(), d.get(), nullptr, 0), bodies);
+    states.emplace_back(d->qvel, d->qvel + m->nv);
+  }
+  return states;
 }
 
 TEST(SceneContact, NumberOfThreadsChangesNoBit) {
-  std::vector<std::vector<double>> states;
-  for (const char* threads : {"1", "2", "4", "0"}) {
-    const ModelPointer m = testing::load(
-        many_bodies() + testing::numeric("volcontact/option/threads", threads) + "</mujoco>");
-    const DataPointer d = testing::make_data(m);
-    const Attached attached(m);
-    step(m, d, 5);
-    EXPECT_EQ(volcontact_sites(m.get(), d.get(), nullptr, 0), 230);
-    states.emplace_back(d->qvel, d->qvel + m->nv);
-  }
+  const auto states = by_threads(230, "", 5);
+  for (const std::vector<double>& state : states) EXPECT_EQ(state, states[0]);
+}
+
+// Six pairs: fewer threads take a pair each, more of them share the cells of one.
+TEST(SceneContact, NumberOfThreadsChangesNoBitOfTheOctree) {
+  const auto states = by_threads(6, testing::numeric("volcontact/option/engine/octree", "1"), 3);
   for (const std::vector<double>& state : states) EXPECT_EQ(state, states[0]);
 }
 
