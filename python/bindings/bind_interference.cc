@@ -7,6 +7,7 @@
 
 #include "arrays.h"
 #include "bindings.h"
+#include "python_distance.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact::python {
@@ -33,8 +34,12 @@ InterferenceMetrics compute(const Shape& a, const Shape& b, const std::optional<
   const Pose pose = pose_from(X_AB, "X_AB");
   thread_local InterferenceWorkspace workspace;
   thread_local Interference out;
-  nb::gil_scoped_release release;
-  interference(a, b, pose, options, workspace, out);
+  clear_distance_error();
+  {
+    nb::gil_scoped_release release;
+    interference(a, b, pose, options, workspace, out);
+  }
+  rethrow_distance_error();
   return {out.total, out.sites, out.engine};
 }
 
@@ -65,7 +70,9 @@ Returns:
     Interference: the metrics; `volume` is 0 when the solids are apart
 
 Raises:
-    ValueError: X_AB is no pose, a value is out of range, or the engine does not serve the pair)");
+    ValueError: X_AB is no pose, a value is out of range, the engine does not serve the pair, or a
+        SignedDistance returned no numbers of the right shape
+    whatever a SignedDistance raised itself)");
 }
 
 }  // namespace volcontact::python

@@ -55,6 +55,15 @@ ContactModel make_model(const std::vector<GeometricPair>& pairs, const NormalPtr
                       {tolerance, engine_from(engine), threads});
 }
 
+// A contact model runs without the interpreter lock, as a time step must.
+void require_no_python(const Shape& shape) {
+  const auto* solid = std::get_if<SignedDistance>(&shape);
+  require(!solid || solid->source().serves_steps(),
+          "Pair: a SignedDistance with a Python callable serves vc.interference only, since a "
+          "contact model is evaluated without Python's lock; write that solid in C++, or compose "
+          "it of shapes");
+}
+
 void bind_report(nb::module_& m) {
   nb::class_<ByChannel>(m, "ByChannel", "One number for each way in which a contact dissipates.")
       .def_ro("normal", &ByChannel::normal)
@@ -107,6 +116,8 @@ void bind_model(nb::module_& m) {
           "__init__",
           [](GeometricPair* self, const Shape& a, const Shape& b,
              const std::optional<Matrix4>& X_Aa, const std::optional<Matrix4>& X_Bb) {
+            require_no_python(a);
+            require_no_python(b);
             new (self) GeometricPair{a, b, pose_from(X_Aa, "X_Aa"), pose_from(X_Bb, "X_Bb")};
           },
           nb::arg("a"), nb::arg("b"), nb::kw_only(), nb::arg("X_Aa") = nb::none(),

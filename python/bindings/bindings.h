@@ -8,6 +8,7 @@ namespace volcontact::python {
 // One function a floor of the core, in floor order.
 void bind_metrics(nanobind::module_& m);
 void bind_shapes(nanobind::module_& m);
+void bind_signed_distance(nanobind::module_& m);
 void bind_interference(nanobind::module_& m);
 void bind_laws(nanobind::module_& m);
 void bind_model(nanobind::module_& m);
