@@ -2,6 +2,7 @@
 #include "core/support/reference_solid.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace volcontact::test {
 namespace {
@@ -71,6 +72,11 @@ Solid solid_of(const ConvexPolytope& polytope) {
   std::vector<ReferenceFace> faces;
   for (const auto& face : polytope.faces()) faces.push_back(plane(face.normal, face.offset));
   return Solid::piece(faces);
+}
+
+// A function is no set of faces: it has its own tests.
+Solid solid_of(const SignedDistance&) {
+  throw std::invalid_argument("reference_solid: a signed distance has no faces");
 }
 
 Solid solid_of(const Csg& csg) {
