@@ -4,6 +4,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <cmath>
+#include <memory>
 
 #include "arrays.h"
 #include "bindings.h"
@@ -21,6 +22,12 @@ struct InterferenceMetrics : VolumeMetrics {
   Engine engine = Engine::kAuto;
 };
 
+// What an evaluation writes to, reused from call to call.
+struct Memory {
+  InterferenceWorkspace workspace;
+  Interference out;
+};
+
 InterferenceMetrics compute(const Shape& a, const Shape& b, const std::optional<Matrix4>& X_AB,
                             double tolerance, const std::string& engine, int threads) {
   require(tolerance > 0.0 && tolerance < 1.0,
@@ -32,15 +39,19 @@ InterferenceMetrics compute(const Shape& a, const Shape& b, const std::optional<
                                             " does not serve the pair " + name_of(a) + " - " +
                                             name_of(b) + "; use auto or octree");
   const Pose pose = pose_from(X_AB, "X_AB");
-  thread_local InterferenceWorkspace workspace;
-  thread_local Interference out;
+  // A callable that the octree calls may ask in turn, and then finds no spare memory.
+  thread_local std::unique_ptr<Memory> spare;
+  std::unique_ptr<Memory> memory = spare ? std::move(spare) : std::make_unique<Memory>();
   clear_distance_error();
   {
     nb::gil_scoped_release release;
-    interference(a, b, pose, options, workspace, out);
+    interference(a, b, pose, options, memory->workspace, memory->out);
   }
   rethrow_distance_error();
-  return {out.total, out.sites, out.engine};
+  const Interference& out = memory->out;
+  InterferenceMetrics metrics{out.total, out.sites, out.engine};
+  spare = std::move(memory);
+  return metrics;
 }
 
 }  // namespace

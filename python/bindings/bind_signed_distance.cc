@@ -66,9 +66,12 @@ class PythonSource final : public SignedDistance::Source {
   }
 
   const nb::object& callable() const { return callable_; }
+  /// For the garbage collector: nobody can reach the solid any more.
+  void forget_callable() const { callable_.reset(); }
 
  private:
   void call(const Vec3* points, std::size_t count, double* distances) const {
+    require(callable_.is_valid(), "signed_distance: the callable is gone");
     auto* copy = new double[3 * count];  // the callable may keep what it gets
     nb::capsule owner(copy, [](void* p) noexcept { delete[] static_cast<double*>(p); });
     std::memcpy(copy, points->data(), 3 * count * sizeof(double));
@@ -89,9 +92,27 @@ class PythonSource final : public SignedDistance::Source {
     }
   }
 
-  nb::object callable_;
+  mutable nb::object callable_;
   Aabb bounds_;
 };
+
+// A callable that refers to its own solid is a cycle: the garbage collector must see it.
+const PythonSource* source_of(PyObject* self) {
+  if (!nb::inst_ready(self)) return nullptr;
+  return dynamic_cast<const PythonSource*>(&nb::inst_ptr<SignedDistance>(self)->source());
+}
+int traverse(PyObject* self, visitproc visit, void* arg) {
+  if (const PythonSource* source = source_of(self)) Py_VISIT(source->callable().ptr());
+  Py_VISIT(Py_TYPE(self));
+  return 0;
+}
+int clear(PyObject* self) {
+  if (const PythonSource* source = source_of(self)) source->forget_callable();
+  return 0;
+}
+PyType_Slot kCollectable[] = {{Py_tp_traverse, reinterpret_cast<void*>(traverse)},
+                              {Py_tp_clear, reinterpret_cast<void*>(clear)},
+                              {0, nullptr}};
 
 }  // namespace
 
@@ -102,7 +123,7 @@ void rethrow_distance_error() {
 }
 
 void bind_signed_distance(nb::module_& m) {
-  nb::class_<SignedDistance>(m, "SignedDistance",
+  nb::class_<SignedDistance>(m, "SignedDistance", nb::type_slots(kCollectable),
                              R"(Solid given by a Python callable, for vc.interference only.
 
 The callable gets points [m], shape (n, 3), in the solid's frame, and returns their signed distances

@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import gc
 import math
 import threading
+import weakref
 
 import numpy as np
 import pytest
@@ -106,6 +108,31 @@ def test_python_threads_may_ask_at_once():
     for thread in threads:
         thread.join()
     assert volumes == [expected] * 4
+
+
+def test_callable_may_ask_in_turn():
+    expected = vc.interference(vc.HalfSpace(), smooth_ball(), at(0.1), tolerance=1e-2)
+
+    def asking(points: np.ndarray) -> np.ndarray:
+        inner = vc.interference(vc.HalfSpace(), smooth_ball(), at(0.1), tolerance=1e-2)
+        assert inner.volume == expected.volume
+        return ball(points)
+
+    outer = vc.interference(vc.HalfSpace(), smooth_ball(asking), at(0.1), tolerance=1e-2)
+    assert outer.volume == expected.volume and np.array_equal(outer.inertia, expected.inertia)
+
+
+def test_callable_that_holds_its_own_solid_is_collected():
+    class Holder:
+        def distance(self, points: np.ndarray) -> np.ndarray:
+            return ball(points)
+
+    holder = Holder()
+    holder.solid = vc.SignedDistance(holder.distance, BOX)
+    gone = weakref.ref(holder)
+    del holder
+    gc.collect()
+    assert gone() is None
 
 
 def test_two_callables_meet():

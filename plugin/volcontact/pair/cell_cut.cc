@@ -96,7 +96,6 @@ void CellCut::estimate(Cell& cell) {
   }
 }
 
-// Halving an axis helps against a bend along it; a straight cylinder is never cut across.
 // From the corners of the polytope, and as far outside as the faces bend.
 void CellCut::enclose(Cell& cell) const {
   double slack = 0.0;
@@ -114,6 +113,7 @@ void CellCut::enclose(Cell& cell) const {
   cell.content_high = (cell.content_high.array() + slack).matrix().cwiseMin(cell.half);
 }
 
+// Halving an axis helps against a bend along it; a straight cylinder is never cut across.
 void CellCut::choose_split(Cell& cell) const {
   const auto share_of = [&](std::size_t i) -> Vec3 {
     const Tangent& t = tangents_[i];

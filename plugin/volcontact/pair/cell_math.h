@@ -7,8 +7,8 @@
 
 namespace volcontact::cell_math {
 
-inline constexpr int kFirstFace =
-    6;  ///< polytope face number of tangent 0; below: the cell's sides
+/// Polytope face number of tangent 0; the cell's sides have those below.
+inline constexpr int kFirstFace = 6;
 /// Share of |slope|; where a bent face rises less than that there is no use in following it.
 inline constexpr double kSteepEnough = 0.05;
 

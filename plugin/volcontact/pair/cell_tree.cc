@@ -25,9 +25,6 @@ constexpr double kMarginLow = 0.0137, kMarginHigh = 0.0091;
 
 }  // namespace
 
-// ---- the root cells
-// ------------------------------------------------------------------------------
-
 void CellTree::plant() {
   s_.cell_count = 0;
   s_.faces.clear();
@@ -116,9 +113,6 @@ Cell& CellTree::new_cell() {
   cell.divided = false;
   return cell;
 }
-
-// ---- refinement
-// ------------------------------------------------------------------------------------
 
 // Asks a field, all cells at once, for the signed distances at the centres, and at the corners of
 // those it may pass through.

@@ -84,8 +84,7 @@ struct OctreeTask {
     constexpr int kWorthThreads = 256;  // cells, when their number is our choice
     return tasks < (asked_threads == 0 ? kWorthThreads : kWorthAsking) ? 1 : thread_limit;
   }
-  /// Of the calling thread, below thread_limit. A caller that is one of many of its own is number
-  /// 0.
+  /// Number of the calling thread, below thread_limit; 0 for a caller that is one of many.
   int thread() const {
 #ifdef _OPENMP
     return thread_limit == 1 ? 0 : omp_get_thread_num();

@@ -11,10 +11,8 @@ namespace volcontact {
 
 /// The least the octree needs of a solid, convex or not; meaning as in ConvexSolid. May also offer
 ///  pieces(list)                 exact faces: see PieceList
-///  gradient(p)                  with curvature_bound(p, reach), a bound of the second derivatives
-///  of
-///                               signed_distance within `reach` of p [1/m], infinite where it has a
-///                               kink
+///  gradient(p)                  with curvature_bound(p, reach): a bound of the second derivatives
+///                               of signed_distance within `reach` of p [1/m], infinite at a kink
 ///  bend_bound()                 bound K of its second derivatives [1/m] where it is below 1/(2 K)
 ///  signed_distances(p, n, f)    the signed distances of n points at once
 /// The octree's bounds are certain when signed_distance is nowhere steeper than 1 and these hold.

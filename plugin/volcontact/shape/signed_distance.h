@@ -39,8 +39,8 @@ class SignedDistance {
   static constexpr const char* kName = "signed_distance";
   struct Params {
     double lipschitz = 1.0;  ///< nowhere is the function steeper [-]
-    /// Bound of its second derivatives in any direction, where |function| < lipschitz^2 / (2
-    /// curvature) [1/m]. A ball of radius r has 1.5/r.
+    /// Bound of its second derivatives in any direction [1/m], where
+    /// |function| < lipschitz^2 / (2 curvature). A ball of radius r has 1.5/r.
     double curvature = kInfinity;
   };
 
