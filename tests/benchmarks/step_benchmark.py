@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Time of one MuJoCo step under volumetric contact, beside native contact and no contact at all.
 
-    ./run python tests/benchmarks/step_benchmark.py [--json]
+    ./run python tests/benchmarks/step_benchmark.py
 
 Compare the columns of one run with each other, not with those of another machine.
 """
@@ -9,65 +9,95 @@ Compare the columns of one run with each other, not with those of another machin
 from __future__ import annotations
 
 import argparse
-import json
+import csv
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import mujoco
+import numpy as np
 
 import volcontact as vc
 
-ROOT = Path(__file__).parents[2]
-STEPS = 200
-ROUNDS = 15
+MODELS = Path(__file__).parents[2] / "mjcf_models"
+ROUNDS = 25
+KINDS = ("none", "native", "volumetric")
+COLUMNS = (
+    *("scene", "contact", "bodies", "pairs", "touching", "steps", "time_us", "q1_us", "q3_us"),
+    "speed_mm_s",
+)
 
 
-def resting_boxes(count: int) -> str:
-    """`count` boxes that rest on a floor, each with one site; no two of them near."""
-    bodies = "".join(
-        f'<body pos="{0.5 * (i % 5)} {0.5 * (i // 5)} .0999"><freejoint/>'
-        '<geom type="box" size=".1 .1 .1" mass="1"/></body>'
-        for i in range(count)
-    )
-    return _scene(f'<geom type="plane" size="9 9 1" contype="2" conaffinity="2"/>{bodies}')
+@dataclass
+class Scene:
+    """A model and the part of its motion that is timed.
+
+    Attributes:
+        name: on the page of results
+        model: the model
+        settle: seconds before the clock runs, under the contact that is timed [s]
+        steps: in one round
+        again: each round starts anew after `settle`; False: the rounds follow each other
+    """
+
+    name: str
+    model: mujoco.MjModel
+    settle: float
+    steps: int = 200
+    again: bool = False
 
 
-def boxes_apart(count: int) -> str:
-    """Boxes in free flight: count (count - 1) / 2 pairs, all culled."""
-    bodies = "".join(
-        f'<body pos="{0.5 * (i % 5)} {0.5 * (i // 5)} 1"><freejoint/>'
-        '<geom type="box" size=".1 .1 .1" mass="1"/></body>'
-        for i in range(count)
-    )
-    return _scene(bodies, gravity="0 0 0")
+@dataclass
+class Course:
+    """One kind of contact in a scene."""
 
+    kind: str
+    scene: Scene
+    data: mujoco.MjData = field(init=False)
+    times: list[float] = field(default_factory=list)
+    pairs: int = 0
+    touching: int = 0
 
-def pile(count: int) -> str:
-    """Boxes in stacks of five."""
-    bodies = "".join(
-        f'<body pos="{0.25 * (i // 5)} 0 {0.0999 + 0.1998 * (i % 5)}"><freejoint/>'
-        '<geom type="box" size=".1 .1 .1" mass="1"/></body>'
-        for i in range(count)
-    )
-    return _scene(f'<geom type="plane" size="9 9 1"/>{bodies}')
+    def __post_init__(self) -> None:
+        self.data = mujoco.MjData(self.scene.model)
+        self._start()
 
+    def _start(self) -> None:
+        model = self.scene.model
+        mujoco.mj_resetData(model, self.data)
+        steps = round(self.scene.settle / model.opt.timestep)
+        if steps and self.kind != "none":  # nothing comes to rest without contact
+            with contact_of(self.kind, model):
+                mujoco.mj_step(model, self.data, steps)
 
-def _scene(bodies: str, gravity: str = "0 0 -9.81") -> str:
-    bodies = bodies.replace('size=".1 .1 .1"', 'size=".1 .1 .1" contype="3" conaffinity="3"')
-    return (
-        f'<mujoco><size nconmax="2000" njmax="8000"/><option timestep="5e-4" gravity="{gravity}"/>'
-        f'<default><geom friction=".1 .005 .0001"/></default><worldbody>{bodies}</worldbody>'
-        "</mujoco>"
-    )
+    def run_round(self) -> None:
+        """Times some steps."""
+        model, data = self.scene.model, self.data
+        if self.scene.again or self.kind == "none":
+            self._start()
+        with contact_of(self.kind, model) as contact:
+            mujoco.mj_forward(model, data)
+            begin = time.process_time_ns()
+            mujoco.mj_step(model, data, self.scene.steps)
+            self.times.append(1e-3 * (time.process_time_ns() - begin) / self.scene.steps)
+            if contact is not None:
+                self.pairs = len(contact.description["pairs"])
+                self.touching = len(contact.sites(data))
+            elif self.kind == "native":
+                self.touching = data.ncon
 
-
-def seated_battery_box() -> mujoco.MjModel:
-    """The battery box at rest in its worksite."""
-    model = vc.load(ROOT / "mjcf_models" / "battery_box" / "scene.xml")
-    model.qpos0[:] = model.key("seated").qpos
-    return model
+    def row(self) -> dict[str, object]:
+        """A line of the results; times in us, speeds in mm/s."""
+        q1, median, q3 = np.percentile(self.times, [25, 50, 75])
+        speeds = np.linalg.norm(self.data.qvel.reshape(-1, 6)[:, :3], axis=1)
+        speed = 0.0 if self.kind == "none" else 1e3 * speeds.max()
+        bodies, steps = len(speeds), self.scene.steps * ROUNDS
+        counts = (bodies, self.pairs, self.touching, steps)
+        times = (f"{t:.3f}" for t in (median, q1, q3))
+        values = (self.scene.name, self.kind, *counts, *times, f"{speed:.2g}")
+        return dict(zip(COLUMNS, values, strict=True))
 
 
 @contextmanager
@@ -84,45 +114,84 @@ def contact_of(kind: str, model: mujoco.MjModel) -> Iterator[vc.Contact | None]:
     model.opt.disableflags = flags
 
 
-def measure(model: mujoco.MjModel) -> dict[str, float]:
-    """Microseconds a step, the best of some rounds, and what touched at the end."""
-    result: dict[str, float] = {}
-    for kind in ("none", "native", "volumetric"):
-        data = mujoco.MjData(model)
-        best = float("inf")
-        with contact_of(kind, model) as contact:
-            for _ in range(ROUNDS):
-                mujoco.mj_resetData(model, data)
-                begin = time.perf_counter_ns()
-                mujoco.mj_step(model, data, STEPS)
-                best = min(best, 1e-3 * (time.perf_counter_ns() - begin) / STEPS)
-            if contact is not None:
-                result["pairs"] = len(contact.description["pairs"])
-                result["sites"] = len(contact.sites(data))
-        result[kind] = round(best, 3)
-    return result
+def scenes() -> Iterator[Scene]:
+    """The committed scenes, and some that grow one part of the work."""
+    battery_box = MODELS / "battery_box" / "scene.xml"
+    seated = vc.load(battery_box)
+    seated.qpos0[:] = seated.key("seated").qpos
+    yield Scene("battery box, seated", seated, settle=0.5)
+    # The start is cut off: 0.1 s of free fall say nothing.
+    yield Scene("battery box, falling into its seat", vc.load(battery_box), 0.1, 900, again=True)
+    pile = MODELS / "box_pile" / "scene.xml"
+    yield Scene("pile of 20 boxes, at rest", vc.load(pile), settle=3.0)
+    yield Scene("pile of 20 boxes, falling", vc.load(pile), settle=0.0, steps=500, again=True)
+    yield Scene("20 boxes on a floor", vc.load(boxes_on_floor(20)), settle=0.5)
+    yield Scene("20 boxes in 4 stacks", vc.load(stacks(20)), settle=0.5)
+    yield Scene("18 boxes apart", vc.load(boxes_apart(18)), settle=0.0)
+
+
+def boxes_on_floor(count: int) -> str:
+    """Boxes that rest on a floor, each with one site; no two of them near."""
+    bodies = "".join(_box(0.5 * (i % 5), 0.5 * (i // 5), 0.0999) for i in range(count))
+    return _scene(f'<geom type="plane" size="9 9 1" contype="2" conaffinity="2"/>{bodies}')
+
+
+def boxes_apart(count: int) -> str:
+    """Boxes in free flight: count (count - 1) / 2 pairs, all culled."""
+    bodies = "".join(_box(0.5 * (i % 5), 0.5 * (i // 5), 1.0) for i in range(count))
+    return _scene(bodies, gravity="0 0 0")
+
+
+def stacks(count: int) -> str:
+    """Boxes in stacks of five."""
+    bodies = "".join(_box(0.25 * (i // 5), 0.0, 0.0999 + 0.1998 * (i % 5)) for i in range(count))
+    return _scene(f'<geom type="plane" size="9 9 1"/>{bodies}')
+
+
+def _box(x: float, y: float, z: float) -> str:
+    return (
+        f'<body pos="{x} {y} {z}"><freejoint/>'
+        '<geom type="box" size=".1 .1 .1" mass="1" contype="3" conaffinity="3"/></body>'
+    )
+
+
+def _scene(bodies: str, gravity: str = "0 0 -9.81") -> str:
+    return (
+        f'<mujoco><size nconmax="2000" njmax="8000"/><option timestep="5e-4" gravity="{gravity}"/>'
+        f'<default><geom friction=".1 .005 .0001"/></default><worldbody>{bodies}</worldbody>'
+        "</mujoco>"
+    )
+
+
+def measure(scene: Scene) -> list[dict[str, object]]:
+    """A line for each kind of contact; the kinds take turns."""
+    courses = [Course(kind, scene) for kind in KINDS]
+    for _ in range(ROUNDS):
+        for course in courses:
+            course.run_round()
+    return [course.row() for course in courses]
 
 
 def main() -> None:
-    """Measures every scene and prints a table, or JSON."""
+    """Measures every scene, prints a table and writes CSV."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    as_json = parser.parse_args().json
-    scenes = {
-        "18 boxes apart": vc.load(boxes_apart(18)),
-        "20 boxes on a floor": vc.load(resting_boxes(20)),
-        "20 boxes in 4 stacks": vc.load(pile(20)),
-        "battery box, seated": seated_battery_box(),
-    }
-    results = {name: measure(model) for name, model in scenes.items()}
-    if as_json:
-        print(json.dumps({"mujoco_version": mujoco.__version__, "scenes": results}, indent=2))
-        return
-    print(f"MuJoCo {mujoco.__version__}, microseconds a step")
-    columns = ("pairs", "sites", "none", "native", "volumetric")
-    print(f"{'':24}" + "".join(f"{column:>12}" for column in columns))
-    for name, result in results.items():
-        print(f"{name:24}" + "".join(f"{result[column]:>12}" for column in columns))
+    parser.add_argument("--out", type=Path, help="CSV file to write")
+    out = parser.parse_args().out
+    print(f"MuJoCo {mujoco.__version__}")
+    rows = []
+    for scene in scenes():
+        for row in measure(scene):
+            rows.append(row)
+            print(
+                f"{row['scene']:36} {row['contact']:12} {row['time_us']:>9} us a step, "
+                f"{row['touching']:>4} touching, {row['speed_mm_s']:>8} mm/s",
+                flush=True,
+            )
+    if out:
+        with out.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
 
 
 if __name__ == "__main__":
