@@ -7,6 +7,7 @@ import importlib.util
 import os
 import re
 import subprocess
+import sys
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -67,12 +68,14 @@ def headings(page: Path) -> list[str]:
     return re.findall(r"^#+ +(.+?) *$", prose, re.MULTILINE)
 
 
-def make_components() -> ModuleType:
-    """docs/make_components.py as a module."""
-    path = ROOT / "docs" / "make_components.py"
-    spec = importlib.util.spec_from_file_location("make_components", path)
+def generator(name: str) -> ModuleType:
+    """A script of docs as a module. It finds its neighbours as when it runs as a program."""
+    if str(ROOT / "docs") not in sys.path:
+        sys.path.insert(0, str(ROOT / "docs"))
+    spec = importlib.util.spec_from_file_location(name, ROOT / "docs" / f"{name}.py")
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module  # its dataclasses look there
     spec.loader.exec_module(module)
     return module
 
@@ -102,10 +105,37 @@ def test_mjcf_blocks_load_and_step(page: Path) -> None:
 
 
 def test_components_page_is_generated_from_the_field_tables() -> None:
-    module = make_components()
+    module = generator("make_components")
     assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
         "run './run python docs/make_components.py'"
     )
+
+
+def test_performance_page_is_generated_from_the_results() -> None:
+    module = generator("make_performance")
+    assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
+        "run './run python docs/make_performance.py'"
+    )
+
+
+def test_performance_plots_are_made_of_the_results() -> None:
+    """The plots themselves differ from one release of matplotlib to the next."""
+    module = generator("make_performance")
+    assert {path.stem for path in module.PLOTS.glob("*.svg")} == set(module.PLOT)
+    for name in module.PLOT:
+        plot = (module.PLOTS / f"{name}.svg").read_text(encoding="utf-8")
+        assert f"<dc:source>{module.digest()}</dc:source>" in plot, (
+            "run './run python docs/make_performance.py'"
+        )
+
+
+def test_results_hold_no_path_and_no_name_of_a_machine() -> None:
+    results = sorted((ROOT / "tests" / "benchmarks" / "results").glob("*.csv"))
+    assert results
+    for table in results:
+        text = table.read_text(encoding="utf-8")
+        assert not re.search(r"(^|[\s\",])/[a-z]+/", text), f"{table.name} holds a path"
+        assert "host" not in text, f"{table.name} may name a machine"
 
 
 def test_components_page_lists_every_component() -> None:
