@@ -67,20 +67,29 @@ class PairRules {
   std::set<int> excluded_;
 };
 
-// Bounds of a solid at X_WG, as (min, -max): both ends are then lower bounds of the same kind.
-std::array<double, 6> world_bounds(const Shape& solid, const Pose& X_WG) noexcept {
+// With -max instead of max both ends are lower bounds of the same kind.
+Cull::Box world_bounds(const Shape& solid, const Pose& X_WG) noexcept {
   return std::visit(
       [&](const auto& s) {
-        std::array<double, 6> box;
+        Cull::Box box;
         for (int i = 0; i < 3; ++i) {
           const Vec3 axis = X_WG.rotation.row(i).transpose();
-          const auto k = static_cast<std::size_t>(i);
-          box[k] = X_WG.translation[i] - s.support_height(-axis);
-          box[k + 3] = -X_WG.translation[i] - s.support_height(axis);
+          const double min = X_WG.translation[i] - s.support_height(-axis);
+          const double minus_max = -X_WG.translation[i] - s.support_height(axis);
+          box.ends[static_cast<std::size_t>(i)] = Cull::Two{min, minus_max};
+          box.reverse[static_cast<std::size_t>(i)] = Cull::Two{minus_max, min};
         }
         return box;
       },
       solid);
+}
+
+// Apart along an axis when min_a >= max_b or min_b >= max_a. Comparisons with NaN are false, so
+// that a pose that is no number reaches the engine, which reports it.
+bool are_apart(const Cull::Box& a, const Cull::Box& b) noexcept {
+  const auto apart = (a.ends[0] + b.reverse[0] >= 0.0) | (a.ends[1] + b.reverse[1] >= 0.0) |
+                     (a.ends[2] + b.reverse[2] >= 0.0);
+  return (apart[0] | apart[1]) != 0;
 }
 
 // Whether some of the solid at X_WG is below the plane geom's surface.
@@ -144,13 +153,8 @@ void Cull::run(const mjData* d, Scratch& scratch) const noexcept {
       }
       continue;
     }
-    // Apart along an axis when min_a >= max_b, that is min_a + (-max_b) >= 0. Comparisons with NaN
-    // are false, so that a pose that is no number reaches the engine, which reports it.
-    const std::array<double, 6>& a = scratch.boxes[static_cast<std::size_t>(c.first)];
-    const std::array<double, 6>& b = scratch.boxes[second];
-    const bool apart = (a[0] + b[3] >= 0.0) | (a[1] + b[4] >= 0.0) | (a[2] + b[5] >= 0.0) |
-                       (b[0] + a[3] >= 0.0) | (b[1] + a[4] >= 0.0) | (b[2] + a[5] >= 0.0);
-    if (!apart) scratch.near.push_back(static_cast<int>(i));
+    const Box& first = scratch.boxes[static_cast<std::size_t>(c.first)];
+    if (!are_apart(first, scratch.boxes[second])) scratch.near.push_back(static_cast<int>(i));
   }
 }
 

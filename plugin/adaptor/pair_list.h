@@ -37,10 +37,18 @@ class Cull {
   /// `solids` has one entry per geom of the model; those of no pair are not looked at.
   Cull(const std::vector<GeomPair>& pairs, const std::vector<Shape>& solids);
 
+  /// Bounds along x, y and z, in both orders: two boxes are compared by adding one to the other's
+  /// reverse. Most of the work of a scene with hundreds of pairs is this comparison.
+  using Two [[gnu::vector_size(16)]] = double;
+  struct Box {
+    std::array<Two, 3> ends;     ///< min, -max
+    std::array<Two, 3> reverse;  ///< -max, min
+  };
+
   /// Memory of one call, reused.
   struct Scratch {
-    std::vector<std::array<double, 6>> boxes;  ///< world bounds: min x, y, z, -max x, y, z
-    std::vector<int> near;                     ///< result: indices of pairs, ascending
+    std::vector<Box> boxes;  ///< world bounds
+    std::vector<int> near;   ///< result: indices of pairs, ascending
   };
 
   void run(const mjData* d, Scratch& scratch) const noexcept;
