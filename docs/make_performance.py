@@ -20,6 +20,7 @@ from performance_results import (
     digits,
     in_cpp,
     is_ours,
+    medians,
     read,
     small,
     span,
@@ -43,7 +44,7 @@ GIVES = """\
 
 def render() -> str:
     """The whole page as Markdown text."""
-    return "\n".join([_introduction(), _pairs(), _peers(), _steps()])
+    return "\n".join([_introduction(), _pairs(), _threads(), _peers(), _steps()])
 
 
 def _introduction() -> str:
@@ -86,8 +87,8 @@ def _pairs() -> str:
     return (
         "## One pair, against what was asked\n\n"
         "One query gives the volume with all its moments, the area vector, the depth and the "
-        "contact sites. Times are medians\nof the C++ benchmarks (`pair_benchmark.cc`, "
-        "`lines_benchmark.cc`) over many poses, warm; of several the slowest\ncounts. Errors are "
+        "contact sites. Times are medians\nof the C++ benchmarks (`*_benchmark.cc`) over many "
+        "poses, warm; of several the slowest\ncounts. Errors are "
         "of the volume, relative, over the poses of the comparison below: against formulas, "
         "rational\narithmetic or, for the box with an ellipsoid or a cylinder, an integral that "
         "shares nothing with the engines.\n\n"
@@ -95,6 +96,44 @@ def _pairs() -> str:
         + table(header, rows)
         + f"\n**Slower than asked:** {'; '.join(late) or 'none'}.\n\n"
         + f"**Less exact than asked:** {'; '.join(rough) or 'none'}.\n"
+    )
+
+
+_OCTREE = {
+    "peg_in_bore_clearance_3_percent": "peg in a bore, clearance 0.3 mm",
+    "peg_in_bore_clearance_20_um": "peg in a bore, clearance 0.02 mm",
+    "cylinder_edge_in_box": "rim of a cylinder in a box face",
+}
+
+
+def _threads() -> str:
+    wall, cpu = medians("real_time"), medians()
+    bounds = {row["name"]: row["bound"] for row in read("octree")}
+    rows, slow = [], []
+    for benchmark, title in _OCTREE.items():
+        one, two = (f"{benchmark}/{n}/real_time" for n in (1, 2))
+        if wall[one] / wall[two] <= 1.8 and title.startswith("peg"):
+            slow.append(title)
+        rows.append(
+            (
+                title,
+                small(bounds[f"{one}_median"]),
+                span(wall[one]),
+                span(wall[two]),
+                f"{wall[one] / wall[two]:.2f}",
+                f"{cpu[one] / cpu[two]:.2f}",
+            )
+        )
+    header = ("pair", "bound of V", "one thread", "two threads", "times as fast", "work shared")
+    return (
+        "## The octree on two threads\n\n"
+        "Wall time (`octree_benchmark.cc`). Asked: 1.8 times as fast on two threads, for the "
+        "pegs; the third pair is too short to share. The\nnumbers are the same, bit for bit. On a "
+        "machine with other work the second processor is not "
+        "free, and wall time says little; the last column is how much less\nprocessor time the "
+        "first thread needs, 2 when the work is shared evenly and without loss.\n\n"
+        + table(header, rows)
+        + f"\n**Less than asked:** {'; '.join(slow) or 'none'}.\n"
     )
 
 

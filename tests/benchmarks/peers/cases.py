@@ -176,12 +176,7 @@ def _bored_cases() -> Iterator[Case]:
     yield Case("bored block - peg 0.3 mm", block, wide, tilted, exact_volumes.peg_in_bore)
     poses = _near(pose_of(turn((1, 0, 0), 0.002), (0, 0, 0)), 1e-6, 1e-5)
     yield Case("bored block - peg 0.02 mm", block, close, poses, exact_volumes.peg_in_bore)
-    yield Case(
-        "bored block - peg, octree",
-        block,
-        wide,
-        tilted[:4],
-        exact_volumes.peg_in_bore,
-        engine="octree",
-        tolerance=1e-2,
-    )
+    # The same by the engine that serves every solid, at fewer poses: it takes its time.
+    for name, peg, near in (("0.3 mm", wide, tilted), ("0.02 mm", close, poses)):
+        title = f"bored block - peg {name}, octree"
+        yield Case(title, block, peg, near[:4], exact_volumes.peg_in_bore, "octree", 1e-2)
