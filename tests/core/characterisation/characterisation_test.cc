@@ -61,7 +61,7 @@ TEST_P(Accuracy, EveryEngineKeepsItsPromise) {
     EXPECT_LE(row.area_moment.median, promise.area_vector);
     EXPECT_LE(row.gradient.median, promise.gradient);
     EXPECT_LE(row.turn.median, promise.gradient);
-    EXPECT_LE(row.noise, promise.noise);
+    EXPECT_LE(row.noise.value_or(0.0), promise.noise);
     EXPECT_EQ(row.missed, 0);
     if (row.engine == Engine::kOctree) {
       EXPECT_EQ(row.bounds_held, row.poses);

@@ -37,16 +37,10 @@ TEST(Fuzz, NoPairFails) {
 
 // Solids without volume overlap nothing; the answer is finite and says so.
 TEST(Fuzz, SolidsOfZeroSize) {
-  const std::vector<Shape> flat = {Sphere({.radius = 0.0}),
-                                   Ellipsoid({.semi_axes = Vec3(0.3, 0.2, 0.0)}),
-                                   Capsule({.radius = 0.0, .half_length = 0.3}),
-                                   Cylinder({.radius = 0.3, .half_length = 0.0}),
-                                   Box({.half_sizes = Vec3(0.3, 0.2, 0.0)}),
-                                   Torus({.major_radius = 0.3, .minor_radius = 0.0})};
   Random random(8);
   InterferenceWorkspace workspace;
   Interference out;
-  for (const Shape& a : flat) {
+  for (const Shape& a : flat_solids()) {
     for (const Example& b : examples()) {
       for (int i = 0; i < 4; ++i) {
         const Pose X_AB = i == 0 ? Pose{} : random.pose(0.2);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/support/contact_poses.h"
@@ -8,8 +9,9 @@
 
 namespace volcontact::test {
 
-/// Worst and median of an error.
+/// Worst and median of an error; no number of it was measured where `count` is 0.
 struct Spread {
+  int count = 0;
   double median = 0.0, worst = 0.0;
 };
 Spread spread_of(std::vector<double> values);
@@ -20,22 +22,25 @@ struct Characterisation {
   const Example* a = nullptr;
   const Example* b = nullptr;
   Engine engine = Engine::kAuto;
-  int poses = 0;  ///< with an overlap that the reference could integrate
-  Spread volume, centroid, inertia, area_vector, area_moment;
-  Spread gradient, turn;      ///< of the area vector and moment against finite differences of V
-  double noise = 0.0;         ///< rms error of the increments of V along a motion, of their rms
-  int bounds_held = 0;        ///< poses where |error of V| <= volume_error
-  int missed = 0;             ///< poses with an overlap that the engine answered with V = 0
-  double reference = 0.0;     ///< worst error of the reference's V
-  double microseconds = 0.0;  ///< median time
+  int poses = 0;      ///< with an overlap that the reference could integrate
+  int handed_on = 0;  ///< further poses that the engine left to the octree
+  Spread volume, centroid, inertia;
+  Spread area_vector, area_moment;  ///< of poses without shared faces; see Reference
+  Spread gradient, turn;         ///< of the area vector and moment against finite differences of V
+  std::optional<double> noise;   ///< rms error of the increments of V along a motion, of their rms
+  double volume_beyond = 0.0;    ///< worst error of V less the doubt about the reference
+  int bounds_held = 0;           ///< poses where |error of V| <= volume_error
+  int missed = 0;                ///< poses with an overlap that the engine answered with V = 0
+  double reference_error = 0.0;  ///< worst of the reference's V, from its three directions
+  double microseconds = 0.0;     ///< median time of a warm call
 };
 
 struct Effort {
   int poses = 6;                   ///< a third each: random, shallow, aligned
-  int gradient_poses = 2;          ///< no gradients, and no motion, of the octree: it is slow, and
-                                   ///< smooth to its tolerance only
+  int gradient_poses = 2;          ///< none of the octree: it is smooth to its tolerance only
   int motion_steps = 8;            ///< of the motion for the noise; 0: none
-  int octree_poses = 2;            ///< of them, those that the octree gets too
+  int octree_poses = 2;            ///< of the poses, those that the octree gets too
+  int slow_octree_poses = 1;       ///< the same where it has cones or a torus, and no motion
   double octree_tolerance = 1e-2;  ///< relative error asked of the octree
 };
 

@@ -10,8 +10,8 @@ namespace volcontact::test {
 namespace {
 
 // 0: V. 1..3: int x. 4..9: int xx xy xz yy yz zz. 10: int n_z dS over A. 11..13: int x n_z dS.
-// 14, 15: int n_z^2 dS over A's surface inside B and over B's inside A.
-using Values = Eigen::Array<double, 16, 1>;
+// 14, 15: int n_z^2 dS over A's surface inside B and over B's inside A. 16: of faces that are both.
+using Values = Eigen::Array<double, 17, 1>;
 
 struct Sample {
   std::uint64_t signature = 0;  // of the faces that bound the overlap; 0: nothing there
@@ -339,13 +339,14 @@ class Columns {
     sum[7] += length * v * v;
     sum[8] += length * v * t;
     sum[9] += length * (t * t + length * length / 12.0);
-    add_end(Vec3(u, v, span.enter), span.enter_face, -1.0, sum);
-    add_end(Vec3(u, v, span.leave), span.leave_face, 1.0, sum);
+    add_end(Vec3(u, v, span.enter), span.enter_face, -1.0, span.enter_shared, sum);
+    add_end(Vec3(u, v, span.leave), span.leave_face, 1.0, span.leave_shared, sum);
   }
-  void add_end(const Vec3& x, int face, double sign, Values& sum) {
+  void add_end(const Vec3& x, int face, double sign, bool shared, Values& sum) {
     const bool of_a = face < first_of_b_;
     const double slant = std::abs((of_a ? a_ : b_).normal(face, x).z());
     sum[of_a ? 14 : 15] += slant;
+    if (shared) sum[16] += slant;
     if (!of_a) return;
     sum[10] += sign;
     sum.segment<3>(11) += sign * x.array();
@@ -365,6 +366,7 @@ struct Direction {
   double flux = 0.0;                      // int n_k dS
   Vec3 first_flux = Vec3::Zero();         // int x n_k dS
   double area = 0.0, counter_area = 0.0;  // int n_k^2 dS
+  double shared_area = 0.0;
 };
 
 Direction integrate_along(int axis, const ReferenceSolid& a_F, const ReferenceSolid& b_F,
@@ -384,6 +386,7 @@ Direction integrate_along(int axis, const ReferenceSolid& a_F, const ReferenceSo
   result.first_flux = R_FL * sum.segment<3>(11).matrix();
   result.area = sum[14];
   result.counter_area = sum[15];
+  result.shared_area = sum[16];
   return result;
 }
 
@@ -391,6 +394,7 @@ Reference integrate(const ReferenceSolid& a_F, const ReferenceSolid& b_F, const 
                     const Fineness& fine) {
   MomentSum sum;
   Mat3 flux = Mat3::Zero();  // (i, k): int x_i n_k dS
+  double shared_area = 0.0;
   const int directions = lookout.all_axes ? 3 : 1;
   std::vector<MomentSum> moments;
   for (int k = 0; k < directions; ++k) {
@@ -400,6 +404,7 @@ Reference integrate(const ReferenceSolid& a_F, const ReferenceSolid& b_F, const 
     sum.area_vector[axis] = d.flux;
     sum.area += d.area;
     sum.counter_area += d.counter_area;
+    shared_area += d.shared_area;
     flux.col(axis) = d.first_flux;
   }
   // The middle one of the three volumes, and how far the nearer of the others is from it.
@@ -413,7 +418,7 @@ Reference integrate(const ReferenceSolid& a_F, const ReferenceSolid& b_F, const 
                                        : std::min(chosen.volume - moments[0].volume,
                                                   moments[2].volume - chosen.volume);
   sum.area_moment = Vec3(flux(1, 2) - flux(2, 1), flux(2, 0) - flux(0, 2), flux(0, 1) - flux(1, 0));
-  return {transformed(sum.metrics(), lookout.X_AF), error};
+  return {transformed(sum.metrics(), lookout.X_AF), error, shared_area};
 }
 
 }  // namespace

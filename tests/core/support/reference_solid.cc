@@ -146,7 +146,8 @@ int cubic_roots(double p, double q, double* roots) {
 
 }  // namespace
 
-constexpr double kSame = 1e-13;  // distance at which faces of bodies of a metre count as one [m]
+constexpr double kSame = 1e-13;   // distance at which faces of bodies of a metre count as one [m]
+constexpr double kShared = 1e-9;  // and at which they are said to be shared [m]
 
 ReferenceSpans both(const ReferenceSpans& a, const ReferenceSpans& b) {
   ReferenceSpans result;
@@ -156,7 +157,8 @@ ReferenceSpans both(const ReferenceSpans& a, const ReferenceSpans& b) {
       // Of coplanar faces always the first solid's: rounding must not choose.
       const ReferenceSpan& first = x.enter >= y.enter - kSame ? x : y;
       const ReferenceSpan& last = x.leave <= y.leave + kSame ? x : y;
-      result.add({first.enter, last.leave, first.enter_face, last.leave_face});
+      result.add({first.enter, last.leave, first.enter_face, last.leave_face,
+                  std::abs(x.enter - y.enter) < kShared, std::abs(x.leave - y.leave) < kShared});
     }
   }
   return result;

@@ -16,6 +16,7 @@ namespace volcontact::test {
 struct ReferenceSpan {
   double enter, leave;
   int enter_face, leave_face;
+  bool enter_shared = false, leave_shared = false;  ///< both solids have a face there
 };
 
 /// Parts of one line, in order.
