@@ -64,8 +64,8 @@ class Progress {
 
 int main(int argc, char** argv) {
   using namespace volcontact::test;
-  const Effort effort{.poses = argc > 1 ? std::atoi(argv[1]) : 24,
-                      .gradient_poses = 4,
+  const Effort effort{.poses = argc > 1 ? std::atoi(argv[1]) : 12,
+                      .gradient_poses = 3,
                       .motion_steps = 21,
                       .octree_poses = 6,
                       .slow_octree_poses = 2};

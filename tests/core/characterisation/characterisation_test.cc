@@ -10,28 +10,33 @@ namespace {
 #if defined(__SANITIZE_ADDRESS__)
 constexpr Effort kEffort{.poses = 1, .gradient_poses = 0, .motion_steps = 0, .octree_poses = 0};
 #else
-constexpr Effort kEffort{.poses = 3, .gradient_poses = 1, .motion_steps = 5, .octree_poses = 1};
+constexpr Effort kEffort{.poses = 3, .gradient_poses = 1, .motion_steps = 5, .octree_poses = 1,
+                          .slow_octree_poses = 0};
 #endif
 
-/// What an engine promises. tests/benchmarks/characterise measures it over more poses.
+/// What an engine promises, relative: docs/theory.md, "Engines". tests/benchmarks/characterise
+/// measures it over more poses.
 struct Promise {
-  double volume;       // relative, of every pose
+  double volume;       // of every pose, beyond the doubt about the reference
+  double usual;        // the median of V
   double moments;      // centroid by radius of gyration, inertia relative
   double area_vector;  // by A's area in the overlap, the median
   double gradient;     // finite differences of V, likewise
   double noise;        // of the increments of V
 };
 
-Promise promise_of(Engine engine) {
+bool has_many_faces(const Example& e) { return std::holds_alternative<ConvexPolytope>(e.shape); }
+
+Promise promise_of(Engine engine, const Example& a, const Example& b) {
   switch (engine) {
     case Engine::kClosedForm:
     case Engine::kClip:
-      // Exact: this is the error of the reference, whose areas are less good than its volumes.
-      return {1e-6, 1e-5, 1e-3, 1e-4, 1e-4};
+      // Exact: these are the errors of the reference.
+      return {1e-8, 1e-8, 1e-6, 1e-4, 5e-4, 1e-5};
     case Engine::kOctree:
-      return {kEffort.octree_tolerance, 0.05, 0.1, 0.3, 0.2};
+      return {kEffort.octree_tolerance, kEffort.octree_tolerance, 0.05, 0.1, 0.3, 0.2};
     default:
-      return {1e-2, 0.05, 0.02, 0.05, 0.05};
+      return {1e-3, has_many_faces(a) || has_many_faces(b) ? 1e-4 : 1e-5, 5e-3, 1e-3, 1e-2, 1e-2};
   }
 }
 
@@ -51,10 +56,11 @@ TEST_P(Accuracy, EveryEngineKeepsItsPromise) {
   const Example &a = find(GetParam().first), &b = find(GetParam().second);
   int compared = 0;
   for (const Characterisation& row : characterise(a, b, kEffort)) {
-    const Promise promise = promise_of(row.engine);
+    const Promise promise = promise_of(row.engine, a, b);
     SCOPED_TRACE(row.a->name + " - " + row.b->name + ", " + to_string(row.engine));
     compared += row.poses;
-    EXPECT_LE(row.volume.worst, promise.volume);
+    EXPECT_LE(row.volume_beyond, promise.volume);
+    EXPECT_LE(row.volume.median, promise.usual + 2.0 * row.reference_error);
     EXPECT_LE(row.centroid.worst, promise.moments);
     EXPECT_LE(row.inertia.worst, promise.moments);
     EXPECT_LE(row.area_vector.median, promise.area_vector);
@@ -73,9 +79,14 @@ TEST_P(Accuracy, EveryEngineKeepsItsPromise) {
 INSTANTIATE_TEST_SUITE_P(
     Pairs, Accuracy,
     ::testing::Values(NamedPair{"half_space", "sphere"}, NamedPair{"half_space", "ellipsoid"},
-                      NamedPair{"sphere", "sphere"}, NamedPair{"half_space", "box"},
-                      NamedPair{"box", "box"}, NamedPair{"ellipsoid", "box"},
-                      NamedPair{"sphere", "cylinder"}),
+                      NamedPair{"half_space", "capsule"}, NamedPair{"half_space", "cylinder"},
+                      NamedPair{"half_space", "frustum"}, NamedPair{"half_space", "torus"},
+                      NamedPair{"half_space", "box"}, NamedPair{"sphere", "sphere"},
+                      NamedPair{"box", "box"}, NamedPair{"box", "convex_polytope"},
+                      NamedPair{"sphere", "cylinder"}, NamedPair{"sphere", "bored_block"},
+                      NamedPair{"ellipsoid", "box"}, NamedPair{"capsule", "cylinder"},
+                      NamedPair{"cylinder", "box"}, NamedPair{"cylinder", "hollow_cylinder"},
+                      NamedPair{"frustum", "ellipsoid"}, NamedPair{"capsule", "convex_polytope"}),
     [](const auto& test) { return std::string(test.param.first) + "_" + test.param.second; });
 
 TEST(Spread, MedianAndWorst) {

@@ -15,10 +15,11 @@ struct Case {
   Reference reference;
 };
 
+constexpr double kDoubt = 1e-5;  // of V: worse references are dropped
+
 // The overlaps of one pair that are worth a comparison.
 std::vector<Case> cases_of(const Example& a, const Example& b, const Effort& effort) {
   constexpr double kLeast = 1e-9;  // of the smaller body
-  constexpr double kDoubt = 1e-5;  // worse references are dropped
   std::vector<Case> cases;
   Random random(20 + 97 * static_cast<std::uint64_t>(&a - examples().data()) +
                 static_cast<std::uint64_t>(&b - examples().data()));
@@ -73,9 +74,9 @@ class Judge {
     row_.volume_beyond = std::max(row_.volume_beyond, (error - doubt) / r.volume);
     if (error <= m.volume_error + doubt) ++row_.bounds_held;
     row_.reference_error = std::max(row_.reference_error, reference.volume_error / r.volume);
-    if (r.area > 0.0 && reference.shared_area <= kShared * (r.area + r.counter_area)) {
-      compare_areas(X_AB, m, r);
-    }
+    const bool areas_known = reference.worst_error <= kDoubt * r.volume;
+    const bool shared = reference.shared_area > kShared * (r.area + r.counter_area);
+    if (r.area > 0.0 && areas_known && !shared) compare_areas(X_AB, m, r);
   }
 
   /// V along a smooth motion, one value a pose, against the same of the reference.
@@ -140,7 +141,8 @@ class Judge {
     area_moment_.push_back((m.area_moment - r.area_moment).norm() / (r.area * arm));
     if (options_.engine == Engine::kOctree) return;
     if (static_cast<int>(gradient_.size()) >= effort_.gradient_poses) return;
-    const double step = 0.02 * r.volume / r.area;  // of the mean depth
+    // Of the mean depth, or of the width of an overlap that is nearly all of a solid.
+    const double step = 0.02 * std::min(r.volume / r.area, std::sqrt(r.area));
     const Gradient g = gradient_of_A([&](const Pose& X) { return evaluate(X).volume; }, X_AB, step);
     gradient_.push_back((g.shift - m.area_vector).norm() / r.area);
     turn_.push_back((g.turn - m.area_moment).norm() / (r.area * arm));
@@ -157,7 +159,8 @@ class Judge {
 };
 
 Reference mirrored(const Reference& r, const Pose& X_AB) {
-  return {reversed(transformed(r.metrics, X_AB.inverse())), r.volume_error, r.shared_area};
+  return {reversed(transformed(r.metrics, X_AB.inverse())), r.volume_error, r.worst_error,
+          r.shared_area};
 }
 
 // Where the octree takes its time.

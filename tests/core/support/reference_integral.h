@@ -25,6 +25,7 @@ struct Lookout {
 struct Reference {
   VolumeMetrics metrics;      ///< in A's frame about A's origin; no depth fields
   double volume_error = 0.0;  ///< of V: between the directions that agree best [m^3]
+  double worst_error = 0.0;   ///< of V: of the worst direction. The areas need all three [m^3]
   double shared_area = 0.0;   ///< of faces of A and B in one place that look the same way: there V
                               ///< has a kink, and A's share of the area is a convention [m^2]
 };
