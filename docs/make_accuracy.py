@@ -47,33 +47,35 @@ anew.
 
 ## How it is measured
 
-Every ordered pair of solids, every engine that serves it. One solid of a kind, a few tenths of a metre
-large ([contact_poses.cc](../tests/core/support/contact_poses.cc)); two composed solids do not meet here. A third
-of the poses is random, a third shallow (depth 0.1 to 10 % of the smaller solid, faces opposed), a third aligned
-(axes along axes, corners and edges on faces, coaxial, coplanar, contained).
+Every ordered pair of solids, every engine that serves it. One solid of a kind, a few tenths of a
+metre large ([contact_poses.cc](../tests/core/support/contact_poses.cc)); two composed solids do not
+meet here. A third of the poses is random, a third shallow (depth 0.1 to 10 % of the smaller solid,
+faces opposed), a third aligned (axes along axes, corners and edges on faces, coaxial, coplanar,
+contained). The octree, being slow, gets the first of them only.
 
-The judge is an integral that shares no code with the engines: exact intervals of lines in three directions,
-nested Gauss quadrature between all changes of face
-([reference_integral.h](../tests/core/support/reference_integral.h)). It knows V to about 1e-9 and areas to
-about 1e-6, and worse where surfaces are tangent. Smaller errors than these are its own; that closed
-forms and clipping are exact to rounding is tested in `tests/core/pair`.
+The judge is an integral that shares no code with the engines: exact intervals of lines in three
+directions, nested Gauss quadrature between all changes of face
+([reference_integral.h](../tests/core/support/reference_integral.h)). It knows V to about 1e-9 and
+areas to about 1e-6, less where surfaces are tangent. Smaller errors than these are its own. That
+closed forms and clipping are exact to rounding is tested in `tests/core/pair` and in
+[acceptance_test.cc](../tests/core/characterisation/acceptance_test.cc).
 
 | word | error of |
 | --- | --- |
 | V | volume, relative |
 | centroid | its distance from the true one, by the radius of gyration of the overlap |
 | inertia | Frobenius norm, relative |
-| area vector | ∫ n dS over A's surface inside B, by that area. Left out where A and B share a face that \
-looks the same way: there V has a kink |
-| ∂V/∂x, ∂V/∂θ | area vector and its moment against finite differences of V, by the area |
+| area vector | ∫ n dS over A's surface inside B, by that area; not where A and B share a face |
+| ∂V/∂x, ∂V/∂θ | area vector and its moment, against finite differences of V, by the area |
 | noise | increments of V along a smooth motion of 20 steps, rms, by their own rms |
-| bound | poses in which the error of V is within `volume_error` |
-| missed | poses with an overlap above 1e-9 of the smaller solid that the engine answered with V = 0 |
-| µs | median time of a call, one thread; [benchmarks](../tests/benchmarks) measure it better |
+| bound | no error: poses in which the error of V is within `volume_error` |
+| missed | poses with an overlap above 1e-9 of the smaller solid and the answer V = 0 |
+| µs | median time of a call, one thread; [performance](performance.md) has better ones |
 
-Two numbers are the median and the worst. **Bold** is beyond the limit in the first line of a
-table, plus twice the doubt about the reference. A dash: not measured.
-The octree was asked for 1e-2; its errors of V have a certified bound, the others have none.
+Two numbers are the median and the worst. **Bold** is beyond the limit in the first line of a table
+by more than twice the doubt about the reference. A dash: not measured. The octree was asked for
+1e-2; its errors of V have a certified bound, those of the other numbers none. Where A and B share a
+face that looks the same way, V has a kink and its gradient is a convention.
 """
 
 
@@ -84,7 +86,9 @@ def render() -> str:
     search = json.loads((RESULTS / "search.json").read_text(encoding="utf-8"))
     engines = [engine for engine in LIMITS if any(row["engine"] == engine for row in rows)]
     parts = [_INTRODUCTION, _summary(rows, engines), _weak(rows)]
-    parts += [_section(engine, [row for row in rows if row["engine"] == engine]) for engine in engines]
+    parts += [
+        _section(engine, [row for row in rows if row["engine"] == engine]) for engine in engines
+    ]
     return "\n".join([*parts, _search(search)])
 
 
@@ -98,7 +102,7 @@ def _number(row: Row, key: str) -> float | None:
 def _short(value: float | None) -> str:
     """One digit: 3e-7. Rounding counts as none."""
     if value is None:
-        return "–"
+        return "-"
     if value < 1e-15:
         return "0"
     mantissa, exponent = f"{value:.0e}".split("e")
@@ -129,7 +133,7 @@ def _cell(row: Row, key: str) -> str:
 
 def _pair_of_cells(row: Row, name: str) -> str:
     if not row[f"{name}_median"]:
-        return "–"
+        return "-"
     return f"{_short(_number(row, f'{name}_median'))} / {_cell(row, f'{name}_worst')}"
 
 
@@ -144,7 +148,16 @@ def _table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 
 
 def _summary(rows: list[Row], engines: list[str]) -> str:
-    header = ["engine", "ordered pairs", "poses", *SPREADS.values(), "noise", "bound", "missed", "µs"]
+    header = [
+        "engine",
+        "ordered pairs",
+        "poses",
+        *SPREADS.values(),
+        "noise",
+        "bound",
+        "missed",
+        "µs",
+    ]
     lines = []
     for engine in engines:
         # Of pairs with no pose that the engine answers there is nothing to say.
@@ -187,23 +200,24 @@ def _weak(rows: list[Row]) -> str:
         never = [row for row in handed if not int(row["poses"])]
         some = sum(int(row["handed_on"]) for row in handed)
         tried = some + sum(int(row["poses"]) for row in handed)
+        all_of = f", and of {len(never)} of them all (with {_solids(never)})" if never else ""
         parts.append(
-            f"* `lines` serves composed solids in part: of {len(handed)} ordered pairs it leaves {some} of "
-            f"{tried} poses to the octree, and of {len(never)} of them all (solids: "
-            f"{_solids(never)}). Such poses cost milliseconds to seconds.\n"
+            f"* `lines` serves composed solids in part: of {len(handed)} ordered pairs it leaves "
+            f"{some} of {tried} poses to the octree{all_of}."
         )
     slow = [row for row in rows if row["engine"] == "octree" and float(row["microseconds"]) > 1e5]
     if slow:
+        worst = max(float(row["microseconds"]) for row in slow) / 1e6
         parts.append(
-            f"* `octree` takes more than 0.1 s in {len(slow)} ordered pairs (solids: {_solids(slow)}), "
-            f"{max(float(row['microseconds']) for row in slow) / 1e6:.1f} s at worst.\n"
+            f"* `octree` takes more than 0.1 s in {len(slow)} ordered pairs (with "
+            f"{_solids(slow)}), {worst:.1f} s at worst."
         )
     lines = [row for row in rows if row["engine"] == "lines"]
     poses = sum(int(row["poses"]) for row in lines)
     held = sum(int(row["bounds_held"]) for row in lines)
     parts.append(
-        f"* `volume_error` of `lines` is an estimate: the error was larger in {poses - held} of {poses} "
-        "poses.\n"
+        f"* `volume_error` of `lines` is an estimate: the error was larger in {poses - held} of "
+        f"{poses} poses."
     )
     beyond = [
         (float(row[key]) / _limit(row["engine"], key), row, name)
@@ -214,7 +228,9 @@ def _weak(rows: list[Row]) -> str:
     beyond.sort(key=lambda found: -found[0])
     if beyond:
         shown = beyond[:15]
-        parts.append(f"* {len(beyond)} worst errors are beyond their limit. The largest by their limits:\n")
+        parts.append(
+            f"* {len(beyond)} worst errors are beyond their limit; the largest, by limits:\n"
+        )
         parts.append(
             _table(
                 ["engine", "A", "B", "error of", "median", "worst"],
@@ -249,25 +265,25 @@ def _solids(rows: list[Row]) -> str:
 
 def _section(engine: str, rows: list[Row]) -> str:
     answered = [row for row in rows if int(row["poses"])]
-    header = ["A – B", "poses", *SPREADS.values(), "noise", "bound", "missed", "µs"]
+    header = ["A - B", "poses", *SPREADS.values(), "noise", "bound", "missed", "µs"]
     limits = [_short(_limit(engine, f"{name}_worst")) for name in SPREADS]
     lines = [["*limit of the worst*", "", *limits, _short(LIMITS[engine]["noise"]), "", "0", ""]]
     by_pair = {(row["a"], row["b"]): row for row in answered}
     for (a, b), row in by_pair.items():
         other = by_pair.get((b, a))
         if a == b or other is None:
-            lines.append(_line(f"{a} – {b}", row))
+            lines.append(_line(f"{a} - {b}", row))
         elif _are_alike(row, other):
             # The first of the two stands for both.
             if list(by_pair).index((a, b)) < list(by_pair).index((b, a)):
-                lines.append(_line(f"{a} – {b}, both orders", _worse(row, other)))
+                lines.append(_line(f"{a} - {b}, both orders", _worse(row, other)))
         else:
-            lines.append(_line(f"{a} – {b}", row))
+            lines.append(_line(f"{a} - {b}", row))
     text = f"## `{engine}`\n\n"
     if any("both" in line[0] for line in lines):
         text += (
-            "\"Both orders\": A – B and B – A differ in no number by more than a factor of two, or by less than "
-            "1e-9; the larger one is shown.\n\n"
+            "Both orders: A - B and B - A differ in no error by more than a factor of two, or by "
+            "less than 1e-9; the larger one is shown.\n\n"
         )
     return text + _table(header, lines)
 
@@ -314,25 +330,41 @@ def _search(search: dict[str, Any]) -> str:
     poses = sum(row["poses"] for row in rows)
     compared = sum(row["compared"] for row in rows)
     failures = search["failures"]
+    middle, high = (f"{100 * weight:g} %" for weight in search["weights"][1:])
     text = f"""\
 ## Search for failures
 
-`./run search` of {search["date"]}, engines of commit {search["version"]}: {search["seeds"]} seeds, {poses} poses, \
-{search["seconds"] / 60:.0f} minutes of one processor, {search["crashes"]} crashes, {len(failures)} failures.
+`./run search` of {search["date"]}, engines of commit {search["version"]}: {search["seeds"]} seeds,
+{poses} poses, {search["seconds"] / 60:.0f} minutes of one processor, {search["crashes"]} crashes,
+{len(failures)} failures.
 
-One pose in eleven is degenerate: coplanar, coaxial, a corner on a face, contained, touching, identical, flush to
-within 1e-15 to 1e-9; some with a solid of no volume, some with a number that is none. The others are random, or
-shallow by 1e-6 to 0.1 of the smaller solid. Every pose is answered by `auto` in both orders. Always checked: nothing
-crashes, all numbers are finite; V is at least that of a ball known to lie in both solids and at most the smaller
-solid's; both orders agree in V and, in random poses, in the area vector; sites add up; the centroid lies in both
-solids; the inertia is one that a body can have; the area vector is no longer than the areas. Where an
-engine says "apart", the reference integrates: an overlap above 1e-9 of the smaller solid is a
-failure. Of the other overlaps it integrates {compared} in all; {search["undecided"]} it could not decide. The errors
-of V are those of these. Pairs with a composed solid take part as often as their time allows: a pair with bores 4 %, one
-with cones or a torus 0.1 % as often as a pair of simple convex solids.
+One pose in eleven is degenerate: coplanar, coaxial, a corner on a face, contained, touching,
+identical, flush to within 1e-15 to 1e-9; some with a solid of no volume, some with a number that is
+none. The others are random, or shallow by 1e-6 to 0.1 of the smaller solid. Pairs of simple convex
+solids take turns; a pair with a bored solid is tried {middle} as often as they, one with cones in a
+composed solid or with a torus {high}.
+
+Every pose is answered by `auto` in both orders. Always checked: nothing crashes, all numbers are
+finite; V is at least that of a ball known to lie in both solids, and at most that of the smaller
+solid; both orders agree in V and, in random poses, in the area vector; sites add up; the centroid
+lies in the bounds of both solids; the inertia is one that a body can have; the area vector is no
+longer than the areas. Where the answer is "apart" and no plane between the solids proves it, the
+reference integrates: an overlap above 1e-9 of the smaller solid is a failure. Of the other overlaps
+it integrates a share, {compared} in all, less finely where it agrees to 1e-5: the errors of V below
+are of these. {search["undecided"]} it could not decide.
 
 """
-    header = ["engine", "poses", "number", "overlap", "compared", "median", "99 %", "99.9 %", "worst"]
+    header = [
+        "engine",
+        "poses",
+        "number",
+        "overlap",
+        "compared",
+        "median",
+        "99 %",
+        "99.9 %",
+        "worst",
+    ]
     parts = ("median", "p99", "p999", "worst")
     text += _table(
         header,
@@ -365,7 +397,7 @@ with cones or a torus 0.1 % as often as a pair of simple convex solids.
 def _pairs(failures: list[dict[str, Any]]) -> str:
     counts: dict[str, int] = {}
     for failure in failures:
-        name = f"{failure['a']} – {failure['b']}"
+        name = f"{failure['a']} - {failure['b']}"
         counts[name] = counts.get(name, 0) + 1
     names = sorted(counts, key=lambda name: -counts[name])
     return ", ".join(f"{name} ({counts[name]})" for name in names[:8]) + (

@@ -17,8 +17,8 @@ int main(int argc, char** argv) {
   // Pairs of simple convex solids do most poses, the others as many as the time allows.
   const FuzzPlan plan{.random_poses = argc > 1 ? std::atoi(argv[1]) : 10000,
                       .degenerate_poses = argc > 2 ? std::atoi(argv[2]) : 1000,
-                      .weights = {1.0, 0.015, 0.0003},
-                      .reference = {0.004, 0.05, 0.3},
+                      .weights = {1.0, 0.03, 0.0006},
+                      .reference = {0.003, 0.03, 0.2},
                       .seed = argc > 3 ? static_cast<std::uint64_t>(std::atoll(argv[3])) : 1,
                       .only = argc > 4 ? argv[4] : ""};
   const FuzzReport report = fuzz(plan);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What is promised of single pairs, by numbers that do not come from the engines. Others stand in
-// tests/core/pair: half-space with a round solid and two balls in closed_form/, a ball on the rim of
-// a bore in bored_lines_test.cc.
+// tests/core/pair: half-space with a round solid and two balls in closed_form/, a ball on the rim
+// of a bore in bored_lines_test.cc.
 #include <gtest/gtest.h>
 
 #include "core/support/random.h"
@@ -99,9 +99,9 @@ TEST(Acceptance, CornersOfA32Hedron) {
   ASSERT_EQ(points.size(), 60u);
   ASSERT_EQ(ball.faces().size(), 32u);
   // A hexagon of A, with z up; its pole p is the point of the face nearest the center.
-  const auto& face = *std::max_element(
-      ball.faces().begin(), ball.faces().end(),
-      [](const auto& a, const auto& b) { return a.offset > b.offset; });
+  const auto& face =
+      *std::max_element(ball.faces().begin(), ball.faces().end(),
+                        [](const auto& a, const auto& b) { return a.offset > b.offset; });
   const Pose X_AF{basis_with_z(face.normal), face.offset * face.normal};
   Random random(2);
   for (const Vec3& point : points) {
@@ -123,7 +123,8 @@ TEST(Acceptance, CornersOfA32Hedron) {
   }
 }
 
-// The integral with lines along the axes of a frame in the overlap, whose z axis is about the normal.
+// The integral with lines along the axes of a frame in the overlap, whose z axis is about the
+// normal.
 Reference reference(const Shape& a, const Shape& b, const Pose& X_AB, const Pose& X_AF,
                     double range) {
   return reference_integral(reference_solid(a), reference_solid(b), X_AB, {X_AF, range});
@@ -141,8 +142,8 @@ TEST(Acceptance, AnEllipsoidOverTheEdgeOfABox) {
     const Vec3 axes(0.3, 0.2, 0.15), e = r.transpose() * -out;
     const Vec3 farthest = axes.cwiseAbs2().cwiseProduct(e) / axes.cwiseProduct(e).norm();
     const Pose X{r, edge - depth * out - r * farthest};
-    const Reference expected = reference(
-        box, ellipsoid, X, {basis_with_z(out) * kAskew, edge - 0.5 * depth * out}, 0.5);
+    const Reference expected =
+        reference(box, ellipsoid, X, {basis_with_z(out) * kAskew, edge - 0.5 * depth * out}, 0.5);
     ASSERT_LT(expected.volume_error, 1e-7 * expected.metrics.volume);
     expect_close(evaluated(box, ellipsoid, X).total, expected.metrics, 1e-5, 1e-4, out);
   }
@@ -163,8 +164,7 @@ TEST(Acceptance, TheCapEdgeOfATiltedCylinderInABoxFace) {
       const Reference expected =
           reference(box, cylinder, X, {kAskew, tip + Vec3(0.0, 0.0, 0.5 * depth)}, 0.5);
       ASSERT_LT(expected.volume_error, 1e-6 * expected.metrics.volume);
-      expect_close(evaluated(box, cylinder, X).total, expected.metrics, 1e-4, 1e-3,
-                   Vec3::UnitZ());
+      expect_close(evaluated(box, cylinder, X).total, expected.metrics, 1e-4, 1e-3, Vec3::UnitZ());
     }
   }
 }
@@ -174,9 +174,8 @@ struct PegInBore {
   explicit PegInBore(double clearance)
       : peg(Cylinder({.radius = 0.1 - clearance, .half_length = 0.4})),
         X(Pose{turn(Vec3(1.0, 0.2, 0.0), 1.5 * clearance / 0.2), Vec3::Zero()}) {}
-  Shape block =
-      Csg(Csg::Operation::kDifference, Csg(Box({.half_sizes = Vec3(0.3, 0.3, 0.2)})),
-          Csg(Cylinder({.radius = 0.1, .half_length = 0.5})));
+  Shape block = Csg(Csg::Operation::kDifference, Csg(Box({.half_sizes = Vec3(0.3, 0.3, 0.2)})),
+                    Csg(Cylinder({.radius = 0.1, .half_length = 0.5})));
   Shape peg;
   Pose X;
 };

@@ -205,13 +205,13 @@ std::vector<Characterisation> characterise(const Example& a, const Example& b,
   std::vector<Characterisation> rows;
   const auto judge = [&](const Example& first, const Example& second, Engine engine, bool mirror) {
     const bool octree = engine == Engine::kOctree;
-    const auto most = static_cast<std::size_t>(slow ? effort.slow_octree_poses
-                                                    : effort.octree_poses);
+    const auto most =
+        static_cast<std::size_t>(slow ? effort.slow_octree_poses : effort.octree_poses);
     Judge engine_judge(first, second, engine, effort);
     for (std::size_t i = 0; i < (octree ? std::min(cases.size(), most) : cases.size()); ++i) {
       const Case& c = cases[i];
       engine_judge.compare(mirror ? c.X_AB.inverse() : c.X_AB,
-                          mirror ? mirrored(c.reference, c.X_AB) : c.reference);
+                           mirror ? mirrored(c.reference, c.X_AB) : c.reference);
     }
     std::vector<Pose> poses;
     for (const Pose& X : motion) poses.push_back(mirror ? X.inverse() : X);

@@ -31,6 +31,12 @@ Csg bored_block() {
   return without(placed(Box({.half_sizes = Vec3(0.4, 0.4, 0.25)})),
                  placed(Cylinder({.radius = 0.2, .half_length = 0.5})));
 }
+// A narrow bore below a wide one.
+Csg counterbored() {
+  const Csg block = placed(Box({.half_sizes = Vec3(0.4, 0.4, 0.25)}));
+  return without(without(block, placed(Cylinder({.radius = 0.15, .half_length = 0.5}))),
+                 placed(Cylinder({.radius = 0.25, .half_length = 0.2}), 0.3));
+}
 // The mouth of the bore widens by 0.08 m over the last 0.1 m.
 Csg chamfered_hole() {
   const Frustum mouth({.bottom_radius = 0.2, .top_radius = 0.28, .half_length = 0.05});
@@ -102,6 +108,7 @@ const std::vector<Example>& examples() {
       example(Torus({.major_radius = 0.35, .minor_radius = 0.12})),
       example(gem()),
       example(bored_block(), "bored_block"),
+      example(counterbored(), "counterbored"),
       example(chamfered_hole(), "chamfered_hole"),
       example(hollow_cylinder(), "hollow_cylinder"),
       example(cup(), "cup"),

@@ -133,7 +133,8 @@ class Search {
     constexpr double kBad[] = {std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity};
     X_AB_ = aligned_overlap(*a_, *b_, random_).X_AB;
     const int where = static_cast<int>(random_.uniform(0.0, 12.0));
-    double& number = where < 9 ? X_AB_.rotation(where / 3, where % 3) : X_AB_.translation[where - 9];
+    double& number =
+        where < 9 ? X_AB_.rotation(where / 3, where % 3) : X_AB_.translation[where - 9];
     number = kBad[static_cast<int>(random_.uniform(0.0, 3.0))];
     interference(a_->shape, b_->shape, X_AB_, options(), workspace_, result_);
     ++count().poses;
@@ -169,8 +170,8 @@ class Search {
     ++count().overlapping;
   }
 
-  // Whether a plane across the direction, or across an axis of either solid, proves that there is no
-  // overlap worth the name.
+  // Whether a plane across the direction, or across an axis of either solid, proves that there is
+  // no overlap worth the name.
   bool is_apart(const Vec3& direction) const {
     const auto height = [](const Example& e, const Vec3& d) {
       return std::visit([&d](const auto& solid) { return solid.support_height(d); }, e.shape);

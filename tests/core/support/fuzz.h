@@ -21,9 +21,9 @@ Cost cost_of(const Example& a, const Example& b);
 /// answers are checked by themselves and against each other (overlap_checks.h). Every pose whose
 /// answer is "apart" and a share of the others are integrated by the reference.
 struct FuzzPlan {
-  int random_poses = 0;       ///< any overlap, and shallow ones of depth 1e-6 to 0.1 of the size
-  int degenerate_poses = 0;   ///< coplanar, coaxial, vertex on face, contained, touching,
-                              ///< identical, flush, solids of no volume, poses that are no numbers
+  int random_poses = 0;      ///< any overlap, and shallow ones of depth 1e-6 to 0.1 of the size
+  int degenerate_poses = 0;  ///< coplanar, coaxial, vertex on face, contained, touching,
+                             ///< identical, flush, solids of no volume, poses that are no numbers
   double weights[3] = {1.0, 1.0, 1.0};    ///< of a pair of each Cost, against each other
   double reference[3] = {1.0, 1.0, 1.0};  ///< share of the overlaps that the reference integrates
   double octree_tolerance = 1e-2;         ///< asked of pairs of high cost

@@ -7,9 +7,9 @@
 namespace volcontact::test {
 namespace {
 
-constexpr double kLeast = 1e-9;   // of the smaller body: a volume that is as good as none
-constexpr double kLoose = 0.05;   // by which engines that are not exact may be off in one pose
-constexpr double kTight = 1e-9;   // and those that are
+constexpr double kLeast = 1e-9;  // of the smaller body: a volume that is as good as none
+constexpr double kLoose = 0.05;  // by which engines that are not exact may be off in one pose
+constexpr double kTight = 1e-9;  // and those that are
 
 double signed_distance(const Example& e, const Vec3& p) {
   return std::visit([&p](const auto& solid) { return solid.signed_distance(p); }, e.shape);

@@ -417,8 +417,8 @@ Reference integrate(const ReferenceSolid& a_F, const ReferenceSolid& b_F, const 
   const double error = directions == 1 ? 0.0
                                        : std::min(chosen.volume - moments[0].volume,
                                                   moments[2].volume - chosen.volume);
-  const double worst = std::max(chosen.volume - moments.front().volume,
-                                moments.back().volume - chosen.volume);
+  const double worst =
+      std::max(chosen.volume - moments.front().volume, moments.back().volume - chosen.volume);
   sum.area_moment = Vec3(flux(1, 2) - flux(2, 1), flux(2, 0) - flux(0, 2), flux(0, 1) - flux(1, 0));
   return {transformed(sum.metrics(), lookout.X_AF), error, worst, shared_area};
 }
