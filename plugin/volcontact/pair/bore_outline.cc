@@ -13,24 +13,18 @@ constexpr int kEndNarrowings = 2;  // of a place where it crosses the wall
 
 }  // namespace
 
-BoreOutline::BoreOutline(const RoundFace& bore, const LinesWindow& window, LinesScratch& lines,
-                         std::vector<Place>& places)
-    : bore_(bore),
-      window_(window),
-      s_(lines),
-      places_(places),
-      axis_(bore.map.row(0).cross(bore.map.row(1)).normalized()),
-      radius_(1.0 / bore.map.row(0).norm()) {}
-
-Vec3 BoreOutline::from_axis(const Vec3& x) const {
-  const Vec3 d = x - bore_.center;
-  return d - axis_ * axis_.dot(d);
-}
-
-// A fan along the bore's axis through the middle of the overlap, in which its outline is about
-// round.
+// A fan along the bore's axis, or from the apex, through the middle of the overlap, in which its
+// outline is about round.
 void BoreOutline::set_frame() {
-  frame_ = round_frame(window_.center, window_.spread, axis_);
+  if (bore_.is_cone()) {
+    const Vec3 way = window_.center - bore_.center;
+    const double length = way.norm();
+    frame_ = round_frame(bore_.center, window_.spread, way / length);
+    frame_.t *= length;
+    frame_.central = true;
+  } else {
+    frame_ = round_frame(window_.center, window_.spread, bore_.axis);
+  }
   s_.faces.active.has_bore = false;
   s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
 }
@@ -52,8 +46,8 @@ void BoreOutline::places_at(const double* angles, const double* u, const double*
   for (int i = 0; i < kLanes; ++i) {
     Place& p = places[i];
     p.angle = angles[i];
-    p.point = frame_.center + rho[i] * (u[i] * frame_.u + v[i] * frame_.v) + height[i] * frame_.t;
-    p.rho = from_axis(p.point).norm() / radius_;
+    p.point = frame_.place(rho[i] * u[i], rho[i] * v[i], height[i]);
+    p.rho = bore_.radii(p.point);
   }
 }
 

@@ -13,24 +13,20 @@ inline double wrapped(double angle) {
   return angle - 2.0 * kPi * std::floor(angle / (2.0 * kPi) + 0.5);
 }
 
-/// The outline of an overlap seen along the axis of a bore, a convex curve, and where it lies
-/// outside of the wall.
+/// The outline of an overlap seen along the axis of a bore, or from the apex of a cone: a convex
+/// curve, and where it lies outside of the wall.
 class BoreOutline {
  public:
   struct Place {
     double angle;  ///< about the middle of the overlap [rad]
-    double rho;    ///< from the axis of the bore, in its radii
+    double rho;    ///< from the axis of the bore, in its radii there
     Vec3 point;
   };
 
   /// `places` is memory to be used.
-  BoreOutline(const RoundFace& bore, const LinesWindow& window, LinesScratch& lines,
-              std::vector<Place>& places);
-
-  const Vec3& axis() const { return axis_; }
-  double radius() const { return radius_; }
-  /// The vector from the axis to x.
-  Vec3 from_axis(const Vec3& x) const;
+  BoreOutline(const Bore& bore, const LinesWindow& window, LinesScratch& lines,
+              std::vector<Place>& places)
+      : bore_(bore), window_(window), s_(lines), places_(places) {}
 
   /// Places all round, in the order of their angle. One outside lies on every part outside, however
   /// small.
@@ -46,12 +42,10 @@ class BoreOutline {
   void places_at(const double* angles, const double* u, const double* v, Place* places);
   Place summit(double from, double to);
 
-  const RoundFace& bore_;
+  const Bore& bore_;
   const LinesWindow& window_;
   LinesScratch& s_;
   std::vector<Place>& places_;
-  Vec3 axis_;
-  double radius_;
   FanFrame frame_;
 };
 

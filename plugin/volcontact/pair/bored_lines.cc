@@ -12,16 +12,19 @@ namespace {
 
 constexpr double kWidestAngle = 1.6;  // of an undivided arc [rad]
 constexpr double kSameAngle = 1e-9;
+constexpr double kEndError =
+    5.0;  // error by its estimate where an arc ends in nothing, as measured
 
 class BoreRun {
  public:
-  BoreRun(const ConvexView& a, const ConvexView& b, const Pose& X_AB, const RoundFace& bore,
+  BoreRun(const ConvexView& a, const ConvexView& b, const Pose& X_AB, const Bore& bore, Owner owner,
           const InterferenceOptions& options, LinesScratch& lines, BoreScratch& scratch,
           LinesRegions& regions)
       : a_(a),
         b_(b),
         X_AB_(X_AB),
         bore_(bore),
+        owner_(owner),
         options_(options),
         s_(lines),
         breaks_(scratch.breaks),
@@ -44,21 +47,23 @@ class BoreRun {
   using Place = BoreOutline::Place;
 
   double angle_of(const Vec3& x) const {
-    const Vec3 d = outline_.from_axis(x);
+    const Vec3 d = bore_.from_axis(x);
     return std::atan2(d.dot(side_v_), d.dot(side_u_));
   }
 
   // The frame about the axis of the bore for a lobe about the place x: angles count from there.
   void set_bore_frame(const Vec3& x) {
-    const Vec3 d = outline_.from_axis(x);
+    const Vec3 d = bore_.from_axis(x);
     side_u_ = d.normalized();
-    side_v_ = outline_.axis().cross(side_u_);
-    frame_.center = x - d;
-    frame_.t = outline_.axis();
-    frame_.u = outline_.radius() * side_u_;
-    frame_.v = outline_.radius() * side_v_;
+    side_v_ = bore_.axis.cross(side_u_);
+    frame_.central = bore_.is_cone();
+    frame_.t = frame_.central ? Vec3(bore_.axis * bore_.height(x)) : bore_.axis;
+    frame_.center = frame_.central ? bore_.center : Vec3(x - d);
+    frame_.u = bore_.radius_at(x) * side_u_;
+    frame_.v = bore_.radius_at(x) * side_v_;
     s_.faces.active.has_bore = true;
     s_.faces.active.bore = bore_;
+    s_.faces.active.wall = face_of(bore_, owner_);
     s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
   }
 
@@ -80,10 +85,13 @@ class BoreRun {
   // frame of the bore, once.
   bool goes_round_axis() const {
     const std::vector<Place>& places = outline_.places();
-    Vec3 from = outline_.from_axis(places.back().point);
+    const auto seen = [&](const Place& place) -> Vec3 {
+      return bore_.from_axis(place.point) / bore_.radius_at(place.point);
+    };
+    Vec3 from = seen(places.back());
     int crossings = 0;
     for (const Place& place : places) {
-      const Vec3 to = outline_.from_axis(place.point);
+      const Vec3 to = seen(place);
       const double v0 = from.dot(side_v_), v1 = to.dot(side_v_);
       if ((v0 > 0.0) != (v1 > 0.0)) {
         const double u0 = from.dot(side_u_), u1 = to.dot(side_u_);
@@ -94,10 +102,11 @@ class BoreRun {
     return crossings % 2 == 1;
   }
 
-  // Whether a plane along the axis, across the way to this place, keeps a body off the bore.
+  // Whether a plane that touches the wall along a line, across the way to this place, keeps a body
+  // off the bore.
   bool keeps_off(const Place& nearest) const {
-    const Vec3 out = outline_.from_axis(nearest.point).normalized();
-    const double wall = out.dot(bore_.center) + outline_.radius();
+    const Vec3 out = bore_.wall_normal(bore_.from_axis(nearest.point).normalized());
+    const double wall = out.dot(bore_.center) + bore_.radius;
     return (a_.bounded() && -a_.support_height(Pose{}, -out) >= wall) ||
            (b_.bounded() && -b_.support_height(X_AB_, -out) >= wall);
   }
@@ -155,7 +164,7 @@ class BoreRun {
   }
 
   void set_breaks(double low, double high, bool open) {
-    const double tolerance = 1e-9 * outline_.radius();
+    const double tolerance = 1e-9 * frame_.u.norm();
     find_breaks(s_.faces.active, frame_, tolerance, s_.breaks);
     breaks_.clear();
     for (const Eigen::Vector2d& d : s_.breaks.directions) {
@@ -237,7 +246,8 @@ class BoreRun {
     s_.fan.integrate(s_.path, u, v, weight, section);
     double volume = 0.0;
     for (int i = 0; i < kLanes; ++i) volume += section[i] *= weight[i];
-    const double error = legendre_error(section);
+    // Near an end the section is no analytic function of x: coefficients fall more slowly.
+    const double error = (arc.begins || arc.ends ? kEndError : 1.0) * legendre_error(section);
     volume_scale_ = std::max(volume_scale_, volume);
     if (error > outer_rule::kTarget * options_.tolerance * volume_scale_ &&
         depth < outer_rule::kMaxDepth) {
@@ -276,10 +286,12 @@ class BoreRun {
     if (!m.touching()) return;
     // Columns across the wall where this is what pushes, else along the axis.
     const double share = share_of_bore(s_.fan, s_.faces.active, frame_);
+    const double across = bore_.wall_normal(side_u_).dot(frame_.u);
+    const double length = frame_.t.norm();
+    const double height = frame_.central ? 1.0 / sums.low - 1.0 / sums.high : sums.high - sums.low;
     m.depth_moment =
-        share * sums.bore.depth_moment * outline_.radius() + (1.0 - share) * sums.depth_moment;
-    m.depth = share * (sums.bore.reach - 1.0) * outline_.radius() +
-              (1.0 - share) * (sums.high - sums.low);
+        (share * across * sums.bore.depth_moment + (1.0 - share) * length * sums.depth_moment);
+    m.depth = share * across * sums.bore.depth + (1.0 - share) * length * height;
     m.volume_error = error_ + outer_rule::kInnerError * m.volume;
     if (error_ > options_.tolerance * m.volume) m.status = Status::kApproximate;
     LinesRegion& region = regions_.add();
@@ -290,7 +302,8 @@ class BoreRun {
   const ConvexView& a_;
   const ConvexView& b_;
   const Pose& X_AB_;
-  const RoundFace& bore_;
+  const Bore& bore_;
+  Owner owner_;
   const InterferenceOptions& options_;
   LinesScratch& s_;
   std::vector<double>& breaks_;
@@ -304,10 +317,10 @@ class BoreRun {
 
 }  // namespace
 
-bool bored_lines(const ConvexView& a, const ConvexView& b, const Pose& X_AB, const RoundFace& bore,
-                 const InterferenceOptions& options, LinesScratch& lines, BoreScratch& scratch,
-                 LinesRegions& regions) noexcept {
-  return BoreRun(a, b, X_AB, bore, options, lines, scratch, regions).run();
+bool bored_lines(const ConvexView& a, const ConvexView& b, const Pose& X_AB, const Bore& bore,
+                 Owner owner, const InterferenceOptions& options, LinesScratch& lines,
+                 BoreScratch& scratch, LinesRegions& regions) noexcept {
+  return BoreRun(a, b, X_AB, bore, owner, options, lines, scratch, regions).run();
 }
 
 }  // namespace volcontact

@@ -16,8 +16,8 @@ struct BoreScratch {
 /// Regions of the overlap of two convex bodies outside of a bore, a tube (`bore`, in A's frame) cut
 /// out of its owner. Adds them to `regions`; false when it cannot tell, as the overlap reaches past
 /// the bore sideways. docs/theory.md, "Bores".
-bool bored_lines(const ConvexView& a, const ConvexView& b, const Pose& X_AB, const RoundFace& bore,
-                 const InterferenceOptions& options, LinesScratch& lines, BoreScratch& scratch,
-                 LinesRegions& regions) noexcept;
+bool bored_lines(const ConvexView& a, const ConvexView& b, const Pose& X_AB, const Bore& bore,
+                 Owner owner, const InterferenceOptions& options, LinesScratch& lines,
+                 BoreScratch& scratch, LinesRegions& regions) noexcept;
 
 }  // namespace volcontact

@@ -7,30 +7,6 @@ namespace volcontact {
 namespace {
 
 constexpr double kSamePlane = 1e-9;  // of normals, and of offsets per size of a patch
-constexpr double kRoundTube = 1e-9;  // how far a tube may be from round
-
-// A quadric as the tube that it is: false if it is something else.
-bool as_tube(const Quadric& q, RoundFace& tube) {
-  if (q.bend != Bend::kConvex) return false;
-  const double h = 0.5 * q.hessian.trace();
-  if (!(h > 0.0)) return false;
-  const Mat3 along = Mat3::Identity() - q.hessian / h;  // a a^T
-  int largest;
-  const double square = along.diagonal().maxCoeff(&largest);
-  if (!(square > 0.3)) return false;
-  const Vec3 a = along.col(largest).normalized();
-  if (!((along - a * a.transpose()).norm() < kRoundTube)) return false;
-  const Vec3 center = -(q.linear - a * a.dot(q.linear)) / h;
-  const double square_radius = -2.0 * (q.constant + 0.5 * q.linear.dot(center)) / h;
-  if (!(square_radius > 0.0)) return false;
-  const Mat3 basis = basis_with_z(a);
-  tube = RoundFace{};
-  tube.map.setZero();
-  tube.map.row(0) = basis.col(0).transpose() / std::sqrt(square_radius);
-  tube.map.row(1) = basis.col(1).transpose() / std::sqrt(square_radius);
-  tube.center = center;
-  return true;
-}
 
 class ComposedRun {
  public:
@@ -62,8 +38,8 @@ class ComposedRun {
     const std::size_t before = s_.regions.size();
     if (s_.bores.empty()) {
       add_lines_region(a.body, b.body, X, options_, lines_, s_.regions);
-    } else if (!bored_lines(a.body, b.body, X, s_.bores[0], options_, lines_, s_.bore,
-                            s_.regions)) {
+    } else if (!bored_lines(a.body, b.body, X, s_.bores[0].bore, s_.bores[0].owner, options_,
+                            lines_, s_.bore, s_.regions)) {
       return false;
     }
     for (std::size_t i = before; i < s_.regions.size(); ++i) {
@@ -99,35 +75,31 @@ class ComposedRun {
            std::abs(patch.offset - offset) < kSamePlane * size;
   }
 
-  // The bores that both bodies reach, in body A's frame; false for more than one, or another face.
+  // The bores that both bodies reach, in body A's frame; false for more than one.
   bool find_bores(const LinesPiece& a, const LinesPiece& b, const Pose& X) {
     s_.bores.clear();
     const auto add = [&](const LinesPiece& piece, Owner owner, const Pose& X_SolidBodyA) {
-      if (!piece.carved) return true;
-      for (const Quadric& face : *piece.carved) {
-        RoundFace tube;
-        if (!as_tube(transformed(face, X_SolidBodyA), tube)) return false;
-        tube.owner = owner;
-        const ConvexView& other_body = owner == Owner::kA ? b.body : a.body;
-        if (reaches(other_body, owner == Owner::kA ? X : Pose{}, tube)) s_.bores.push_back(tube);
+      if (!piece.bores) return;
+      for (const Bore& in_solid : *piece.bores) {
+        const Bore bore = transformed(in_solid, X_SolidBodyA);
+        const bool reached =
+            owner == Owner::kA ? reaches(b.body, X, bore) : reaches(a.body, Pose{}, bore);
+        if (reached) s_.bores.push_back({bore, owner});
       }
-      return true;
     };
-    return add(a, Owner::kA, a.X_SB) && add(b, Owner::kB, X_AB_.inverse() * a.X_SB) &&
-           s_.bores.size() <= 1;
+    add(a, Owner::kA, a.X_SB);
+    add(b, Owner::kB, X_AB_.inverse() * a.X_SB);
+    return s_.bores.size() <= 1;
   }
 
-  // False when a plane along the tube's axis keeps the two apart.
-  static bool reaches(const ConvexView& body, const Pose& X, const RoundFace& tube) {
+  // False when a plane that touches the wall along a line keeps the two apart.
+  static bool reaches(const ConvexView& body, const Pose& X, const Bore& bore) {
     if (!body.bounded()) return true;
-    const Vec3 axis = tube.map.row(0).cross(tube.map.row(1)).normalized();
-    Vec3 out = body.middle(X) - tube.center;
-    out -= axis * axis.dot(out);
+    const Vec3 out = bore.from_axis(body.middle(X));
     const double length = out.norm();
     if (!(length > 0.0)) return true;
-    out /= length;
-    const double nearest = -body.support_height(X, -out) - out.dot(tube.center);
-    return nearest < 1.0 / tube.map.row(0).norm();
+    const Vec3 normal = bore.wall_normal(out / length);
+    return -body.support_height(X, -normal) - normal.dot(bore.center) < bore.radius;
   }
 
   // Regions on the two sides of a seam have the same patch there: they are one site, and the patch
@@ -211,11 +183,18 @@ void add_lines_pieces(const Csg& solid, std::vector<LinesPiece>& pieces) {
     std::visit(
         [&](const auto& body) {
           if constexpr (HasFaces<std::decay_t<decltype(body)>>) {
-            pieces.push_back({ConvexView(body), piece.X_SB, &piece.carved, &piece.seams});
+            pieces.push_back({ConvexView(body), piece.X_SB, &piece.bores, &piece.seams});
           }
         },
         piece.body);
   }
+}
+
+bool has_lines_pieces(const Csg& solid) {
+  const std::vector<CarvedPiece>& pieces = solid.carved_pieces();
+  return !pieces.empty() && std::all_of(pieces.begin(), pieces.end(), [](const CarvedPiece& piece) {
+    return piece.bores.size() == piece.carved.size();
+  });
 }
 
 bool composed_lines(const Pose& X_AB, const InterferenceOptions& options, LinesScratch& lines,

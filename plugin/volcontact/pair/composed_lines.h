@@ -9,9 +9,9 @@ namespace volcontact {
 /// One convex body of a solid and what is cut out of it. Refers to the solid.
 struct LinesPiece {
   ConvexView body;
-  Pose X_SB;                                     ///< of the body in the solid's frame
-  const std::vector<Quadric>* carved = nullptr;  ///< in the solid's frame; null for none
-  const std::vector<Seam>* seams = nullptr;      ///< in the solid's frame; null for none
+  Pose X_SB;                                 ///< of the body in the solid's frame
+  const std::vector<Bore>* bores = nullptr;  ///< in the solid's frame; null for none
+  const std::vector<Seam>* seams = nullptr;  ///< in the solid's frame; null for none
 };
 
 /// A plain convex solid as its own only piece.
@@ -26,12 +26,16 @@ template <HasFaces S>
 bool has_lines_pieces(const S&) {
   return true;
 }
-inline bool has_lines_pieces(const Csg& solid) { return solid.is_carved(); }
+bool has_lines_pieces(const Csg& solid);
 
 /// Memory of the engine for composed solids.
 struct ComposedScratch {
   std::vector<LinesPiece> pieces[2];  ///< by owner
-  std::vector<RoundFace> bores;
+  struct Reached {
+    Bore bore;
+    Owner owner;
+  };
+  std::vector<Reached> bores;
   LinesRegions regions;
   std::vector<int> site_of;
   BoreScratch bore;
@@ -39,8 +43,8 @@ struct ComposedScratch {
 
 /// Interference of two solids from the overlaps of their pieces (`scratch.pieces`, which the caller
 /// has filled): metrics in A's frame about A's origin. Regions that share a seam are one contact
-/// site. False when a pair of pieces is beyond this engine: more than one bore reached, a carved
-/// face that is no tube, or an overlap that reaches past a bore sideways. docs/theory.md, "Bores".
+/// site. False when a pair of pieces is beyond this engine: more than one bore reached, or an
+/// overlap that reaches past a bore sideways. docs/theory.md, "Bores".
 bool composed_lines(const Pose& X_AB, const InterferenceOptions& options, LinesScratch& lines,
                     ComposedScratch& scratch, Interference& out) noexcept;
 

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "volcontact/shape/bore.h"
 #include "volcontact/shape/simple_shapes.h"
 
 namespace volcontact {
@@ -43,6 +44,16 @@ struct RoundFace {
   Vec3 half_gradient(const Vec3& x) const { return map.transpose() * weighted(map * (x - center)); }
 };
 
+/// The wall of a bore as if it were a face of a solid inside of it.
+inline RoundFace face_of(const Bore& bore, Owner owner) {
+  const Mat3 basis = basis_with_z(bore.axis);
+  const double scale = bore.is_cone() ? 1.0 : 1.0 / bore.radius;
+  RoundFace face{Vec3(scale, scale, bore.slope).asDiagonal() * basis.transpose(), bore.center,
+                 owner};
+  face.cone = bore.is_cone();
+  return face;
+}
+
 /// Where the tube of a capsule ends and its balls begin, and the rim circles of tubes and cones: a
 /// disc normal to `axis` (unit length).
 struct Segment {
@@ -69,7 +80,8 @@ struct FaceSet {
   std::vector<Rim> rims;
   Segment capsule[2];  ///< by owner
   bool has_bore = false;
-  RoundFace bore;  ///< a tube whose inside is cut out of its owner
+  Bore bore;       ///< cut out of the owner of its wall
+  RoundFace wall;  ///< face_of() it
 
   void clear() {
     planes.clear();

@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <utility>
 
 #include "volcontact/pair/gauss.h"
 
@@ -15,6 +16,7 @@ constexpr double kOnFace = 1e-9;  // a crossing this close to the envelope count
 constexpr double kOnSilhouette = 1e-6;  // a root this small is zero, per the largest one
 constexpr double kBeforeWall = 1e-10;   // of rho: there the tube along the columns is wide open
 constexpr double kWallTilt = 1e-7;      // a tube tilted less against the columns is a wall [rad]
+constexpr double kSameApex = 1e-10;     // a cone whose apex is this near to the center is a wall
 constexpr int kNodes = 5;               // Gauss nodes on each piece of a half-plane
 constexpr int kKnotParts = 3;           // of a half-plane, each with one knot of two round faces
 constexpr int kRootSteps = 8;           // at most; each of them squares the error
@@ -48,8 +50,8 @@ void Fan::accept_batch() {
   for (int i = 0; i < 10; ++i) total_.moments[i] += batch_.moments[i];
   total_.depth_moment += batch_.depth_moment;
   total_.bore.depth_moment += batch_.bore.depth_moment;
-  total_.bore.reach = std::max(total_.bore.reach, batch_.bore.reach);
-  total_.bore.area += batch_.bore.area;
+  total_.bore.depth = std::max(total_.bore.depth, batch_.bore.depth);
+  total_.bore.wall += batch_.bore.wall;
   total_.bore.x += batch_.bore.x;
   total_.bore.y += batch_.bore.y;
   total_.bore.xh += batch_.bore.xh;
@@ -83,59 +85,106 @@ void put(const Vec3& x, double* out) {
   for (int i = 0; i < 3; ++i) out[i] = x[i];
 }
 
-FanRound seen_from(const RoundFace& face, const FanFrame& frame) {
-  const Vec3 o = face.map * (frame.center - face.center);
-  const Vec3 u = face.map * frame.u, v = face.map * frame.v;
-  const Vec3 d = face.map * frame.t, dj = face.weighted(d);
-  const double a = d.dot(dj);
-  const Mat3 back = face.map.transpose();
+// The places where columns pierce a face: the roots of a z^2 + 2 b z + c, where z is the height. Of
+// the three images under the map of the face one goes with z, `ahead`, and one does not, `base`;
+// `side_u` and `side_v` come with rho. The level of the face goes with z^2 or does not.
+FanRound pierced(const RoundFace& face, const Vec3& ahead, const Vec3& base, const Vec3& side_u,
+                 const Vec3& side_v, bool level_ahead) {
   FanRound r;
-  put(back * face.weighted(o), r.g);
-  put(back * face.weighted(u), r.g_u);
-  put(back * face.weighted(v), r.g_v);
-  put(back * dj, r.g_t);
-  r.sign[0] = r.sign[1] = face.cone ? -1.0 : 1.0;
-  r.sign[2] = 1.0;
-  r.owner = index(face.owner);
-  r.part = face.part;
-  r.wall = !face.cone && a < kWallTilt * kWallTilt * face.map.squaredNorm();
+  const Vec3 dj = face.weighted(ahead);
+  const double a = ahead.dot(dj) - (level_ahead ? face.level() : 0.0);
+  const double cone = face.cone ? -1.0 : 1.0;
+  r.squares = 3;
+  for (int i = 0; i < 3; ++i) r.sign[i] = i < 2 ? cone : 1.0;
+  // Of a central fan the apex of a cone, or nearly so; else a tube along the columns.
+  const double size = level_ahead ? base.squaredNorm() : face.map.squaredNorm();
+  const double least = level_ahead ? kSameApex : kWallTilt;
+  r.wall = level_ahead == face.cone && ahead.squaredNorm() < least * least * size;
   if (r.wall) {
     // The root is that of minus the face's function.
     r.mid = r.mid_u = r.mid_v = 0.0;
-    put(o, r.x);
-    put(u, r.x_u);
-    put(v, r.x_v);
-    r.reach = r.weight = 1.0;
+    if (face.cone) {
+      r.sign[0] = r.sign[1] = 1.0;
+      r.sign[2] = -1.0;
+    }
+    put(base, r.x);
+    put(side_u, r.x_u);
+    put(side_v, r.x_v);
+    r.reach = face.level();
+    r.weight = 1.0;
     r.lower = r.upper = 0;
     return r;
   }
-  r.mid = -o.dot(dj) / a;
-  r.mid_u = -u.dot(dj) / a;
-  r.mid_v = -v.dot(dj) / a;
-  put(d.cross(o) / a, r.x);
-  put(d.cross(u) / a, r.x_u);
-  put(d.cross(v) / a, r.x_v);
-  r.reach = face.level() / a;
+  r.mid = -base.dot(dj) / a;
+  r.mid_u = -side_u.dot(dj) / a;
+  r.mid_v = -side_v.dot(dj) / a;
+  put(ahead.cross(base) / a, r.x);
+  put(ahead.cross(side_u) / a, r.x_u);
+  put(ahead.cross(side_v) / a, r.x_v);
+  r.reach = level_ahead ? 0.0 : face.level() / a;
+  if (level_ahead && !face.cone) {
+    r.squares = 6;
+    put(base / a, r.x + 3);
+    put(side_u / a, r.x_u + 3);
+    put(side_v / a, r.x_v + 3);
+    for (int i = 3; i < 6; ++i) r.sign[i] = -1.0;
+  }
   r.weight = 1.0 / std::abs(a);
-  r.lower = a > 0.0 ? -1 : d.z() > 0.0 ? 1 : 0;
-  r.upper = a > 0.0 ? 1 : d.z() < 0.0 ? -1 : 0;
+  const bool up = !face.cone || ahead.z() > 0.0, down = face.cone && ahead.z() < 0.0;
+  r.lower = a > 0.0 ? -1 : up ? 1 : 0;
+  r.upper = a > 0.0 ? 1 : down ? -1 : 0;
   return r;
+}
+
+FanRound seen_from(const RoundFace& face, const FanFrame& frame) {
+  const Vec3 o = face.map * (frame.center - face.center);
+  const Vec3 u = face.map * frame.u, v = face.map * frame.v, d = face.map * frame.t;
+  FanRound r = frame.central ? pierced(face, o, d, u, v, true) : pierced(face, d, o, u, v, false);
+  const Mat3 back = face.map.transpose();
+  put(back * face.weighted(o), r.g);
+  put(back * face.weighted(u), r.g_u);
+  put(back * face.weighted(v), r.g_v);
+  put(back * face.weighted(d), r.g_t);
+  r.owner = index(face.owner);
+  r.part = face.part;
+  return r;
+}
+
+// n_t height + rho (n_u cos + n_v sin) <= gap.
+FanPlane seen_from(const PlaneFace& plane, int face, const FanFrame& frame) {
+  const Vec3& n = plane.normal;
+  const double along = n.dot(frame.t), gap = plane.offset - n.dot(frame.center);
+  if (frame.central) return {n.dot(frame.u), n.dot(frame.v), -gap, -along, face};
+  return {n.dot(frame.u), n.dot(frame.v), along, gap, face};
+}
+
+FanSeam seen_from(const Segment& segment, const FanFrame& frame) {
+  FanSeam seam{segment.present,
+               segment.along(frame.center),
+               segment.axis.dot(frame.u),
+               segment.axis.dot(frame.v),
+               segment.axis.dot(frame.t),
+               segment.half_length,
+               0.0};
+  if (frame.central) {
+    std::swap(seam.along, seam.along_t);
+    std::swap(seam.half_length, seam.half_slope);
+  }
+  return seam;
 }
 
 }  // namespace
 
 void Fan::set(const FaceSet& faces, const std::vector<PlaneFace>& idle, const FanFrame& frame) {
   planes_.clear();
+  const double unit = frame.central ? frame.t.norm() : 1.0;
   for (int group = 0; group < FanFaces::kGroups; ++group) {
     faces_.first[group] = static_cast<int>(planes_.size());
     const bool idle_group = group >= FanFaces::kIdleLowerA;
     const std::vector<PlaneFace>& list = idle_group ? idle : faces.planes;
     for (std::size_t i = 0; i < list.size(); ++i) {
-      const Vec3& n = list[i].normal;
-      const double n_t = n.dot(frame.t);
-      if (group_of(n_t, list[i].owner, idle_group) != group) continue;
-      planes_.push_back({n.dot(frame.u), n.dot(frame.v), n_t, list[i].offset - n.dot(frame.center),
-                         static_cast<int>(i)});
+      const FanPlane plane = seen_from(list[i], static_cast<int>(i), frame);
+      if (group_of(plane.n_t / unit, list[i].owner, idle_group) == group) planes_.push_back(plane);
     }
   }
   faces_.first[FanFaces::kGroups] = static_cast<int>(planes_.size());
@@ -151,12 +200,8 @@ void Fan::set(const FaceSet& faces, const std::vector<PlaneFace>& idle, const Fa
         std::max(faces_.rounding, 1e-14 * (std::abs(r.mid) + std::sqrt(std::abs(r.reach))));
   }
   faces_.two_round = faces.has_rounds(Owner::kA) && faces.has_rounds(Owner::kB);
-  for (int w = 0; w < 2; ++w) {
-    const Segment& segment = faces.capsule[w];
-    faces_.seams[w] = {segment.present,           segment.along(frame.center),
-                       segment.axis.dot(frame.u), segment.axis.dot(frame.v),
-                       segment.axis.dot(frame.t), segment.half_length};
-  }
+  for (int w = 0; w < 2; ++w) faces_.seams[w] = seen_from(faces.capsule[w], frame);
+  faces_.central = frame.central;
   faces_.area_scale = frame.area_scale();
   faces_.start = faces.has_bore ? 1.0 : 0.0;
   clear();

@@ -11,11 +11,21 @@ namespace volcontact {
 /// Axes of a fan in A's frame: columns run along the unit vector `t`; a half-plane of the fan is
 /// spanned by t and u cos + v sin, from the axis through `center` outwards. u and v are normal to
 /// t, of any length and angle. A place is x = center + rho (u cos + v sin) + height t.
+///
+/// In a central fan the columns run through `center` instead, in the half-space ahead of it, and t
+/// has any length: a place is x = center + (rho (u cos + v sin) + t) / height. This projective map
+/// makes lines of lines and arcs of arcs, so that a half-plane is cut in the same way.
 struct FanFrame {
   Vec3 center;
   Vec3 u, v, t;
+  bool central = false;
 
   double area_scale() const { return u.cross(v).dot(t); }
+  Vec3 place(double rho_cos, double rho_sin, double height) const {
+    const Vec3 side = rho_cos * u + rho_sin * v;
+    if (central) return center + (side + t) / height;
+    return center + side + height * t;
+  }
 };
 
 /// The frame about `center` with columns along the unit vector t, in which an ellipsoid that
@@ -31,10 +41,13 @@ struct FanPlane {
 /// A round face in a fan: the height on it is mid -+ root, where mid = mid + rho (mid_u cos + mid_v
 /// sin) and root^2 = reach - sum_i sign_i x_i^2, x_i = x_i + rho (x_u_i cos + x_v_i sin).
 struct FanRound {
+  static constexpr int kMaxSquares = 6;
   double mid, mid_u, mid_v;
-  double x[3], x_u[3], x_v[3], sign[3];
+  int squares;
+  double x[kMaxSquares], x_u[kMaxSquares], x_v[kMaxSquares], sign[kMaxSquares];
   double reach;
-  // Half the gradient at a place, and 1 / |its t component * root|.
+  // Half the gradient at the place rho (u cos + v sin) + height t from the center, and 1 / |its
+  // component along the column * root|.
   double g[3], g_u[3], g_v[3], g_t[3];
   double weight;
   bool wall;         ///< parallel to the columns: no root bounds them in reach
@@ -43,11 +56,11 @@ struct FanRound {
   CapsulePart part;
 };
 
-/// Ends of a capsule's tube in a fan: |along| <= half_length is the tube.
+/// Ends of a capsule's tube in a fan: |along| <= half_length + half_slope height is the tube.
 struct FanSeam {
   bool present = false;
   double along, along_u, along_v, along_t;
-  double half_length;
+  double half_length, half_slope;
 };
 
 /// Faces of both solids in a fan, in the order of use: group g of planes is [first[g], first[g +
@@ -63,13 +76,15 @@ struct FanFaces {
   FanRound rounds[kMaxRounds];
   int round_count = 0;
   FanSeam seams[2];
+  bool central = false;     ///< the frame is
   bool two_round = false;   ///< both solids have round faces
   double rounding = 0.0;    ///< of a height [m]
   double start = 0.0;       ///< rho of the wall of a bore about the axis; 0 without
   double area_scale = 0.0;  ///< of the frame
 };
 
-/// Sums over the columns of a fan, in its own coordinates: x = rho cos, y = rho sin, height.
+/// Sums over the columns of a fan, in coordinates along u, v and t from its center: x, y, h. These
+/// are rho cos, rho sin and height, but in a central fan the same divided by height.
 struct FanSums {
   /// int dS times 1, x, y, h over a plane face.
   struct OnPlane {
@@ -85,11 +100,12 @@ struct FanSums {
   /// int dV times 1, x, y, h, xx, xy, yy, xh, yh, hh.
   double moments[10];
   double depth_moment;
-  /// int dS times R, x R, y R, x h R, y h R over the wall of a bore of radius R.
+  /// Over the wall of a bore, where dw = |u| |v| dh d(angle), times h in a central fan: int dw
+  /// times 1, x, y, x h, y h.
   struct OnBore {
-    double area, x, y, xh, yh;
-    double depth_moment;  ///< int (rho - 1) dV / R
-    double reach;         ///< largest rho
+    double wall, x, y, xh, yh;
+    double depth_moment;  ///< int depth dV
+    double depth;         ///< the largest: of rho - 1, times h in a central fan
   };
   OnBore bore;
   double low, high;  ///< least and largest height seen
@@ -98,9 +114,11 @@ struct FanSums {
 };
 
 /// Both solids seen from the axis of a fan, which must pass through their overlap: `center` inside
-/// of every face. Or the axis of a bore of radius 1 in the frame's units, with u and v normal to
-/// each other and of one length: what lies within it does not count, and only half-planes that cut
-/// the overlap of the bodies at the wall do. Integrates columns over half-planes, eight at a time.
+/// of every face; from that of a central fan it must be seen in front. Or the axis of a bore, of
+/// radius rho = 1, with u and v normal to each other and of one length: what lies within it does
+/// not count, and only half-planes that cut the overlap of the bodies at the wall do. The bore is a
+/// tube, or in a central fan a cone about t with its apex in the center. Integrates columns over
+/// half-planes, eight at a time.
 ///
 /// In one half-plane every face is a line or an arc, height over rho, and the overlap is what lies
 /// above the lower and below the upper ones. Where it ends, and where one face takes over from

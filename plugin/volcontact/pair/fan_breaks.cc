@@ -20,12 +20,37 @@ struct Plane {
   int face = -1;
 };
 
+// Angles along a rim in both directions from 0.
+struct RimSteps {
+  double angle[kRimSteps + 1], cos[kRimSteps + 1], sin[kRimSteps + 1];
+
+  void set(double range, bool closer_in_the_middle) {
+    for (int i = 0; i <= kRimSteps; ++i) {
+      const double part = 2.0 * i / kRimSteps - 1.0;
+      angle[i] = range * part * (closer_in_the_middle ? std::abs(part) : 1.0);
+      cos[i] = std::cos(angle[i]);
+      sin[i] = std::sin(angle[i]);
+    }
+  }
+};
+
+const RimSteps& all_round() {
+  static const RimSteps steps = [] {
+    RimSteps all;
+    all.set(kPi, true);
+    return all;
+  }();
+  return steps;
+}
+
 class BreakSearch {
  public:
   BreakSearch(const FaceSet& faces, const FanFrame& frame, double tolerance, FanBreaks& breaks)
       : faces_(faces), frame_(frame), tolerance_(tolerance), breaks_(breaks) {
     to_uv_ << frame.u, frame.v, frame.t;
     to_uv_ = to_uv_.inverse().eval();
+    middle_ = frame.center;
+    if (faces.has_bore) middle_ += frame.central ? frame.u + frame.t : frame.u;
   }
 
   void run() {
@@ -49,16 +74,18 @@ class BreakSearch {
       if (faces_.has_rounds(met)) {
         follow(rim, [&](const Vec3& x) { return largest_value(x, met); });
       }
-      if (faces_.has_bore)
-        follow(rim, [&](const Vec3& x) { return faces_.bore(frame_.center + x); });
+      if (faces_.has_bore) {
+        follow(rim, [&](const Vec3& x) { return faces_.wall(frame_.center + x); });
+      }
     }
+    if (faces_.has_bore) follow_bore_rims();
   }
 
  private:
   enum Use { kCorner, kTouch, kTop };
   static constexpr int kBore = -2;  // stands for the index of a round face
 
-  const RoundFace& round(int r) const { return r == kBore ? faces_.bore : faces_.rounds[r]; }
+  const RoundFace& round(int r) const { return r == kBore ? faces_.wall : faces_.rounds[r]; }
 
   Plane plane(int i) const {
     const PlaneFace& p = faces_.planes[i];
@@ -81,7 +108,7 @@ class BreakSearch {
     intersect(p, polar(r, p.normal.cross(frame_.t)), r, kTop);
     const double climb = p.normal.dot(frame_.t);
     const RoundFace& f = faces_.rounds[r];
-    if (std::abs(climb) > 1e-9) {
+    if (std::abs(climb) > 1e-9 * frame_.t.norm()) {
       // The polar plane of the point where the axis pierces p.
       const Vec3 x = frame_.center + frame_.t * (p.offset / climb);
       const Vec3 y = f.map * (x - f.center);
@@ -125,41 +152,69 @@ class BreakSearch {
     if (is_inside(x, p.face, q.face, s.face, -1)) note(x, kCorner);
   }
 
-  // Where a rim of one solid enters or leaves the round faces of the other one. Only near the axis
-  // of the fan: the overlap may be a small part of the rim.
+  // Where the rims of a bore, in planes across its axis, enter or leave the round faces of the body
+  // in it.
+  void follow_bore_rims() {
+    const Bore& bore = faces_.bore;
+    const Owner met = other(faces_.wall.owner);
+    if (!faces_.has_rounds(met)) return;
+    const Mat3 basis = basis_with_z(bore.axis);
+    for (const PlaneFace& plane : faces_.planes) {
+      if (plane.owner != faces_.wall.owner) continue;
+      const double climb = plane.normal.dot(bore.axis);
+      if (!(plane.normal.cross(bore.axis).squaredNorm() < kParallel)) continue;
+      const Vec3 center =
+          bore.center + bore.axis * ((plane.offset - plane.normal.dot(bore.center)) / climb);
+      const double radius = bore.radius_at(center);
+      follow({center, radius * basis.col(0), radius * basis.col(1), plane.owner},
+             [&](const Vec3& x) { return largest_value(x, met); });
+    }
+  }
+
+  // Where a rim of one solid enters or leaves the round faces of the other one, or a bore. Only
+  // near the axis of the fan, as the overlap may be a small part of the rim; at a bore all round,
+  // with smaller steps near the direction u, where the overlap is.
   template <typename Function>
   void follow(const Rim& rim, Function&& value_at) {
-    const Vec3 from = frame_.center - rim.center;
+    const Vec3 from = middle_ - rim.center;
     const double middle = std::atan2(from.dot(rim.radius_v), from.dot(rim.radius_u));
     const double reach = std::max(frame_.u.norm(), frame_.v.norm()) / rim.radius_u.norm();
-    const double step = 2.0 * std::min(kPi, 5.0 * reach) / kRimSteps;
-    const auto x_at = [&](double angle) -> Vec3 {
-      return rim.center - frame_.center + rim.radius_u * std::cos(angle) +
-             rim.radius_v * std::sin(angle);
+    const auto x_at = [&](double cosine, double sine) -> Vec3 {
+      return rim.center - frame_.center + rim.radius_u * cosine + rim.radius_v * sine;
     };
-    const auto value = [&](double angle) { return value_at(x_at(angle)); };
+    const auto value = [&](double angle) {
+      return value_at(x_at(std::cos(angle), std::sin(angle)));
+    };
+    RimSteps near_axis;
+    if (!faces_.has_bore) near_axis.set(std::min(kPi, 5.0 * reach), false);
+    const RimSteps& steps = faces_.has_bore ? all_round() : near_axis;
+    const double c = std::cos(middle), s = std::sin(middle);
     double angles[kRimSteps + 1], values[kRimSteps + 1];
     for (int i = 0; i <= kRimSteps; ++i) {
-      angles[i] = middle + (i - 0.5 * kRimSteps) * step;
-      values[i] = value(angles[i]);
+      angles[i] = middle + steps.angle[i];
+      values[i] =
+          value_at(x_at(c * steps.cos[i] - s * steps.sin[i], s * steps.cos[i] + c * steps.sin[i]));
     }
     const auto note_root = [&](double a0, double f0, double a1, double f1) {
-      const Vec3 x = x_at(root(value, a0, f0, a1, f1));
+      const double angle = root(value, a0, f0, a1, f1);
+      const Vec3 x = x_at(std::cos(angle), std::sin(angle));
       if (is_inside(x, -2, -2, -2, -2)) note(x, kCorner);
     };
     for (int i = 1; i <= kRimSteps; ++i) {
       if ((values[i - 1] > 0.0) != (values[i] > 0.0)) {
         note_root(angles[i - 1], values[i - 1], angles[i], values[i]);
       }
-      if (i == kRimSteps ||
-          !(values[i] > 0.0 && values[i] <= values[i - 1] && values[i] <= values[i + 1])) {
-        continue;
-      }
-      // The rim may dip into the solid between two places.
-      const auto [angle, lowest] = dip(value, angles[i - 1], angles[i + 1]);
-      if (lowest < 0.0 && values[i - 1] > 0.0 && values[i + 1] > 0.0) {
-        note_root(angles[i - 1], values[i - 1], angle, lowest);
-        note_root(angle, lowest, angles[i + 1], values[i + 1]);
+      if (i == kRimSteps) continue;
+      // Between two places the rim may dip into the solid, or out of it.
+      const double sign = values[i] > 0.0 ? 1.0 : -1.0;
+      const double before = sign * values[i - 1], here = sign * values[i],
+                   after = sign * values[i + 1];
+      if (!(before > 0.0 && after > 0.0 && here <= before && here <= after)) continue;
+      const auto [angle, lowest] =
+          dip([&](double at) { return sign * value(at); }, angles[i - 1], angles[i + 1]);
+      if (lowest < 0.0) {
+        note_root(angles[i - 1], values[i - 1], angle, sign * lowest);
+        note_root(angle, sign * lowest, angles[i + 1], values[i + 1]);
       }
     }
   }
@@ -251,11 +306,12 @@ class BreakSearch {
 
   void note(const Vec3& x, Use use) {
     const Vec3 y = to_uv_ * x;
-    breaks_.low = std::min(breaks_.low, y.z());
-    breaks_.high = std::max(breaks_.high, y.z());
-    const double length = std::hypot(y.x(), y.y());
-    if (use == kTop || !(length > 1e-9)) return;
-    if (faces_.has_bore && length < 1.0 - 1e-9) return;
+    const double height = frame_.central ? 1.0 / y.z() : y.z();
+    breaks_.low = std::min(breaks_.low, height);
+    breaks_.high = std::max(breaks_.high, height);
+    const double length = std::hypot(y.x(), y.y()), rho = frame_.central ? length * height : length;
+    if (use == kTop || !(rho > 1e-9)) return;
+    if (faces_.has_bore && rho < 1.0 - 1e-9) return;
     breaks_.directions.push_back({y.x() / length, y.y() / length});
   }
 
@@ -264,6 +320,7 @@ class BreakSearch {
   double tolerance_;
   FanBreaks& breaks_;
   Mat3 to_uv_;
+  Vec3 middle_;  // of the overlap, or nearly so
 };
 
 }  // namespace

@@ -36,13 +36,23 @@ void add_rounds(const Fan& fan, const FanFrame& frame, Owner owner, Surface& s) 
   }
 }
 
-// The wall of a bore about t, which looks towards the axis.
+// The wall of a bore about t, which looks towards the axis: at rho = 1 in half-plane e = u cos + v
+// sin it is t h, of a central fan h (e + t).
 void add_bore(const Fan& fan, const FanFrame& frame, Surface& s) {
   const FanSums::OnBore& b = fan.total().bore;
-  const double inverse = 1.0 / frame.u.norm();
-  s.area += b.area * inverse;
-  s.vector -= (b.x * frame.u + b.y * frame.v) * (inverse * inverse);
-  s.moment -= frame.t.cross(b.xh * frame.u + b.yh * frame.v) * (inverse * inverse);
+  const double r2 = frame.u.squaredNorm(), length = frame.central ? frame.t.norm() : 1.0;
+  const Vec3 out = (b.x * frame.u + b.y * frame.v) / r2;
+  const Vec3 turn = frame.t.cross(b.xh * frame.u + b.yh * frame.v) / r2;
+  if (!frame.central) {
+    s.area += b.wall / std::sqrt(r2);
+    s.vector -= out;
+    s.moment -= turn;
+    return;
+  }
+  const double square = length * length;
+  s.area += b.wall * std::sqrt(1.0 / r2 + 1.0 / square);
+  s.vector += b.wall / square * frame.t - out;
+  s.moment -= (1.0 + r2 / square) * turn;
 }
 
 }  // namespace
@@ -63,7 +73,7 @@ MomentSum moments_of(const Fan& fan, const FaceSet& faces, const FanFrame& frame
     Surface& s = surface[index(owner)];
     add_planes(fan, faces, frame, owner, s);
     add_rounds(fan, frame, owner, s);
-    if (faces.has_bore && faces.bore.owner == owner) add_bore(fan, frame, s);
+    if (faces.has_bore && faces.wall.owner == owner) add_bore(fan, frame, s);
   }
   double share_b = 0.5;
   const bool flat_a = !faces.has_rounds(Owner::kA), flat_b = !faces.has_rounds(Owner::kB);
@@ -79,8 +89,8 @@ double share_of_bore(const Fan& fan, const FaceSet& faces, const FanFrame& frame
   constexpr double kBalanced = 1e-3;  // weight of areas where all area vectors vanish
   Surface wall, rest;
   add_bore(fan, frame, wall);
-  add_planes(fan, faces, frame, faces.bore.owner, rest);
-  add_rounds(fan, frame, faces.bore.owner, rest);
+  add_planes(fan, faces, frame, faces.wall.owner, rest);
+  add_rounds(fan, frame, faces.wall.owner, rest);
   const double on_wall = wall.vector.squaredNorm() + kBalanced * wall.area * wall.area;
   const double on_rest = rest.vector.squaredNorm() + kBalanced * rest.area * rest.area;
   return on_wall > 0.0 ? on_wall / (on_wall + on_rest) : 0.0;

@@ -123,6 +123,7 @@ class WindowSearch {
         const double rounding = kRounding * (std::abs(plane.offset) + s.X.translation.norm());
         if (reach <= (plane.owner == Owner::kA ? -2.0 * rounding : rounding)) {
           faces_.idle.push_back(plane);
+          drop_rims_of(plane, rounding);
           continue;
         }
       }
@@ -130,6 +131,15 @@ class WindowSearch {
     }
     planes.erase(planes.begin() + static_cast<std::ptrdiff_t>(kept), planes.end());
     return true;
+  }
+
+  void drop_rims_of(const PlaneFace& plane, double rounding) {
+    std::erase_if(faces_.active.rims, [&](const Rim& rim) {
+      return rim.owner == plane.owner &&
+             std::abs(plane.normal.dot(rim.center) - plane.offset) <= rounding &&
+             plane.normal.cross(rim.radius_u.cross(rim.radius_v)).norm() <=
+                 kRounding * rim.radius_u.squaredNorm();
+    });
   }
 
   int count_planes(Owner owner) const {

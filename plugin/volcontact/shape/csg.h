@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "volcontact/shape/bore.h"
 #include "volcontact/shape/simple_shapes.h"
 
 namespace volcontact {
@@ -25,6 +26,9 @@ struct CarvedPiece {
   Pose X_SB;                    ///< of the body
   std::vector<Quadric> carved;  ///< F <= 0 is cut out of the body; may overlap each other
   std::vector<Seam> seams;
+  /// The same as `carved`, in this order; none when one is no tube or cone, or when the body comes
+  /// near the apex of a cone.
+  std::vector<Bore> bores;
 };
 
 /// Union, intersection and difference of posed simple solids, nested as deep as wanted. Immutable;

@@ -115,6 +115,13 @@ TEST(Csg, HolesAreCarvedOnce) {
   // Of narrow and wide bore only the wide one counts where both are; below, the narrow one.
   EXPECT_EQ(carved(counterbored()), 2u);
   EXPECT_EQ(carved(box(.3, .2, .1) - tube(.05, .5) - tube(.04, .5)), 1u);
+  // A chamfer that begins within the bore: each is carved where it is the wider one.
+  const Csg chamfer(Frustum({.bottom_radius = .04, .top_radius = .08, .half_length = .02}),
+                    at(0, 0, .09));
+  for (const CarvedPiece& piece : (box(.3, .2, .1) - tube(.05, .5) - chamfer).carved_pieces()) {
+    EXPECT_EQ(piece.carved.size(), 1u);
+    EXPECT_EQ(piece.bores.size(), 1u);
+  }
   EXPECT_EQ(carved(box(.3, .2, .1) - tube(.05, .05, at(0, 0, 5))), 0u);
 }
 
