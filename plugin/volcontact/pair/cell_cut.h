@@ -63,6 +63,7 @@ class CellCut {
   struct Tangent {
     int owner = 0;
     bool seam = false;
+    bool cone = false;  // the bend term is of one sign between plane and face only
     Bend bend = Bend::kFlat;
     Mat3 hessian = Mat3::Zero();
     Vec3 slope = Vec3::Zero();
@@ -111,6 +112,8 @@ class CellCut {
 
   enum class Side { kOutside, kThrough, kInside };
   static Side classify(const Quadric& face, const Cell& cell, Tangent& tangent);
+  static bool touch_cone(const Quadric& face, const Cell& cell, double value, const Vec3& slope,
+                         Tangent& tangent);
   static Side classify_field(const CellFace& face, const Cell& cell, Tangent& tangent);
   static Side classify_samples(const CellFace& face, const Cell& cell, Tangent& tangent);
   bool collect(const std::vector<CellFace>& faces, Cell& cell);

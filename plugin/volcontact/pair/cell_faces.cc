@@ -11,6 +11,8 @@ using namespace cell_math;
 
 namespace {
 
+constexpr double kOnFace = 1e-14;  // of the terms of F, where F counts as zero
+
 // Sum over |m_ij| u_i v_j.
 double sum_abs(const Mat3& m, const Vec3& u) { return u.dot(m.cwiseAbs() * u); }
 
@@ -26,9 +28,28 @@ Vec3 step_to_face(double value, const Vec3& slope, const Mat3& hessian) {
 
 }  // namespace
 
+// A plane that touches a cone along one of its lines has all of that nappe on one side and the other
+// nappe on the other, as if the cone were convex. It must touch the true face, if outside of the
+// cell. False where the nearest line is of the other nappe, or there is none.
+bool CellCut::touch_cone(const Quadric& face, const Cell& cell, double value, const Vec3& slope,
+                         Tangent& t) {
+  t.touch = step_to_face(value, slope, face.hessian);
+  const Vec3 bent = face.hessian * t.touch;
+  const double off = value + t.touch.dot(slope + 0.5 * bent);
+  const double size = std::abs(value) + std::abs(t.touch.dot(slope)) + std::abs(t.touch.dot(bent));
+  const double radius = face.nappe_offset + face.nappe.dot(cell.center + t.touch);
+  if (!(std::abs(off) <= kOnFace * size && radius > 0.0)) return false;
+  t.bend = face.bend == Bend::kCone ? Bend::kConvex : Bend::kConcave;
+  t.slope = slope + bent;
+  t.level = value - 0.5 * t.touch.dot(bent);
+  t.most = 0.5 * sum_abs(face.hessian, t.touch.cwiseAbs() + cell.half);
+  return true;
+}
+
 CellCut::Side CellCut::classify(const Quadric& face, const Cell& cell, Tangent& t) {
   t.seam = face.seam;
   t.bend = face.bend;
+  t.cone = face.bend == Bend::kCone || face.bend == Bend::kConeHole;
   t.slack = t.most = 0.0;
   if (face.bend == Bend::kFlat) {
     t.level = face.constant + face.linear.dot(cell.center);
@@ -43,8 +64,9 @@ CellCut::Side CellCut::classify(const Quadric& face, const Cell& cell, Tangent& 
   const double bend = 0.5 * sum_abs(face.hessian, cell.half);
   if (value - reach >= (face.bend == Bend::kConvex ? 0.0 : bend)) return Side::kOutside;
   if (value + reach <= (face.bend == Bend::kConcave ? 0.0 : -bend)) return Side::kInside;
-  // The plane touches at the face, next to the middle of the cell if the face reaches there.
   t.hessian = face.hessian;
+  if (t.cone && touch_cone(face, cell, value, slope, t)) return Side::kThrough;
+  // The plane touches at the face, next to the middle of the cell if the face reaches there.
   t.touch = Vec3::Zero();
   t.slope = slope;
   t.level = value;
@@ -67,7 +89,7 @@ CellCut::Side CellCut::classify_field(const CellFace& face, const Cell& cell, Ta
   const double radius = cell.half.norm();
   if (distance >= radius) return Side::kOutside;
   if (distance <= -radius) return Side::kInside;
-  t.seam = false;
+  t.seam = t.cone = false;
   t.bend = Bend::kFlat;
   t.level = distance;
   t.slope = face.X_SW.rotation.transpose() * view.gradient(view.solid, p);
@@ -87,7 +109,7 @@ CellCut::Side CellCut::classify_samples(const CellFace& face, const Cell& cell, 
   const double radius = cell.half.norm();
   if (f[0] >= radius) return Side::kOutside;
   if (f[0] <= -radius) return Side::kInside;
-  t.seam = false;
+  t.seam = t.cone = false;
   t.bend = Bend::kFlat;
   t.level = f[0];
   Vec3 difference = Vec3::Zero();

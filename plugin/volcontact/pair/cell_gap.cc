@@ -28,7 +28,7 @@ struct CellCut::Columns {
   // Bend at the plane: q0 + qx x + ... ; rise of the face's F there: r(x, y).
   double q0 = 0.0, qx = 0.0, qy = 0.0, qxx = 0.0, qxy = 0.0, qyy = 0.0;
   Linear2 rise{};
-  double bend_along = 0.0;  // second derivative along z
+  double bend_along = 0.0;  // second derivative along z, negative for some columns of a cone
 
   Columns(const Tangent& t, const Vec3& half_sizes) : tangent(t), half(half_sizes) {
     Eigen::Index axis;
@@ -57,7 +57,7 @@ struct CellCut::Columns {
     qxy = dx.dot(hy);
     qyy = 0.5 * dy.dot(hy);
     rise = {steep + sign * h0[a], sign * hx[a], sign * hy[a]};
-    bend_along = std::abs(hessian(a, a));
+    bend_along = -into() * hessian(a, a);
   }
 
   // For a face that is bent to one side: the gap runs from the plane along -z (convex) or z.
@@ -96,10 +96,11 @@ struct CellCut::BentColumns {
 
   void set_rises(double low, double high, double stretch) {
     const double middle = 0.5 * (low + high);
-    least = columns.rise.scaled(-1.0).raised(2.0 * middle).scaled(1.0 / (middle * middle));
-    most = columns.rise.scaled(-1.0).raised(low + high).scaled(stretch / (low * high));
-    least_anywhere = 1.0 / high;
-    most_anywhere = stretch / low;
+    const double shorter = std::min(1.0, stretch), longer = std::max(1.0, stretch);
+    least = columns.rise.scaled(-1.0).raised(2.0 * middle).scaled(shorter / (middle * middle));
+    most = columns.rise.scaled(-1.0).raised(low + high).scaled(longer / (low * high));
+    least_anywhere = shorter / high;
+    most_anywhere = longer / low;
   }
   double integral(const Linear2& factor, const ConvexPolygon& polygon) const {
     return polygon.integral([&](double x, double y) { return factor(x, y) * columns.bend(x, y); });
@@ -161,7 +162,7 @@ void CellCut::keep_touched(int index, const Columns& columns) {
 // Upper bound of the bend of another face over all columns of this length.
 double CellCut::most_bend(const Tangent& other, const Columns& columns, double length) const {
   if (other.exact()) return 0.0;
-  if (other.bend != Bend::kConvex) return other.within();
+  if (other.bend != Bend::kConvex || other.cone) return other.within();
   double most = 0.0;  // convex: greatest in a corner
   const Vec3 along = -columns.into() * length * columns.sign * Vec3::Unit(columns.a);
   for (const ConvexPolygon::Point& p : polygon_.points()) {
@@ -235,7 +236,7 @@ void CellCut::add_band(std::size_t k, const BentColumns& bent, Gap& gap) {
 }
 
 // A face bent to one side. In each column the gap is t with bend = rise t - 1/2 bend_along t^2, so
-// bend / rise <= t <= stretch bend / rise, where bend is quadratic and rise linear.
+// t lies between bend / rise and stretch bend / rise, where bend is quadratic and rise linear.
 CellCut::Gap CellCut::bent_gap(int index, Columns& columns) {
   Gap gap;
   columns.expand_bend();

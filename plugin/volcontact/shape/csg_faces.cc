@@ -60,7 +60,7 @@ MemberFace round_face(const Quadric& face_M, const SimpleShape& shape, const Pos
   MemberFace face;
   face.quadric = transformed(face_M, X_MS);
   face.X_FS = X_MS;
-  if (face_M.bend == Bend::kMixed) {
+  if (face_M.bend == Bend::kCone) {
     const Frustum::Params& p = std::get<Frustum>(shape).params();
     face.kind = MemberFace::Kind::kCone;
     face.radius = 0.5 * (p.bottom_radius + p.top_radius);

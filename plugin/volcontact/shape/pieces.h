@@ -11,10 +11,11 @@ namespace volcontact {
 /// How a face is bent, seen from outside; decides on which side of its tangent planes the solid
 /// lies.
 enum class Bend : signed char {
-  kConcave = -1,  ///< hessian negative semidefinite: the wall of a bore
-  kFlat = 0,      ///< no hessian
-  kConvex = 1,    ///< hessian positive semidefinite: a ball, a cylinder
-  kMixed = 2,     ///< neither
+  kConeHole = -2,  ///< hessian indefinite, the wall of a conical bore
+  kConcave = -1,   ///< hessian negative semidefinite: the wall of a bore
+  kFlat = 0,       ///< no hessian
+  kConvex = 1,     ///< hessian positive semidefinite: a ball, a cylinder
+  kCone = 2,       ///< hessian indefinite, but convex on the one nappe that belongs to the solid
 };
 
 /// One face of a solid: the solid lies where F(x) = 1/2 x^T H x + g . x + k <= 0. F may have any
@@ -26,6 +27,9 @@ struct Quadric {
   double constant = 0.0;
   Bend bend = Bend::kFlat;
   bool seam = false;
+  /// The nappe of a cone that belongs to the solid is where nappe_offset + nappe . x >= 0.
+  Vec3 nappe = Vec3::Zero();
+  double nappe_offset = 0.0;
 
   double operator()(const Vec3& x) const {
     return constant + x.dot(linear) + 0.5 * x.dot(hessian * x);
@@ -59,7 +63,9 @@ struct Quadric {
     face.hessian = Vec3(2.0, 2.0, -2.0 * slope * slope).asDiagonal();
     face.linear = Vec3(0.0, 0.0, -2.0 * radius * slope);
     face.constant = -radius * radius;
-    face.bend = Bend::kMixed;
+    face.bend = Bend::kCone;
+    face.nappe = Vec3(0.0, 0.0, slope);
+    face.nappe_offset = radius;
     return face;
   }
   /// The solid outside of this face instead of inside.
@@ -68,7 +74,7 @@ struct Quadric {
     face.hessian = -hessian;
     face.linear = -linear;
     face.constant = -constant;
-    if (bend != Bend::kMixed) face.bend = static_cast<Bend>(-static_cast<int>(bend));
+    face.bend = static_cast<Bend>(-static_cast<int>(bend));
     return face;
   }
 };
@@ -81,6 +87,8 @@ inline Quadric transformed(const Quadric& face_S, const Pose& X_SW) {
   face.linear = r.transpose() * (face_S.linear + face_S.hessian * p);
   face.constant = face_S(p);
   if (face.bend != Bend::kFlat) face.hessian = r.transpose() * face_S.hessian * r;
+  face.nappe = r.transpose() * face_S.nappe;
+  face.nappe_offset = face_S.nappe_offset + face_S.nappe.dot(p);
   return face;
 }
 
