@@ -105,13 +105,14 @@ void SceneContact::add_pair(const mjModel* m, const GeomPair& geoms) {
   const Shape& b = solids_[static_cast<std::size_t>(geoms.b)];
   const SceneOptions& options = keys_.options;
   Engine engine = options.engine == Engine::kAuto ? engine_for(a, b) : options.engine;
+  const int most_cells = options.engine == Engine::kOctree ? kMostCells : kMostCellsInStep;
   if (!serves(engine, a, b)) {
     warn_once(std::string("engine ") + to_string(engine) + " does not serve " + name_of(a) +
               " with " + name_of(b) + "; auto serves them");
     engine = engine_for(a, b);
   }
   ContactModel model({{a, b, Pose{}, Pose{}}}, laws.laws,
-                     {options.tolerance, engine, kInnerThreads});
+                     {options.tolerance, engine, kInnerThreads, most_cells});
   const int first_state = states_;
   states_ += model.state_size();
   pairs_.push_back({geoms, engine, std::move(laws), first_state, std::move(model)});

@@ -12,7 +12,6 @@
 namespace volcontact {
 namespace {
 
-constexpr int kMostCells = 60000;  // about 35 MB and 30 ms
 constexpr int kEvaluateGrain = 8;  // cells a thread takes at a time
 // Of the doubt from which cells are divided: a new cell with more is divided in the next round.
 constexpr double kRoughShare = 0.5;
@@ -262,7 +261,7 @@ bool CellTree::divide_worst() {
   for (const auto& leaf : s_.pending) {
     if (leaf.high - leaf.low >= least) children += 1 << std::popcount(s_.cells[leaf.cell].split);
   }
-  if (first + children > kMostCells) return false;
+  if (first + children > task_.most_cells) return false;
   for (const auto& leaf : s_.pending) {
     if (leaf.high - leaf.low >= least) {
       divide(leaf.cell);

@@ -166,7 +166,13 @@ void octree_interference(const SolidView& a, const SolidView& b, const Pose& X_A
   if (a.own.volume == 0.0 || b.own.volume == 0.0) return;
   const OverlapWindow window = find_window(a, b, X_AB, scratch.hull, scratch.part);
   if (window.apart) return;
-  OctreeTask task{a, b, window, options.tolerance, options.threads, thread_limit(options.threads)};
+  OctreeTask task{.a = a,
+                  .b = b,
+                  .window = window,
+                  .tolerance = options.tolerance,
+                  .most_cells = options.most_cells,
+                  .asked_threads = options.threads,
+                  .thread_limit = thread_limit(options.threads)};
   run(task, scratch, out);
 }
 

@@ -208,6 +208,7 @@ double depth_moment(const OctreeTask& task, OctreeScratch& scratch, LeafRange le
   const double count = leaves.last - leaves.first;
   for (const auto [levels, fine] : kDensities) {
     if (levels > 0 && std::ldexp(count, 2 * levels) * task.tolerance > kPatches) break;
+    const double before = least_error;
     for (const double side : {first_side, -first_side}) {
       const auto sum = ColumnPass(task, scratch, n, side).sum(leaves, levels, fine);
       const double error = std::abs(sum.volume - volume);
@@ -217,6 +218,7 @@ double depth_moment(const OctreeTask& task, OctreeScratch& scratch, LeafRange le
       }
       if (error <= allowed) return best.moment;
     }
+    if (levels > 0 && least_error > 0.5 * before) break;  // more of them would not help
   }
   return best.moment;
 }

@@ -72,6 +72,7 @@ struct OctreeTask {
   const SolidView& b;
   const OverlapWindow& window;
   double tolerance;
+  int most_cells;
   int asked_threads;  ///< 0: by work
   int thread_limit;
   double scale = 0.0;     ///< size of the numbers that the faces are computed from [m]

@@ -32,8 +32,13 @@ inline double way_inside(const PieceList& list, const Vec3& p, const Vec3& d, do
     const double from = way + nudge;
     double leave = kInfinity;
     for (const Quadric* face = list.begin(piece); face != list.end(piece); ++face) {
-      const Vec3 bent = face->hessian * d;
-      const double a = 0.5 * d.dot(bent), b = d.dot(face->linear) + p.dot(bent), c = (*face)(p);
+      double a = 0.0, b = d.dot(face->linear), c = face->constant + p.dot(face->linear);
+      if (face->bend != Bend::kFlat) {
+        const Vec3 bent = face->hessian * d;
+        a = 0.5 * d.dot(bent);
+        b += p.dot(bent);
+        c += 0.5 * p.dot(face->hessian * p);
+      }
       if (c + from * (b + from * a) > 0.0) return 0.0;
       leave = std::min(leave, first_exit(a, b, c, from));
     }
