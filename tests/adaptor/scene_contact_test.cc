@@ -306,6 +306,36 @@ TEST(SceneContact, NumberOfThreadsChangesNoBit) {
   for (const std::vector<double>& state : states) EXPECT_EQ(state, states[0]);
 }
 
+// A hollow cylinder on a bored block, which only the octree serves: unless the scene asks for the
+// octree, a step gives it fewer cells than this tolerance needs, and the site says so.
+TEST(SceneContact, StepHasItsBudgetOfCells) {
+  const auto first_site = [](const std::string& options) {
+    const std::string part = "<element objtype=\"geom\" objname=\"";
+    const ModelPointer m = testing::load(
+        "<mujoco><worldbody><body name=\"fixture\">"
+        "<geom name=\"block\" type=\"box\" size=\".05 .05 .03\"/>"
+        "<geom name=\"hole\" type=\"cylinder\" size=\".01 .04\"/></body>"
+        "<body name=\"part\" pos=\".004 .003 .0492\" euler=\"2 1 0\"><freejoint/>"
+        "<geom name=\"sleeve\" type=\"cylinder\" size=\".02 .02\" mass=\"1\"/>"
+        "<geom name=\"bore\" type=\"cylinder\" size=\".012 .03\" mass=\"0\"/></body></worldbody>" +
+        testing::numeric("volcontact/option/tolerance", "1e-9") + options +
+        "<custom><tuple name=\"volcontact/solid/a\">" + part + "block\" prm=\"1\"/>" + part +
+        "hole\" prm=\"-1\"/></tuple><tuple name=\"volcontact/solid/b\">" + part +
+        "sleeve\" prm=\"1\"/>" + part + "bore\" prm=\"-1\"/></tuple></custom></mujoco>");
+    const DataPointer d = testing::make_data(m);
+    const Attached attached(m);
+    mj_forward(m.get(), d.get());
+    return sites(m, d).at(0);
+  };
+  const volcontact_site step = first_site("");
+  const volcontact_site chosen =
+      first_site(testing::numeric("volcontact/option/engine/octree", "1"));
+  EXPECT_EQ(step.status, static_cast<int>(Status::kApproximate));
+  EXPECT_LT(chosen.volume_error, 0.5 * step.volume_error);
+  EXPECT_LE(std::abs(step.volume - chosen.volume), step.volume_error + chosen.volume_error);
+  EXPECT_LT(step.volume_error, 0.01 * step.volume);
+}
+
 // Six pairs: fewer threads take a pair each, more of them share the cells of one.
 TEST(SceneContact, NumberOfThreadsChangesNoBitOfTheOctree) {
   const auto states = by_threads(6, testing::numeric("volcontact/option/engine/octree", "1"), 3);

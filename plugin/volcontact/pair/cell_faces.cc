@@ -28,9 +28,9 @@ Vec3 step_to_face(double value, const Vec3& slope, const Mat3& hessian) {
 
 }  // namespace
 
-// A plane that touches a cone along one of its lines has all of that nappe on one side and the other
-// nappe on the other, as if the cone were convex. It must touch the true face, if outside of the
-// cell. False where the nearest line is of the other nappe, or there is none.
+// A plane that touches a cone along one of its lines has all of that nappe on one side and the
+// other nappe on the other, as if the cone were convex. It must touch the true face, if outside of
+// the cell. False where the nearest line is of the other nappe, or there is none.
 bool CellCut::touch_cone(const Quadric& face, const Cell& cell, double value, const Vec3& slope,
                          Tangent& t) {
   t.touch = step_to_face(value, slope, face.hessian);

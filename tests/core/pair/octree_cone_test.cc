@@ -53,8 +53,8 @@ class ConicalHole : public ::testing::Test {
   static double exact() {
     const double slope = 0.5 * (kTop - kBottom) / kHalf;
     const double length = (kPeg - kBottom) / slope;
-    return kPi * (kPeg * kPeg * length -
-                  (std::pow(kPeg, 3) - std::pow(kBottom, 3)) / (3.0 * slope));
+    return kPi *
+           (kPeg * kPeg * length - (std::pow(kPeg, 3) - std::pow(kBottom, 3)) / (3.0 * slope));
   }
   const Csg block_ =
       Csg(Csg::Operation::kDifference, Csg(Box({.half_sizes = Vec3(0.5, 0.5, kHalf)})),
