@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nanobind/eigen/dense.h>
+#include <nanobind/stl/string.h>
 
 #include <sstream>
 

@@ -152,7 +152,12 @@ Args:
             new (self) SignedDistance(std::make_shared<const PythonSource>(distance, box),
                                       {lipschitz, curvature.value_or(kInfinity)});
           },
-          "distance"_a, "bounds"_a, nb::kw_only(), "lipschitz"_a = 1.0, "curvature"_a = nb::none())
+          "distance"_a, "bounds"_a, nb::kw_only(), "lipschitz"_a = 1.0, "curvature"_a = nb::none(),
+          nb::sig("def __init__(self, distance: "
+                  "collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], "
+                  "numpy.typing.ArrayLike], bounds: "
+                  "collections.abc.Sequence[collections.abc.Sequence[float]], *, lipschitz: float "
+                  "= 1.0, curvature: float | None = None) -> None"))
       .def_prop_ro(
           "bounds",
           [](const SignedDistance& self) {

@@ -184,3 +184,9 @@ def test_bad_input_is_named(call, message) -> None:
 def test_unknown_keyword_is_a_type_error() -> None:
     with pytest.raises(TypeError):
         vc.Sphere(radios=1.0)
+
+
+def test_metrics_print_their_numbers() -> None:
+    # a ball, half of it in the half-space: 2/3 pi r^3
+    text = repr(vc.interference(vc.HalfSpace(), vc.Sphere(radius=0.1)))
+    assert f"volume {2e-3 * np.pi / 3:.6g} m^3" in text and "ok" in text

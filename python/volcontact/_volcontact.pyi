@@ -1,0 +1,931 @@
+# SPDX-License-Identifier: Apache-2.0
+"""
+Compiled core of volcontact: solids, interference volumes, laws, contact models.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Annotated
+
+import numpy
+import numpy.typing
+from numpy.typing import NDArray
+
+
+class VolumeMetrics:
+    """
+    Metrics of an interference volume, in one frame and about its origin (docs/theory.md, 'Volume metrics').
+    """
+
+    @property
+    def volume(self) -> float:
+        """V [m^3]"""
+
+    @property
+    def centroid(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """Centroid of the volume [m], shape (3,)"""
+
+    @property
+    def inertia(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order='F')]:
+        """Inertia tensor about the centroid, unit density [m^5], shape (3, 3)"""
+
+    @property
+    def area_vector(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """
+        Integral of A's outward normal over A's surface inside B = dV/dx of A [m^2], shape (3,)
+        """
+
+    @property
+    def area_moment(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """
+        Integral of x cross that normal, about the frame's origin = dV/dtheta of A [m^3], shape (3,)
+        """
+
+    @property
+    def area(self) -> float:
+        """Area of A's surface inside B [m^2]"""
+
+    @property
+    def counter_area(self) -> float:
+        """Area of B's surface inside A [m^2]"""
+
+    @property
+    def depth_moment(self) -> float:
+        """
+        Integral of L^2/2 over the patch, L the column length along the normal [m^4]
+        """
+
+    @property
+    def depth(self) -> float:
+        """Extent of the volume along the normal [m]"""
+
+    @property
+    def volume_error(self) -> float:
+        """Bound or estimate of the error of the volume [m^3]"""
+
+    @property
+    def normal(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """Contact normal on A, from B to A, shape (3,); zero where there is none"""
+
+    @property
+    def flatness(self) -> float:
+        """|area_vector| over the smaller surface, 1 for a flat patch [-]"""
+
+    @property
+    def touching(self) -> bool:
+        """Whether the volume is positive"""
+
+    @property
+    def status(self) -> str:
+        """'ok', 'contained', 'approximate', 'unbounded' or 'invalid'"""
+
+    def __repr__(self) -> str: ...
+
+class Csg:
+    """
+    Solid 'csg', composed of others: a + b, a & b, a - b, nested as wanted.
+
+    Made by the operators of any solid, and by solid.posed(X), which puts a member in its place:
+
+        bored = vc.Box((0.1, 0.1, 0.02)) - vc.Cylinder(0.01, 0.05).posed(X)
+
+    A half-space may be a member; where the solid stays unbounded it can only meet bounded ones.
+    """
+
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """Union with another solid, in one common frame"""
+
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """What both solids hold, in one common frame"""
+
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """This solid without the other, in one common frame"""
+
+    def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
+        """
+        The same solid elsewhere, as a member of a composed solid.
+
+        Args:
+            X: pose of this solid in the frame of the new one, shape (4, 4)
+
+        Returns:
+            Csg: the solid in its place
+
+        Raises:
+            ValueError: X is no pose
+        """
+
+    def own_metrics(self) -> VolumeMetrics:
+        """Volume, centroid and inertia of the whole solid"""
+
+    def signed_distance(self, point: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> float:
+        """
+        Negative inside; never larger in magnitude than the distance to the surface [m]
+        """
+
+    @property
+    def bounds(self) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]]:
+        """
+        Corners (low, high) of a box around the solid [m], shape (3,) each; infinite where the solid is unbounded
+        """
+
+    @property
+    def members(self) -> int:
+        """How many simple solids it is made of"""
+
+    def __repr__(self) -> str: ...
+
+class HalfSpace:
+    """Solid 'half_space' in its own frame."""
+
+    def __init__(self) -> None: ...
+
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """Union with another solid, in one common frame"""
+
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """What both solids hold, in one common frame"""
+
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """This solid without the other, in one common frame"""
+
+    def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
+        """
+        The same solid elsewhere, as a member of a composed solid.
+
+        Args:
+            X: pose of this solid in the frame of the new one, shape (4, 4)
+
+        Returns:
+            Csg: the solid in its place
+
+        Raises:
+            ValueError: X is no pose
+        """
+
+    def own_metrics(self) -> VolumeMetrics:
+        """Volume, centroid and inertia of the whole solid"""
+
+    def signed_distance(self, point: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> float:
+        """
+        Negative inside; never larger in magnitude than the distance to the surface [m]
+        """
+
+    @property
+    def bounds(self) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]]:
+        """
+        Corners (low, high) of a box around the solid [m], shape (3,) each; infinite where the solid is unbounded
+        """
+
+    def support(self, direction: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """A point of the solid farthest along the direction [m]"""
+
+    def __repr__(self) -> str: ...
+
+class Sphere:
+    """
+    Solid 'sphere' in its own frame.
+
+    Args:
+        radius [m]: radius; >= 0
+    """
+
+    def __init__(self, radius: float) -> None: ...
+
+    @property
+    def radius(self) -> float:
+        """radius [m]"""
+
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """Union with another solid, in one common frame"""
+
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """What both solids hold, in one common frame"""
+
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """This solid without the other, in one common frame"""
+
+    def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
+        """
+        The same solid elsewhere, as a member of a composed solid.
+
+        Args:
+            X: pose of this solid in the frame of the new one, shape (4, 4)
+
+        Returns:
+            Csg: the solid in its place
+
+        Raises:
+            ValueError: X is no pose
+        """
+
+    def own_metrics(self) -> VolumeMetrics:
+        """Volume, centroid and inertia of the whole solid"""
+
+    def signed_distance(self, point: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> float:
+        """
+        Negative inside; never larger in magnitude than the distance to the surface [m]
+        """
+
+    @property
+    def bounds(self) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]]:
+        """
+        Corners (low, high) of a box around the solid [m], shape (3,) each; infinite where the solid is unbounded
+        """
+
+    def support(self, direction: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """A point of the solid farthest along the direction [m]"""
+
+    def __repr__(self) -> str: ...
+
+class Ellipsoid:
+    """
+    Solid 'ellipsoid' in its own frame.
+
+    Args:
+        semi_axes [m]: half the axis lengths, shape (3,); >= 0
+    """
+
+    def __init__(self, semi_axes: Sequence[float]) -> None: ...
+
+    @property
+    def semi_axes(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """half the axis lengths [m]"""
+
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """Union with another solid, in one common frame"""
+
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """What both solids hold, in one common frame"""
+
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """This solid without the other, in one common frame"""
+
+    def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
+        """
+        The same solid elsewhere, as a member of a composed solid.
+
+        Args:
+            X: pose of this solid in the frame of the new one, shape (4, 4)
+
+        Returns:
+            Csg: the solid in its place
+
+        Raises:
+            ValueError: X is no pose
+        """
+
+    def own_metrics(self) -> VolumeMetrics:
+        """Volume, centroid and inertia of the whole solid"""
+
+    def signed_distance(self, point: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> float:
+        """
+        Negative inside; never larger in magnitude than the distance to the surface [m]
+        """
+
+    @property
+    def bounds(self) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]]:
+        """
+        Corners (low, high) of a box around the solid [m], shape (3,) each; infinite where the solid is unbounded
+        """
+
+    def support(self, direction: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """A point of the solid farthest along the direction [m]"""
+
+    def __repr__(self) -> str: ...
+
+class Capsule:
+    """
+    Solid 'capsule' in its own frame.
+
+    Args:
+        radius [m]: radius; >= 0
+        half_length [m]: half the length of the cylinder, without the round ends; >= 0
+    """
+
+    def __init__(self, radius: float, half_length: float) -> None: ...
+
+    @property
+    def radius(self) -> float:
+        """radius [m]"""
+
+    @property
+    def half_length(self) -> float:
+        """half the length of the cylinder, without the round ends [m]"""
+
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """Union with another solid, in one common frame"""
+
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """What both solids hold, in one common frame"""
+
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """This solid without the other, in one common frame"""
+
+    def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
+        """
+        The same solid elsewhere, as a member of a composed solid.
+
+        Args:
+            X: pose of this solid in the frame of the new one, shape (4, 4)
+
+        Returns:
+            Csg: the solid in its place
+
+        Raises:
+            ValueError: X is no pose
+        """
+
+    def own_metrics(self) -> VolumeMetrics:
+        """Volume, centroid and inertia of the whole solid"""
+
+    def signed_distance(self, point: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> float:
+        """
+        Negative inside; never larger in magnitude than the distance to the surface [m]
+        """
+
+    @property
+    def bounds(self) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]]:
+        """
+        Corners (low, high) of a box around the solid [m], shape (3,) each; infinite where the solid is unbounded
+        """
+
+    def support(self, direction: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """A point of the solid farthest along the direction [m]"""
+
+    def __repr__(self) -> str: ...
+
+class Cylinder:
+    """
+    Solid 'cylinder' in its own frame.
+
+    Args:
+        radius [m]: radius; >= 0
+        half_length [m]: half the length between the flat ends; >= 0
+    """
+
+    def __init__(self, radius: float, half_length: float) -> None: ...
+
+    @property
+    def radius(self) -> float:
+        """radius [m]"""
+
+    @property
+    def half_length(self) -> float:
+        """half the length between the flat ends [m]"""
+
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """Union with another solid, in one common frame"""
+
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """What both solids hold, in one common frame"""
+
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """This solid without the other, in one common frame"""
+
+    def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
+        """
+        The same solid elsewhere, as a member of a composed solid.
+
+        Args:
+            X: pose of this solid in the frame of the new one, shape (4, 4)
+
+        Returns:
+            Csg: the solid in its place
+
+        Raises:
+            ValueError: X is no pose
+        """
+
+    def own_metrics(self) -> VolumeMetrics:
+        """Volume, centroid and inertia of the whole solid"""
+
+    def signed_distance(self, point: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> float:
+        """
+        Negative inside; never larger in magnitude than the distance to the surface [m]
+        """
+
+    @property
+    def bounds(self) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]]:
+        """
+        Corners (low, high) of a box around the solid [m], shape (3,) each; infinite where the solid is unbounded
+        """
+
+    def support(self, direction: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """A point of the solid farthest along the direction [m]"""
+
+    def __repr__(self) -> str: ...
+
+class Frustum:
+    """
+    Solid 'frustum' in its own frame.
+
+    Args:
+        bottom_radius [m]: radius at z = -half_length; >= 0
+        top_radius [m]: radius at z = +half_length; >= 0
+        half_length [m]: half the length between the flat ends; >= 0
+    """
+
+    def __init__(self, bottom_radius: float, top_radius: float, half_length: float) -> None: ...
+
+    @property
+    def bottom_radius(self) -> float:
+        """radius at z = -half_length [m]"""
+
+    @property
+    def top_radius(self) -> float:
+        """radius at z = +half_length [m]"""
+
+    @property
+    def half_length(self) -> float:
+        """half the length between the flat ends [m]"""
+
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """Union with another solid, in one common frame"""
+
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """What both solids hold, in one common frame"""
+
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """This solid without the other, in one common frame"""
+
+    def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
+        """
+        The same solid elsewhere, as a member of a composed solid.
+
+        Args:
+            X: pose of this solid in the frame of the new one, shape (4, 4)
+
+        Returns:
+            Csg: the solid in its place
+
+        Raises:
+            ValueError: X is no pose
+        """
+
+    def own_metrics(self) -> VolumeMetrics:
+        """Volume, centroid and inertia of the whole solid"""
+
+    def signed_distance(self, point: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> float:
+        """
+        Negative inside; never larger in magnitude than the distance to the surface [m]
+        """
+
+    @property
+    def bounds(self) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]]:
+        """
+        Corners (low, high) of a box around the solid [m], shape (3,) each; infinite where the solid is unbounded
+        """
+
+    def support(self, direction: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """A point of the solid farthest along the direction [m]"""
+
+    def __repr__(self) -> str: ...
+
+class Box:
+    """
+    Solid 'box' in its own frame.
+
+    Args:
+        half_sizes [m]: half the edge lengths, shape (3,); >= 0
+    """
+
+    def __init__(self, half_sizes: Sequence[float]) -> None: ...
+
+    @property
+    def half_sizes(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """half the edge lengths [m]"""
+
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """Union with another solid, in one common frame"""
+
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """What both solids hold, in one common frame"""
+
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """This solid without the other, in one common frame"""
+
+    def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
+        """
+        The same solid elsewhere, as a member of a composed solid.
+
+        Args:
+            X: pose of this solid in the frame of the new one, shape (4, 4)
+
+        Returns:
+            Csg: the solid in its place
+
+        Raises:
+            ValueError: X is no pose
+        """
+
+    def own_metrics(self) -> VolumeMetrics:
+        """Volume, centroid and inertia of the whole solid"""
+
+    def signed_distance(self, point: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> float:
+        """
+        Negative inside; never larger in magnitude than the distance to the surface [m]
+        """
+
+    @property
+    def bounds(self) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]]:
+        """
+        Corners (low, high) of a box around the solid [m], shape (3,) each; infinite where the solid is unbounded
+        """
+
+    def support(self, direction: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """A point of the solid farthest along the direction [m]"""
+
+    def __repr__(self) -> str: ...
+
+class Torus:
+    """
+    Solid 'torus' in its own frame.
+
+    Args:
+        major_radius [m]: from the axis to the middle of the tube; >= 0
+        minor_radius [m]: of the tube, at most major_radius; >= 0
+    """
+
+    def __init__(self, major_radius: float, minor_radius: float) -> None: ...
+
+    @property
+    def major_radius(self) -> float:
+        """from the axis to the middle of the tube [m]"""
+
+    @property
+    def minor_radius(self) -> float:
+        """of the tube, at most major_radius [m]"""
+
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """Union with another solid, in one common frame"""
+
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """What both solids hold, in one common frame"""
+
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """This solid without the other, in one common frame"""
+
+    def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
+        """
+        The same solid elsewhere, as a member of a composed solid.
+
+        Args:
+            X: pose of this solid in the frame of the new one, shape (4, 4)
+
+        Returns:
+            Csg: the solid in its place
+
+        Raises:
+            ValueError: X is no pose
+        """
+
+    def own_metrics(self) -> VolumeMetrics:
+        """Volume, centroid and inertia of the whole solid"""
+
+    def signed_distance(self, point: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> float:
+        """
+        Negative inside; never larger in magnitude than the distance to the surface [m]
+        """
+
+    @property
+    def bounds(self) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]]:
+        """
+        Corners (low, high) of a box around the solid [m], shape (3,) each; infinite where the solid is unbounded
+        """
+
+    def support(self, direction: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """A point of the solid farthest along the direction [m]"""
+
+    def __repr__(self) -> str: ...
+
+class ConvexPolytope:
+    """Solid 'convex_polytope' in its own frame."""
+
+    def __init__(self, vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')]) -> None:
+        """vertices [m], shape (n, 3): the solid is their convex hull"""
+
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """Union with another solid, in one common frame"""
+
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """What both solids hold, in one common frame"""
+
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+        """This solid without the other, in one common frame"""
+
+    def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
+        """
+        The same solid elsewhere, as a member of a composed solid.
+
+        Args:
+            X: pose of this solid in the frame of the new one, shape (4, 4)
+
+        Returns:
+            Csg: the solid in its place
+
+        Raises:
+            ValueError: X is no pose
+        """
+
+    def own_metrics(self) -> VolumeMetrics:
+        """Volume, centroid and inertia of the whole solid"""
+
+    def signed_distance(self, point: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> float:
+        """
+        Negative inside; never larger in magnitude than the distance to the surface [m]
+        """
+
+    @property
+    def bounds(self) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]]:
+        """
+        Corners (low, high) of a box around the solid [m], shape (3,) each; infinite where the solid is unbounded
+        """
+
+    def support(self, direction: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """A point of the solid farthest along the direction [m]"""
+
+    def __repr__(self) -> str: ...
+
+class SignedDistance:
+    """
+    Solid given by a Python callable, for vc.interference only.
+
+    The callable gets points [m], shape (n, 3), in the solid's frame, and returns their signed distances
+    [m], shape (n,): negative inside. It need not be the true distance, only no steeper than `lipschitz`.
+    It is called once for each batch of cells.
+
+    A contact model or a scene is stepped without the interpreter lock and takes no such solid; write it
+    in C++ for that (docs/theory.md, 'Solids with a signed distance').
+
+    Args:
+        distance: the callable
+        bounds [m]: a box that holds the solid, shape (2, 3), the lower corner first
+        lipschitz [-]: nowhere is the function steeper; > 0
+        curvature [1/m]: bound of its second derivatives in any direction, where the function is below
+            lipschitz^2 / (2 curvature) in magnitude; >= 0; a ball of radius r has 1.5/r. With it the
+            certified bounds are of second order and meet a per cent; without it of first order,
+            and the status is 'approximate' below a few per cent, though the volume itself is better
+    """
+
+    def __init__(self, distance: Callable[[numpy.typing.NDArray[numpy.float64]], numpy.typing.ArrayLike], bounds: Sequence[Sequence[float]], *, lipschitz: float = 1.0, curvature: float | None = None) -> None: ...
+
+    @property
+    def bounds(self) -> Annotated[NDArray[numpy.float64], dict(shape=(2, 3), order='C')]:
+        """[m], shape (2, 3), the lower corner first"""
+
+    def signed_distance(self, point: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> float:
+        """What the callable says there, over `lipschitz` [m]"""
+
+    def __repr__(self) -> str: ...
+
+class Interference(VolumeMetrics):
+    """Metrics of a whole overlap and, in `sites`, of each connected region."""
+
+    @property
+    def sites(self) -> list[VolumeMetrics]:
+        """One VolumeMetrics a contact site"""
+
+    @property
+    def engine(self) -> str:
+        """The engine that made the numbers"""
+
+def interference(a: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance, b: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance, X_AB: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, *, tolerance: float = 0.001, engine: str = 'auto', threads: int = 1) -> Interference:
+    """
+    Interference volume of two solids, in A's frame and about its origin.
+
+    Args:
+        a: solid A
+        b: solid B
+        X_AB: pose of B in A, shape (4, 4); the identity when left out
+        tolerance [-]: relative error asked of the volume, between 0 and 1
+        engine: 'auto', 'closed_form', 'clip', 'lines' or 'octree'
+        threads: threads for this one pair, 0 = decide by work; never changes a bit
+
+    Returns:
+        Interference: the metrics; `volume` is 0 when the solids are apart
+
+    Raises:
+        ValueError: X_AB is no pose, a value is out of range, the engine does not serve the pair, or a
+            SignedDistance returned no numbers of the right shape
+        whatever a SignedDistance raised itself
+    """
+
+class NormalForce:
+    """Base of all normal laws."""
+
+    @property
+    def name(self) -> str:
+        """As in MJCF keys"""
+
+    @property
+    def state_size(self) -> int:
+        """Doubles of state per contact site"""
+
+class Friction:
+    """Base of all friction laws."""
+
+    @property
+    def name(self) -> str:
+        """As in MJCF keys"""
+
+    @property
+    def state_size(self) -> int:
+        """Doubles of state per contact site"""
+
+class HuntCrossley(NormalForce):
+    """
+    Normal law 'hunt_crossley'.
+
+    Args:
+        stiffness [N/m^3]: k_v, force per interference volume; > 0
+        damping [s/m]: a, relative rise of the force per approach speed; >= 0
+    """
+
+    def __init__(self, *, stiffness: float = 10000000.0, damping: float = 0.0) -> None: ...
+
+    @property
+    def stiffness(self) -> float:
+        """k_v, force per interference volume [N/m^3]"""
+
+    @property
+    def damping(self) -> float:
+        """a, relative rise of the force per approach speed [s/m]"""
+
+class VolumeSpring(NormalForce):
+    """
+    Normal law 'volume_spring'.
+
+    Args:
+        stiffness [N/m^3]: k_v, force per interference volume; > 0
+    """
+
+    def __init__(self, *, stiffness: float = 10000000.0) -> None: ...
+
+    @property
+    def stiffness(self) -> float:
+        """k_v, force per interference volume [N/m^3]"""
+
+class RegularizedCoulomb(Friction):
+    """
+    Friction law 'regularized_coulomb'.
+
+    Args:
+        friction [-]: mu, kinetic; >= 0
+        slip_speed [m/s]: speed from which friction has its full strength; > 0
+        coupling: how sliding and spinning share the friction; one of 'ellipsoid' 'none'
+    """
+
+    def __init__(self, *, friction: float = 0.2, slip_speed: float = 0.001, coupling: str = 'ellipsoid') -> None: ...
+
+    @property
+    def friction(self) -> float:
+        """mu, kinetic [-]"""
+
+    @property
+    def slip_speed(self) -> float:
+        """speed from which friction has its full strength [m/s]"""
+
+    @property
+    def coupling(self) -> str:
+        """how sliding and spinning share the friction"""
+
+class Pair:
+    """A solid fixed on body A and a solid fixed on body B."""
+
+    def __init__(self, a: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance, b: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance, *, X_Aa: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, X_Bb: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None) -> None:
+        """X_Aa, X_Bb: poses of the solids in their bodies, shape (4, 4)"""
+
+class ByChannel:
+    """One number for each way in which a contact dissipates."""
+
+    @property
+    def normal(self) -> float: ...
+
+    @property
+    def roll(self) -> float: ...
+
+    @property
+    def slide(self) -> float: ...
+
+    @property
+    def spin(self) -> float: ...
+
+    @property
+    def sum(self) -> float: ...
+
+class SiteReport:
+    """One contact site, in the world frame."""
+
+    @property
+    def pair(self) -> int:
+        """Index of the geometric pair"""
+
+    @property
+    def metrics(self) -> VolumeMetrics:
+        """About the world origin"""
+
+    @property
+    def normal(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """On A, from B to A, shape (3,)"""
+
+    @property
+    def normal_force(self) -> float:
+        """[N]"""
+
+    @property
+    def force_on_A(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """Normal force and friction, at the centroid [N], shape (3,)"""
+
+    @property
+    def torque_on_A(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """Rolling and spin torque, about the centroid [N m], shape (3,)"""
+
+    @property
+    def approach_speed(self) -> float:
+        """> 0 while approaching [m/s]"""
+
+    @property
+    def slip(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """Tangential velocity of A against B at the centroid [m/s], shape (3,)"""
+
+    @property
+    def spin(self) -> float:
+        """Of A against B about the normal [rad/s]"""
+
+    @property
+    def elastic_energy(self) -> float:
+        """[J]"""
+
+    @property
+    def power(self) -> ByChannel:
+        """Dissipated [W]"""
+
+class ContactReport:
+    """What an evaluation of a contact model returns."""
+
+    @property
+    def metrics(self) -> VolumeMetrics:
+        """Sum over all sites, in the world frame"""
+
+    @property
+    def sites(self) -> list[SiteReport]: ...
+
+    @property
+    def force_on_A(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """[N], shape (3,), world frame"""
+
+    @property
+    def torque_on_A(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """About A's origin [N m], shape (3,), world frame"""
+
+    @property
+    def force_on_B(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """[N], shape (3,), world frame"""
+
+    @property
+    def torque_on_B(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """About B's origin [N m], shape (3,), world frame"""
+
+    @property
+    def touching(self) -> bool: ...
+
+    @property
+    def elastic_energy(self) -> float:
+        """[J]"""
+
+    @property
+    def power(self) -> ByChannel:
+        """Dissipated [W]"""
+
+    @property
+    def state(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
+        """Law states after `elapsed`, shape (state_size,)"""
+
+class ContactModel:
+    """
+    Geometric pairs x normal law x friction law: the CSA paper's contact model container.
+    """
+
+    def __init__(self, *, pairs: Sequence[Pair], normal: NormalForce, friction: Friction | None = None, rolling: bool = True, tolerance: float = 0.001, engine: str = 'auto', threads: int = 1) -> None: ...
+
+    @property
+    def state_size(self) -> int:
+        """Doubles of law state"""
+
+    def evaluate(self, *, X_WA: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, X_WB: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, V_WA: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')] | None = None, V_WB: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')] | None = None, state: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')] | None = None, elapsed: float = 0.0) -> ContactReport:
+        """
+        Wrenches on both bodies from their poses and twists.
+
+        Args:
+            X_WA, X_WB: poses of the bodies in the world, shape (4, 4); identity when left out
+            V_WA, V_WB: twists, angular [rad/s] then linear [m/s] of the frame origin, world frame,
+                shape (6,); zero when left out
+            state: law states at the last accepted time, shape (state_size,); zeros when left out
+            elapsed [s]: time since then
+
+        Returns:
+            ContactReport: wrenches, sites, energy, dissipated power and the new law states
+
+        Raises:
+            ValueError: a pose, twist or state is not what it should be
+        """
