@@ -7,6 +7,8 @@
 
 from __future__ import annotations
 
+import re
+import textwrap
 from collections.abc import Callable
 from pathlib import Path
 
@@ -44,7 +46,19 @@ GIVES = """\
 
 def render() -> str:
     """The whole page as Markdown text."""
-    return "\n".join([_introduction(), _pairs(), _threads(), _peers(), _steps()])
+    page = "\n".join([_introduction(), _pairs(), _threads(), _peers(), _steps()])
+    parts = (_wrapped(part) for part in re.split(r"\n\n+", page.strip()))
+    return "\n\n".join(parts) + "\n"
+
+
+def _wrapped(part: str) -> str:
+    """A paragraph in lines of one length; tables, headings and pictures as they are."""
+    if part.lstrip("\n").startswith(("#", "|", "!")):
+        return part
+    # Code stays on one line, and no line begins with a hyphen: that would be a list.
+    whole = re.sub(r"`[^`]+`| - ", lambda found: found.group().replace(" ", "\0"), part)
+    lines = textwrap.fill(whole, 110, break_long_words=False, break_on_hyphens=False)
+    return lines.replace("\0", " ")
 
 
 def _introduction() -> str:
@@ -65,7 +79,7 @@ def _pairs() -> str:
     for asked in ASKED:
         time, ours = max(times_of(asked)), in_cpp(asked.case)
         ratio = time / asked.time
-        verdict = "met" if ratio < 1.0 else f"{ratio:.2g} times the time asked"
+        verdict = "met" if ratio < 1.0 else f"{digits(ratio)} times the time asked"
         if ratio >= 1.0:
             late.append(f"{asked.title} ({span(time)} for {span(asked.time)})")
         if float(ours["volume_error_worst"]) > asked.error:
@@ -159,7 +173,7 @@ def _peers() -> str:
         what = f"{_way(row)} on {row['case']}"
         if float(row["time_us"]) < ours[row["case"]]:
             ratio = ours[row["case"]] / float(row["time_us"])
-            faster.append(f"{what} ({row['gives']}, {ratio:.2g} times)")
+            faster.append(f"{what} ({row['gives']}, {digits(ratio)} times)")
         if row["found"] != row["poses"]:
             missed.append(f"{what} (finds {row['found']} of {row['poses']})")
     return (
@@ -181,6 +195,14 @@ def _peers() -> str:
         "here it is forced. Quartiles and\nnotes on every row are in "
         "`tests/benchmarks/results/peers.csv`.\n"
     )
+
+
+def _drake_cell(kinds: dict[str, dict[str, str]]) -> str:
+    """Drake's step, and by ours."""
+    if "Drake" not in kinds:
+        return ""
+    time = float(kinds["Drake"]["time_us"])
+    return f"{span(time)} ({digits(time / float(kinds['volumetric']['time_us']))})"
 
 
 def _way(row: dict[str, str]) -> str:
@@ -253,9 +275,11 @@ def _steps() -> str:
                 f"{by_native(kinds):.2g}",
                 f"{ours['pairs']}, {ours['touching']}",
                 native["touching"],
+                _drake_cell(kinds),
             )
         )
-    header = ("scene", "no contact", "native", "volumetric", "by native", "pairs, sites", "points")
+    titles = ("scene", "no contact", "native", "volumetric", "by native", "pairs, sites", "points")
+    header = (*titles, "Drake, by ours")
     pile = scenes["pile of 20 boxes, at rest"]["volumetric"]
     slower = [scene for scene, kinds in scenes.items() if by_native(kinds) > 1.0]
     checks = [
@@ -280,7 +304,9 @@ def _steps() -> str:
         "## One step of a simulation\n\n"
         "Processor time of one `mj_step`, contact and all (`step_benchmark.py`). The three kinds "
         "take turns in one run, and each\nrests as its own contact lets it. Battery box and pile "
-        "are the scenes in `mjcf_models`, with their own time step of 1 ms.\n\n"
+        "are the scenes in `mjcf_models`, with their own time step of 1 ms. In brackets:\n"
+        "quartiles. Drake has the same bodies and boxes at the same time step under hydroelastic "
+        "contact, with its own\nstiffness and damping.\n\n"
         "![Time of one step](performance/steps.svg)\n\n"
         + table(header, rows)
         + "\n"

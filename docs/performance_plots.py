@@ -79,7 +79,7 @@ def _plot_peers() -> Figure:
     axes.invert_yaxis()
     axes.set_xscale("log")
     axes.minorticks_off()
-    ticks = [0.01, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6]
+    ticks = [0.01, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 1e6]
     low, high = axes.get_xlim()
     ticks = [tick for tick in ticks if low <= tick <= high]
     axes.set_xticks(ticks, [f"{tick:,g}" if tick < 1e5 else f"{tick:,.0f}" for tick in ticks])

@@ -94,14 +94,14 @@ ASKED = (
         "bored block - peg 0.02 mm",
     ),
     Asked(
-        "the same, 0.3 mm, by the octree",
+        "peg in a bore, 0.3 mm, by the octree",
         1e-2,
         3000.0,
         ("peg_in_bore_clearance_3_percent/1/real_time",),
         "bored block - peg 0.3 mm, octree",
     ),
     Asked(
-        "the same, 0.02 mm, by the octree",
+        "peg in a bore, 0.02 mm, by the octree",
         1e-2,
         3000.0,
         ("peg_in_bore_clearance_20_um/1/real_time",),
@@ -167,8 +167,10 @@ def small(number: str) -> str:
 
 
 def digits(ratio: float) -> str:
-    """Two digits, without an exponent: 12,000."""
-    return f"{float(f'{ratio:.2g}'):,.0f}" if ratio >= 10.0 else f"{ratio:.2g}"
+    """Two digits, three near 1, without an exponent: 12,000."""
+    if ratio >= 10.0:
+        return f"{float(f'{ratio:.2g}'):,.0f}"
+    return f"{ratio:.2f}" if 0.5 < ratio < 2.0 else f"{ratio:.2g}"
 
 
 def is_ours(row: dict[str, str]) -> bool:

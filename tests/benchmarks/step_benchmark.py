@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Time of one MuJoCo step under volumetric contact, beside native contact and no contact at all.
+"""Time of one MuJoCo step under volumetric contact, beside native contact and none; and Drake's.
 
     ./run python tests/benchmarks/step_benchmark.py
 
@@ -40,6 +40,7 @@ class Scene:
         settle: seconds before the clock runs, under the contact that is timed [s]
         steps: in one round
         again: each round starts anew after `settle`; False: the rounds follow each other
+        with_drake: Drake simulates it too
     """
 
     name: str
@@ -47,6 +48,7 @@ class Scene:
     settle: float
     steps: int = 200
     again: bool = False
+    with_drake: bool = False
 
 
 @dataclass
@@ -90,14 +92,44 @@ class Course:
 
     def row(self) -> dict[str, object]:
         """A line of the results; times in us, speeds in mm/s."""
-        q1, median, q3 = np.percentile(self.times, [25, 50, 75])
         speeds = np.linalg.norm(self.data.qvel.reshape(-1, 6)[:, :3], axis=1)
-        speed = 0.0 if self.kind == "none" else 1e3 * speeds.max()
-        bodies, steps = len(speeds), self.scene.steps * ROUNDS
-        counts = (bodies, self.pairs, self.touching, steps)
-        times = (f"{t:.3f}" for t in (median, q1, q3))
-        values = (self.scene.name, self.kind, *counts, *times, f"{speed:.2g}")
-        return dict(zip(COLUMNS, values, strict=True))
+        speed = 0.0 if self.kind == "none" else speeds.max()
+        counts = (self.pairs, self.touching, self.scene.steps * ROUNDS)
+        return line(self.scene, self.kind, counts, self.times, speed)
+
+
+class DrakeCourse:
+    """The same scene in Drake, whose steps are so long that fewer will do."""
+
+    STEPS = 10
+
+    def __init__(self, scene: Scene) -> None:
+        from peers.drake_steps import DrakeScene
+
+        self.scene, self.times = scene, []
+        self.drake = DrakeScene(scene.model)
+        self.drake.advance(scene.settle)
+
+    def run_round(self) -> None:
+        """Times some steps."""
+        begin = time.process_time_ns()
+        self.drake.advance(self.STEPS * self.scene.model.opt.timestep)
+        self.times.append(1e-3 * (time.process_time_ns() - begin) / self.STEPS)
+
+    def row(self) -> dict[str, object]:
+        """A line of the results."""
+        counts = (0, self.drake.touching(), self.STEPS * ROUNDS)
+        return line(self.scene, "Drake", counts, self.times, self.drake.fastest())
+
+
+def line(
+    scene: Scene, kind: str, counts: tuple[int, int, int], times: list[float], speed: float
+) -> dict[str, object]:
+    """A line of the results: pairs, touching and steps; times [us]; the fastest body [m/s]."""
+    q1, median, q3 = (f"{t:.3f}" for t in np.percentile(times, [25, 50, 75]))
+    bodies = scene.model.nv // 6
+    values = (scene.name, kind, bodies, *counts, median, q1, q3, f"{1e3 * speed:.2g}")
+    return dict(zip(COLUMNS, values, strict=True))
 
 
 @contextmanager
@@ -119,11 +151,11 @@ def scenes() -> Iterator[Scene]:
     battery_box = MODELS / "battery_box" / "scene.xml"
     seated = vc.load(battery_box)
     seated.qpos0[:] = seated.key("seated").qpos
-    yield Scene("battery box, seated", seated, settle=0.5)
+    yield Scene("battery box, seated", seated, settle=0.5, with_drake=True)
     # The start is cut off: 0.1 s of free fall say nothing.
     yield Scene("battery box, falling into its seat", vc.load(battery_box), 0.1, 900, again=True)
     pile = MODELS / "box_pile" / "scene.xml"
-    yield Scene("pile of 20 boxes, at rest", vc.load(pile), settle=3.0)
+    yield Scene("pile of 20 boxes, at rest", vc.load(pile), settle=3.0, with_drake=True)
     yield Scene("pile of 20 boxes, falling", vc.load(pile), settle=0.0, steps=500, again=True)
     yield Scene("20 boxes on a floor", vc.load(boxes_on_floor(20)), settle=0.5)
     yield Scene("20 boxes in 4 stacks", vc.load(stacks(20)), settle=0.5)
@@ -165,7 +197,12 @@ def _scene(bodies: str, gravity: str = "0 0 -9.81") -> str:
 
 def measure(scene: Scene) -> list[dict[str, object]]:
     """A line for each kind of contact; the kinds take turns."""
-    courses = [Course(kind, scene) for kind in KINDS]
+    courses: list[Course | DrakeCourse] = [Course(kind, scene) for kind in KINDS]
+    if scene.with_drake:
+        try:
+            courses.append(DrakeCourse(scene))
+        except ImportError as missing:
+            print(f"Drake is left out: {missing}", flush=True)
     for _ in range(ROUNDS):
         for course in courses:
             course.run_round()
