@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
   const FuzzPlan plan{.random_poses = argc > 1 ? std::atoi(argv[1]) : 10000,
                       .degenerate_poses = argc > 2 ? std::atoi(argv[2]) : 1000,
                       .weights = {1.0, 0.03, 0.0006},
-                      .reference = {0.003, 0.03, 0.2},
+                      .reference = {0.004, 0.03, 0.2},
                       .seed = argc > 3 ? static_cast<std::uint64_t>(std::atoll(argv[3])) : 1,
                       .only = argc > 4 ? argv[4] : ""};
   const FuzzReport report = fuzz(plan);
