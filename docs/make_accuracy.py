@@ -85,7 +85,7 @@ def render() -> str:
         rows = list(csv.DictReader(file))
     search = json.loads((RESULTS / "search.json").read_text(encoding="utf-8"))
     engines = [engine for engine in LIMITS if any(row["engine"] == engine for row in rows)]
-    parts = [_INTRODUCTION, _summary(rows, engines), _weak(rows)]
+    parts = [_INTRODUCTION, _summary(rows, engines), _weak(rows, search)]
     parts += [
         _section(engine, [row for row in rows if row["engine"] == engine]) for engine in engines
     ]
@@ -193,8 +193,13 @@ def _over(rows: list[Row], key: str, function: Callable[[list[float]], float]) -
     return function(values) if values else None
 
 
-def _weak(rows: list[Row]) -> str:
+def _weak(rows: list[Row], search: dict[str, Any]) -> str:
     parts = ["## What is weak\n"]
+    if search["failures"]:
+        parts.append(
+            f"* The [search](#search-for-failures) found {len(search['failures'])} failures, of "
+            "engines as they were then. The table there names the pairs."
+        )
     handed = [row for row in rows if int(row["handed_on"])]
     if handed:
         never = [row for row in handed if not int(row["poses"])]

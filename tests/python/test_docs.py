@@ -111,6 +111,25 @@ def test_components_page_is_generated_from_the_field_tables() -> None:
     )
 
 
+def test_accuracy_page_is_generated_from_the_results() -> None:
+    module = generator("make_accuracy")
+    assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
+        "run './run python docs/make_accuracy.py'"
+    )
+
+
+def test_accuracy_page_has_every_pair_of_every_engine() -> None:
+    """Independent of the generator's merging of the two orders."""
+    page = (ROOT / "docs" / "accuracy.md").read_text(encoding="utf-8")
+    table = (ROOT / "tests" / "benchmarks" / "results" / "accuracy.csv").read_text(encoding="utf-8")
+    for line in table.splitlines()[1:]:
+        a, b, engine, poses = line.split(",")[:4]
+        section = page.split(f"## `{engine}`")[1].split("\n## ")[0]
+        both = (f"| {a} - {b}, both orders |", f"| {b} - {a}, both orders |")
+        named = (f"| {a} - {b} |", *both)
+        assert poses == "0" or any(name in section for name in named), (engine, a, b)
+
+
 def test_performance_page_is_generated_from_the_results() -> None:
     module = generator("make_performance")
     assert module.PAGE.read_text(encoding="utf-8") == module.render(), (

@@ -218,8 +218,9 @@ class Search {
       expected = integral(lookout).metrics.volume;
       if (!differs()) break;
     }
-    // Where the answer is another engine's, the certified bound of the octree is cheaper than a fine
-    // reference. An answer within twice the bound has about the error that it has to its middle.
+    // Where the answer is another engine's, the certified bound of the octree is cheaper than a
+    // fine reference. An answer within twice the bound has about the error that it has to its
+    // middle.
     if (differs() && !certified && m.touching()) {
       interference(a_->shape, b_->shape, X_AB_, {.tolerance = 1e-4, .engine = Engine::kOctree},
                    workspace_, mirrored_);
@@ -253,7 +254,8 @@ class Search {
     const double error = std::abs(m.volume - expected);
     count().errors.push_back(static_cast<float>(error / expected));
     if (m.volume == 0.0) return fail("missed", expected);
-    if (result_.engine == Engine::kOctree && error > m.volume_error + doubt + kSuspicious * expected) {
+    if (result_.engine == Engine::kOctree &&
+        error > m.volume_error + doubt + kSuspicious * expected) {
       return fail("outside of the certified bound", expected);
     }
     if (error > (is_exact() ? kWorstExact : kWorstCurved) * expected + doubt) {
