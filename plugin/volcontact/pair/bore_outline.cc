@@ -4,18 +4,22 @@
 #include <algorithm>
 
 #include "volcontact/pair/even_turn.h"
+#include "volcontact/pair/rim_shape.h"
 
 namespace volcontact {
 namespace {
 
-constexpr int kNarrowings = 3;     // of a place where the outline comes near the wall
+constexpr int kMaxRoundings = 6;  // of the frame
+constexpr double kRoundRim =
+    3.0;                        // longest by shortest way to the outline; then it is round enough
+constexpr int kNarrowings = 3;  // of a place where the outline comes near the wall
 constexpr int kEndNarrowings = 2;  // of a place where it crosses the wall
 
 }  // namespace
 
 // A fan along the bore's axis, or from the apex, through the middle of the overlap, in which its
 // outline is about round.
-void BoreOutline::set_frame() {
+void BoreOutline::choose_frame() {
   if (bore_.is_cone()) {
     const Vec3 way = window_.center - bore_.center;
     const double length = way.norm();
@@ -25,43 +29,51 @@ void BoreOutline::set_frame() {
   } else {
     frame_ = round_frame(window_.center, window_.spread, bore_.axis);
   }
+}
+
+void BoreOutline::set_frame() {
   s_.faces.active.has_bore = false;
   s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
 }
 
+BoreOutline::Place BoreOutline::place(double angle, double x, double y, double height) const {
+  const Vec3 point = frame_.place(x, y, height);
+  return {angle, bore_.radii(point), point};
+}
+
 // Eight places of the outline at these angles.
 void BoreOutline::places_at(const double* angles, Place* places) {
-  double u[kLanes], v[kLanes];
+  double u[kLanes], v[kLanes], rho[kLanes], height[kLanes];
   for (int i = 0; i < kLanes; ++i) {
     u[i] = std::cos(angles[i]);
     v[i] = std::sin(angles[i]);
   }
-  places_at(angles, u, v, places);
-}
-
-// The same with the cosines and sines of the angles.
-void BoreOutline::places_at(const double* angles, const double* u, const double* v, Place* places) {
-  double rho[kLanes], height[kLanes];
   s_.fan.ends(s_.path, u, v, rho, height);
   for (int i = 0; i < kLanes; ++i) {
-    Place& p = places[i];
-    p.angle = angles[i];
-    p.point = frame_.place(rho[i] * u[i], rho[i] * v[i], height[i]);
-    p.rho = bore_.radii(p.point);
+    places[i] = place(angles[i], rho[i] * u[i], rho[i] * v[i], height[i]);
   }
 }
 
 void BoreOutline::trace() {
+  choose_frame();
   set_frame();
   places_.resize(kEvenTurn);
-  double angles[kLanes], u[kLanes], v[kLanes];
-  Place places[kLanes];
   constexpr int kStep = kEvenTurn / kLanes;
-  for (int k = 0; k < kStep; ++k) {
-    for (int i = 0; i < kLanes; ++i) angles[i] = 2.0 * kPi * (k + kStep * i) / kEvenTurn;
+  for (int k = 0, turns = 0; k < kStep; ++k) {
+    double u[kLanes], v[kLanes], rho[kLanes], height[kLanes];
     even_directions(kEvenTurn, k, u, v);
-    places_at(angles, u, v, places);
-    for (int i = 0; i < kLanes; ++i) places_[k + kStep * i] = places[i];
+    s_.fan.ends(s_.path, u, v, rho, height);
+    // The window knows a thin overlap's shape only roughly.
+    for (; k == 0 && turns < kMaxRoundings; ++turns) {
+      const RimShape rim(u, v, rho);
+      if (rim.ratio() < kRoundRim || !rim.round_off(frame_)) break;
+      set_frame();
+      s_.fan.ends(s_.path, u, v, rho, height);
+    }
+    for (int i = 0; i < kLanes; ++i) {
+      const int at = k + kStep * i;
+      places_[at] = place(2.0 * kPi * at / kEvenTurn, rho[i] * u[i], rho[i] * v[i], height[i]);
+    }
   }
   // Places that come nearest to the wall from within may hide a lobe between them.
   const int n = kEvenTurn;

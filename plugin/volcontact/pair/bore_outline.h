@@ -37,9 +37,10 @@ class BoreOutline {
   void crossings(Place (&inner)[2], Place (&outer)[2], Place (&found)[2]);
 
  private:
+  void choose_frame();
   void set_frame();
   void places_at(const double* angles, Place* places);
-  void places_at(const double* angles, const double* u, const double* v, Place* places);
+  Place place(double angle, double x, double y, double height) const;
   Place summit(double from, double to);
 
   const Bore& bore_;

@@ -192,7 +192,12 @@ void Fan::set(const FaceSet& faces, const std::vector<PlaneFace>& idle, const Fa
   faces_.planes = planes_.data();
 
   faces_.round_count = 0;
-  faces_.rounding = 0.0;
+  faces_.rounding = faces_.plane_rounding = 0.0;
+  for (int i = 0; i < faces_.first[FanFaces::kWall]; ++i) {
+    const FanPlane& p = planes_[i];
+    const double size = std::abs(p.gap) + std::abs(p.n_u) + std::abs(p.n_v);
+    faces_.plane_rounding = std::max(faces_.plane_rounding, 1e-15 * size / std::abs(p.n_t));
+  }
   for (const RoundFace& face : faces.rounds) {
     const FanRound r = seen_from(face, frame);
     faces_.rounds[faces_.round_count++] = r;

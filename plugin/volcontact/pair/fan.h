@@ -76,11 +76,12 @@ struct FanFaces {
   FanRound rounds[kMaxRounds];
   int round_count = 0;
   FanSeam seams[2];
-  bool central = false;     ///< the frame is
-  bool two_round = false;   ///< both solids have round faces
-  double rounding = 0.0;    ///< of a height [m]
-  double start = 0.0;       ///< rho of the wall of a bore about the axis; 0 without
-  double area_scale = 0.0;  ///< of the frame
+  bool central = false;         ///< the frame is
+  bool two_round = false;       ///< both solids have round faces
+  double rounding = 0.0;        ///< of a height on a round face
+  double plane_rounding = 0.0;  ///< of a height on a plane face
+  double start = 0.0;           ///< rho of the wall of a bore about the axis; 0 without
+  double area_scale = 0.0;      ///< of the frame
 };
 
 /// Sums over the columns of a fan, in coordinates along u, v and t from its center: x, y, h. These

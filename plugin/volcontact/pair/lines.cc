@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/lines.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 
 #include "volcontact/pair/even_turn.h"
 #include "volcontact/pair/fan_metrics.h"
 #include "volcontact/pair/outer_rule.h"
+#include "volcontact/pair/rim_shape.h"
 
 namespace volcontact {
 namespace {
@@ -102,9 +102,9 @@ class LinesRun {
     for (int step = 0; step < kMaxRecenterings; ++step) {
       s_.fan.ends(s_.path, u, v, rho, height);
       const bool aligned = !along_normal_ || align(u, v, rho, height);
-      recenter(u, v, rho);
-      const auto [shortest, longest] = std::minmax_element(rho, rho + kLanes);
-      if (aligned && *longest < kRoundRim * *shortest) return;
+      const RimShape rim(u, v, rho);
+      recenter(rim);
+      if (aligned && rim.ratio() < kRoundRim) return;
     }
   }
 
@@ -126,25 +126,9 @@ class LinesRun {
     return turn < kAligned;
   }
 
-  void recenter(const double* u, const double* v, const double* rho) {
-    double area = 0.0;
-    Vec2 first = Vec2::Zero();
-    Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
-    for (int i = 0; i < kLanes; ++i) {
-      const Vec2 direction(u[i], v[i]);
-      const double r2 = rho[i] * rho[i];
-      area += r2 / 2.0;
-      first += r2 * rho[i] / 3.0 * direction;
-      second += r2 * r2 / 4.0 * direction * direction.transpose();
-    }
-    const Vec2 shift = first / area;
-    const Eigen::LLT<Eigen::Matrix2d> factor(4.0 * (second / area - shift * shift.transpose()));
-    if (factor.info() != Eigen::Success) return;
+  void recenter(const RimShape& rim) {
     FanFrame frame = frame_;
-    frame.center += frame_.u * shift.x() + frame_.v * shift.y();
-    const Eigen::Matrix2d l = factor.matrixL();
-    frame.u = frame_.u * l(0, 0) + frame_.v * l(1, 0);
-    frame.v = frame_.v * l(1, 1);
+    if (!rim.round_off(frame)) return;
     double low, high;
     if (!column(frame.center, low, high)) return;
     frame.center += 0.5 * (low + high) * frame.t;
