@@ -9,10 +9,11 @@
 namespace volcontact {
 namespace {
 
-constexpr int kMaxRoundings = 6;  // of the frame
+constexpr int kMaxRoundings = 24;  // of the frame
 constexpr double kRoundRim =
-    3.0;                        // longest by shortest way to the outline; then it is round enough
-constexpr int kNarrowings = 3;  // of a place where the outline comes near the wall
+    3.0;                         // longest by shortest way to the outline; then it is round enough
+constexpr double kSpike = 20.0;  // longest by shortest of all ways: a spike between the first ones
+constexpr int kNarrowings = 3;   // of a place where the outline comes near the wall
 constexpr int kEndNarrowings = 2;  // of a place where it crosses the wall
 
 }  // namespace
@@ -54,62 +55,80 @@ void BoreOutline::places_at(const double* angles, Place* places) {
   }
 }
 
-void BoreOutline::trace() {
-  choose_frame();
-  set_frame();
-  places_.resize(kEvenTurn);
+// Fills `places_` in the present frame. False when the outline is not round in it, unless that is
+// good enough; then the frame is a rounder one.
+bool BoreOutline::place_all_round(bool good_enough) {
   constexpr int kStep = kEvenTurn / kLanes;
-  for (int k = 0, turns = 0; k < kStep; ++k) {
+  double shortest = kInfinity, longest = 0.0;
+  RimShape farthest;
+  for (int k = 0; k < kStep; ++k) {
     double u[kLanes], v[kLanes], rho[kLanes], height[kLanes];
     even_directions(kEvenTurn, k, u, v);
     s_.fan.ends(s_.path, u, v, rho, height);
-    // The window knows a thin overlap's shape only roughly.
-    for (; k == 0 && turns < kMaxRoundings; ++turns) {
-      const RimShape rim(u, v, rho);
-      if (rim.ratio() < kRoundRim || !rim.round_off(frame_)) break;
-      set_frame();
-      s_.fan.ends(s_.path, u, v, rho, height);
+    const RimShape rim(u, v, rho, height);
+    if (k == 0 && !good_enough && rim.ratio() > kRoundRim) {
+      if (!rim.round_off(frame_)) rim.go_inwards(frame_);
+      return false;
     }
+    shortest = std::min(shortest, rim.shortest());
+    if (rim.longest() > longest) farthest = rim;
+    longest = std::max(longest, rim.longest());
     for (int i = 0; i < kLanes; ++i) {
       const int at = k + kStep * i;
       places_[at] = place(2.0 * kPi * at / kEvenTurn, rho[i] * u[i], rho[i] * v[i], height[i]);
     }
   }
-  // Places that come nearest to the wall from within may hide a lobe between them.
+  if (good_enough || longest < kSpike * shortest) return true;
+  farthest.go_inwards(frame_);
+  return false;
+}
+
+void BoreOutline::trace() {
+  choose_frame();
+  set_frame();
+  places_.resize(kEvenTurn);
+  // The window knows a thin overlap's shape only roughly.
+  for (int turns = 0; !place_all_round(turns == kMaxRoundings); ++turns) set_frame();
+  // Places that come nearest to the wall may hide a lobe between them, or a dip.
   const int n = kEvenTurn;
   for (int k = 0; k < n; ++k) {
     const Place p = places_[k], before = places_[(k + n - 1) % n], after = places_[(k + 1) % n];
-    if (p.rho > 1.0 || p.rho < before.rho || p.rho < after.rho) continue;
-    if (p.rho + 2.0 * (p.rho - std::min(before.rho, after.rho)) < 1.0) continue;
-    const Place top = summit(p.angle - 2.0 * kPi / n, p.angle + 2.0 * kPi / n);
-    if (top.rho > 1.0) places_.push_back(top);
+    const double side = p.rho > 1.0 ? -1.0 : 1.0;
+    const double fall = side * p.rho - side * (side > 0.0 ? std::min(before.rho, after.rho)
+                                                          : std::max(before.rho, after.rho));
+    if (side * before.rho > side * p.rho || side * after.rho > side * p.rho) continue;
+    if (side * (p.rho - 1.0) + 2.0 * fall < 0.0) continue;
+    const Place top = summit(p.angle - 2.0 * kPi / n, p.angle + 2.0 * kPi / n, side);
+    if (side * (top.rho - 1.0) > 0.0) places_.push_back(top);
   }
   std::sort(places_.begin(), places_.end(),
             [](const Place& p, const Place& q) { return p.angle < q.angle; });
 }
 
-// Where the outline is farthest from the axis between two angles.
-BoreOutline::Place BoreOutline::summit(double from, double to) {
+// Where the outline is farthest from the axis between two angles; nearest to it with a negative
+// `side`.
+BoreOutline::Place BoreOutline::summit(double from, double to, double side) {
   Place places[kLanes];
   Place top;
   for (int step = 0; step < kNarrowings; ++step) {
     double angles[kLanes];
     for (int i = 0; i < kLanes; ++i) angles[i] = from + (to - from) * (i + 1) / (kLanes + 1);
     places_at(angles, places);
-    const int best = static_cast<int>(
-        std::max_element(places, places + kLanes,
-                         [](const Place& p, const Place& q) { return p.rho < q.rho; }) -
-        places);
+    const int best = static_cast<int>(std::max_element(places, places + kLanes,
+                                                       [&](const Place& p, const Place& q) {
+                                                         return side * p.rho < side * q.rho;
+                                                       }) -
+                                      places);
     top = places[best];
     const double width = (to - from) / (kLanes + 1);
     if (step + 1 == kNarrowings && best > 0 && best + 1 < kLanes) {
       // The summit of the parabola through three places.
       const double low = places[best - 1].rho, high = places[best + 1].rho;
       const double bend = low - 2.0 * top.rho + high;
-      if (bend < 0.0) {
+      if (side * bend < 0.0) {
         std::fill_n(angles, kLanes, top.angle + 0.5 * width * (low - high) / bend);
         places_at(angles, places);
-        if (places[0].rho > top.rho) top = places[0];
+        if (side * places[0].rho > side * top.rho) top = places[0];
       }
     }
     from = top.angle - width;

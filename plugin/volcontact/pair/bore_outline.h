@@ -28,8 +28,8 @@ class BoreOutline {
               std::vector<Place>& places)
       : bore_(bore), window_(window), s_(lines), places_(places) {}
 
-  /// Places all round, in the order of their angle. One outside lies on every part outside, however
-  /// small.
+  /// Places all round, in the order of their angle. One lies on every part outside of the wall, and
+  /// on every part inside, however small.
   void trace();
   const std::vector<Place>& places() const { return places_; }
 
@@ -38,10 +38,11 @@ class BoreOutline {
 
  private:
   void choose_frame();
+  bool place_all_round(bool good_enough);
   void set_frame();
   void places_at(const double* angles, Place* places);
   Place place(double angle, double x, double y, double height) const;
-  Place summit(double from, double to);
+  Place summit(double from, double to, double side);
 
   const Bore& bore_;
   const LinesWindow& window_;

@@ -39,8 +39,9 @@ class BoreRun {
     const auto [nearest, farthest] = std::minmax_element(
         places.begin(), places.end(), [](const Place& p, const Place& q) { return p.rho < q.rho; });
     if (farthest->rho <= 1.0) return true;  // all of it in the bore
-    if (nearest->rho > 1.0) return outside_all_round(*nearest);
-    return each_lobe();
+    if (nearest->rho <= 1.0) return each_lobe();
+    outside_all_round();
+    return true;
   }
 
  private:
@@ -67,18 +68,14 @@ class BoreRun {
     s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
   }
 
-  // All of the outline lies outside of the bore: the overlap goes round it, or misses it, unless it
-  // dips in between two places.
-  bool outside_all_round(const Place& nearest) {
+  // All of the outline lies outside of the bore: the overlap goes round it, or misses it.
+  void outside_all_round() {
     set_bore_frame(outline_.places()[0].point);
     if (goes_round_axis()) {
       integrate(-kPi, kPi, false);
-    } else if (keeps_off(nearest)) {
-      add_lines_region(a_, b_, X_AB_, options_, s_, regions_);
     } else {
-      return false;
+      add_lines_region(a_, b_, X_AB_, options_, s_, regions_);
     }
-    return true;
   }
 
   // Whether the axis pierces the outline, a convex curve: then it crosses the ray along -u, in the
@@ -100,15 +97,6 @@ class BoreRun {
       from = to;
     }
     return crossings % 2 == 1;
-  }
-
-  // Whether a plane that touches the wall along a line, across the way to this place, keeps a body
-  // off the bore.
-  bool keeps_off(const Place& nearest) const {
-    const Vec3 out = bore_.wall_normal(bore_.from_axis(nearest.point).normalized());
-    const double wall = out.dot(bore_.center) + bore_.radius;
-    return (a_.bounded() && -a_.support_height(Pose{}, -out) >= wall) ||
-           (b_.bounded() && -b_.support_height(X_AB_, -out) >= wall);
   }
 
   bool each_lobe() {

@@ -142,7 +142,7 @@ void sort_by_site(std::span<const Cell> cells, double slack, std::vector<int>& l
   for (int i = 0; i < count; ++i) {
     scratch.sorted[ends[scratch.order[regions.root(i)]]++] = leaves[i];
   }
-  leaves.swap(scratch.sorted);
+  leaves = scratch.sorted;
 }
 
 }  // namespace volcontact

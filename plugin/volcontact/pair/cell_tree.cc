@@ -182,7 +182,7 @@ void CellTree::take_up(int first, int last) {
       settled_ += cell.sums.volume;
     }
   }
-  s_.pending.swap(s_.next_pending);
+  s_.pending = s_.next_pending;  // no swap: that would make either one grow again later
   s_.next_pending.clear();
   low_ = volume_ = high_ = settled_;
   for (const OctreeScratch::Pending& leaf : s_.pending) {
@@ -248,7 +248,7 @@ void CellTree::smooth() {
     s_.cutters[task_.thread()].evaluate(s_.faces, cell);
     leaf.volume = cell.sums.volume;
   });
-  s_.next_pending.swap(s_.pending);
+  s_.next_pending = s_.pending;
   s_.pending.clear();
   take_up(0, 0);
 }

@@ -16,8 +16,8 @@ using Vec2 = Eigen::Vector2d;
 
 constexpr double kClear = 0.02;       // |S| / area below which S gives no direction to look along
 constexpr double kSameCorner = 1e-7;  // squared distance of directions that count as one
-constexpr int kMaxRecenterings = 6;
-constexpr double kRoundRim = 2.0;  // longest by shortest way to the rim; then one step is enough
+constexpr int kMaxRecenterings = 24;  // from a far corner of a thin overlap
+constexpr double kRoundRim = 2.0;     // longest by shortest way to the rim; then one step is enough
 constexpr double kMostTurn = 0.5;  // of the columns towards the normal of the rim; more: no normal
 constexpr double kAligned = 0.1;   // a turn after which the next one would be too small to matter
 constexpr double kWhole = 0.999;   // share of a solid in the overlap, that is all of it
@@ -102,7 +102,7 @@ class LinesRun {
     for (int step = 0; step < kMaxRecenterings; ++step) {
       s_.fan.ends(s_.path, u, v, rho, height);
       const bool aligned = !along_normal_ || align(u, v, rho, height);
-      const RimShape rim(u, v, rho);
+      const RimShape rim(u, v, rho, height);
       recenter(rim);
       if (aligned && rim.ratio() < kRoundRim) return;
     }
@@ -128,11 +128,13 @@ class LinesRun {
 
   void recenter(const RimShape& rim) {
     FanFrame frame = frame_;
-    if (!rim.round_off(frame)) return;
-    double low, high;
-    if (!column(frame.center, low, high)) return;
-    frame.center += 0.5 * (low + high) * frame.t;
-    frame_ = frame;
+    double low = 0.0, high = 0.0;
+    if (rim.round_off(frame) && column(frame.center, low, high)) {
+      frame.center += 0.5 * (low + high) * frame.t;
+      frame_ = frame;
+    } else {
+      rim.go_inwards(frame_);
+    }
     s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
   }
 
@@ -154,6 +156,7 @@ class LinesRun {
   void integrate_arcs() {
     s_.fan.clear();
     error_ = 0.0;
+    volume_scale_ = window_.volume;
     set_corners();
     set_arcs();
     while (!s_.arcs.empty()) integrate_arc();
@@ -243,7 +246,10 @@ class LinesRun {
     s_.fan.integrate(s_.path, u, v, weight, section);
     for (int i = 0; i < kLanes; ++i) section[i] *= weight[i];
     const double error = legendre_error(section);
-    if (error > outer_rule::kTarget * options_.tolerance * window_.volume &&
+    double volume = 0.0;
+    for (double part : section) volume += part;
+    volume_scale_ = std::max(volume_scale_, volume);
+    if (error > outer_rule::kTarget * options_.tolerance * volume_scale_ &&
         arc.depth < outer_rule::kMaxDepth) {
       divide(arc);
       return;
@@ -292,6 +298,7 @@ class LinesRun {
   FanFrame frame_;
   bool along_normal_ = false;  // the columns are to follow the normal, which is yet to be found
   double error_ = 0.0;
+  double volume_scale_ = 0.0;  // least V, as known so far
 };
 
 }  // namespace

@@ -12,9 +12,13 @@ namespace volcontact {
 /// directions.
 class RimShape {
  public:
-  RimShape(const double* u, const double* v, const double* rho) {
+  RimShape() = default;
+  RimShape(const double* u, const double* v, const double* rho, const double* height) {
     const auto [shortest, longest] = std::minmax_element(rho, rho + kLanes);
-    ratio_ = *longest / *shortest;
+    shortest_ = *shortest;
+    longest_ = *longest;
+    const auto far = longest - rho;
+    farthest_ = rho[far] * Vec3(u[far], v[far], height[far] / rho[far]);
     double area = 0.0;
     Eigen::Vector2d first = Eigen::Vector2d::Zero();
     Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
@@ -31,8 +35,10 @@ class RimShape {
     axes_ = factor.matrixL();
   }
 
+  double shortest() const { return shortest_; }
+  double longest() const { return longest_; }
   /// Longest by shortest way to the rim.
-  double ratio() const { return ratio_; }
+  double ratio() const { return longest_ / shortest_; }
 
   /// A frame about the middle of the rim in which it is rounder; false where the rim is too thin to
   /// tell.
@@ -44,8 +50,23 @@ class RimShape {
     return true;
   }
 
+  /// From a far corner, whose rim tells little: a frame half way to the place of the rim that is
+  /// farthest off.
+  void go_inwards(FanFrame& frame) const {
+    const Vec3 half = 0.5 * farthest_;
+    const double scale = half.head<2>().norm();
+    if (frame.central) {
+      frame.t += half.x() * frame.u + half.y() * frame.v;
+    } else {
+      frame.center = frame.place(half.x(), half.y(), half.z());
+    }
+    frame.u *= scale;
+    frame.v *= scale;
+  }
+
  private:
-  double ratio_;
+  double shortest_, longest_;
+  Vec3 farthest_;  // of the rim: along u, v and t
   bool known_;
   Eigen::Vector2d shift_;
   Eigen::Matrix2d axes_;
