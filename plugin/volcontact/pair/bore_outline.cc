@@ -11,9 +11,9 @@ namespace {
 
 constexpr int kMaxRoundings = 24;  // of the frame
 constexpr double kRoundRim =
-    3.0;                         // longest by shortest way to the outline; then it is round enough
-constexpr double kSpike = 20.0;  // longest by shortest of all ways: a spike between the first ones
-constexpr int kNarrowings = 3;   // of a place where the outline comes near the wall
+    3.0;                        // longest by shortest way to the outline; then it is round enough
+constexpr double kSpike = 6.0;  // longest by shortest of all ways: a spike between the first ones
+constexpr int kNarrowings = 3;  // of a place where the outline comes near the wall
 constexpr int kEndNarrowings = 2;  // of a place where it crosses the wall
 
 }  // namespace
