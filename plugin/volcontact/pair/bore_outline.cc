@@ -62,20 +62,21 @@ bool BoreOutline::place_all_round(bool good_enough) {
   double shortest = kInfinity, longest = 0.0;
   RimShape farthest;
   for (int k = 0; k < kStep; ++k) {
-    double u[kLanes], v[kLanes], rho[kLanes], height[kLanes];
-    even_directions(kEvenTurn, k, u, v);
-    s_.fan.ends(s_.path, u, v, rho, height);
-    const RimShape rim(u, v, rho, height);
-    if (k == 0 && !good_enough && rim.ratio() > kRoundRim) {
+    RimShape rim;
+    even_directions(kEvenTurn, k, rim.u, rim.v);
+    s_.fan.ends(s_.path, rim.u, rim.v, rim.rho, rim.height);
+    const double near = rim.shortest(), far = rim.longest();
+    if (k == 0 && !good_enough && far > kRoundRim * near) {
       if (!rim.round_off(frame_)) rim.go_inwards(frame_);
       return false;
     }
-    shortest = std::min(shortest, rim.shortest());
-    if (rim.longest() > longest) farthest = rim;
-    longest = std::max(longest, rim.longest());
+    if (far > longest) farthest = rim;
+    shortest = std::min(shortest, near);
+    longest = std::max(longest, far);
     for (int i = 0; i < kLanes; ++i) {
       const int at = k + kStep * i;
-      places_[at] = place(2.0 * kPi * at / kEvenTurn, rho[i] * u[i], rho[i] * v[i], height[i]);
+      places_[at] = place(2.0 * kPi * at / kEvenTurn, rim.rho[i] * rim.u[i], rim.rho[i] * rim.v[i],
+                          rim.height[i]);
     }
   }
   if (good_enough || longest < kSpike * shortest) return true;

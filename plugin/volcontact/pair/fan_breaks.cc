@@ -210,6 +210,8 @@ class BreakSearch {
       const double before = sign * values[i - 1], here = sign * values[i],
                    after = sign * values[i + 1];
       if (!(before > 0.0 && after > 0.0 && here <= before && here <= after)) continue;
+      // A parabola through the three goes an eighth of their bend lower at most.
+      if (here > before + after - 2.0 * here) continue;
       const auto [angle, lowest] =
           dip([&](double at) { return sign * value(at); }, angles[i - 1], angles[i + 1]);
       if (lowest < 0.0) {

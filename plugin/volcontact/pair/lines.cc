@@ -97,23 +97,24 @@ class LinesRun {
 
   // Eight ways to the rim tell its center and its shape, in which it is rounder.
   void recenter() {
-    double u[kLanes], v[kLanes], rho[kLanes], height[kLanes];
-    even_directions(kLanes, 0, u, v);
+    RimShape rim;
+    even_directions(kLanes, 0, rim.u, rim.v);
     for (int step = 0; step < kMaxRecenterings; ++step) {
-      s_.fan.ends(s_.path, u, v, rho, height);
-      const bool aligned = !along_normal_ || align(u, v, rho, height);
-      const RimShape rim(u, v, rho, height);
+      s_.fan.ends(s_.path, rim.u, rim.v, rim.rho, rim.height);
+      const bool aligned = !along_normal_ || align(rim);
+      const bool round = rim.longest() < kRoundRim * rim.shortest();
       recenter(rim);
-      if (aligned && rim.ratio() < kRoundRim) return;
+      if (aligned && round) return;
     }
   }
 
   // Turns the columns to the area vector of the rim, which is that of the faces if these meet
   // there. Whether they were about so before.
-  bool align(const double* u, const double* v, const double* rho, const double* height) {
+  bool align(const RimShape& ends) {
     Vec3 rim[kLanes], sum = Vec3::Zero();
     for (int i = 0; i < kLanes; ++i) {
-      rim[i] = rho[i] * (u[i] * frame_.u + v[i] * frame_.v) + height[i] * frame_.t;
+      rim[i] =
+          ends.rho[i] * (ends.u[i] * frame_.u + ends.v[i] * frame_.v) + ends.height[i] * frame_.t;
     }
     for (int i = 0; i < kLanes; ++i) sum += rim[i].cross(rim[(i + 1) % kLanes]);
     sum.normalize();
