@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kWidestAngle = 1.6;  // of an undivided arc [rad]
 constexpr double kSameAngle = 1e-9;
+constexpr double kOnAxis = 1e-8;  // of a plane from the axis, per radius
+constexpr double kOnFace = 1e-6;  // of an apex from a face, per its distance from the middle
 constexpr double kEndError =
     5.0;  // error by its estimate where an arc ends in nothing, as measured
 
@@ -34,8 +36,13 @@ class BoreRun {
   bool run() {
     window_ = find_lines_window(a_, b_, X_AB_, s_.path, true, s_.faces);
     if (window_.kind == LinesWindow::Kind::kApart) return true;
+    if (apex_is_on_a_face()) return false;
+    move_off_axis();
     outline_.trace();
     const std::vector<Place>& places = outline_.places();
+    for (const Place& place : places) {
+      if (!std::isfinite(place.rho)) return false;
+    }
     const auto [nearest, farthest] = std::minmax_element(
         places.begin(), places.end(), [](const Place& p, const Place& q) { return p.rho < q.rho; });
     if (farthest->rho <= 1.0) return true;  // all of it in the bore
@@ -46,6 +53,28 @@ class BoreRun {
 
  private:
   using Place = BoreOutline::Place;
+
+  // A round face is no function of the direction from a place on it.
+  bool apex_is_on_a_face() const {
+    if (!bore_.is_cone()) return false;
+    for (const RoundFace& face : s_.faces.active.rounds) {
+      const Vec3 y = face.map * (bore_.center - face.center);
+      const double size = face.level() + y.squaredNorm();
+      if (std::abs(face(bore_.center)) < kOnFace * size && !(y.norm() < kOnFace)) return true;
+    }
+    return false;
+  }
+
+  // A plane that holds the axis is seen edge on from it: it is moved so that the axis lies within.
+  void move_off_axis() {
+    const double least = kOnAxis * bore_.radius_at(window_.center);
+    for (PlaneFace& plane : s_.faces.active.planes) {
+      const double beyond = plane.offset - plane.normal.dot(bore_.center);
+      if (std::abs(plane.normal.dot(bore_.axis)) < kOnAxis && std::abs(beyond) < least) {
+        plane.offset += least - beyond;
+      }
+    }
+  }
 
   double angle_of(const Vec3& x) const {
     const Vec3 d = bore_.from_axis(x);
@@ -185,7 +214,7 @@ class BoreRun {
     error_ = 0.0;
     set_breaks(low, high, open);
     volume_scale_ = 0.0;
-    const bool smooth_ring = !open && breaks_.size() == 2 && ring();
+    const bool smooth_ring = !open && s_.breaks.complete && breaks_.size() == 2 && ring();
     for (std::size_t i = 0; i + 1 < breaks_.size() && !smooth_ring; ++i) {
       const double from = breaks_[i], to = breaks_[i + 1];
       const int parts = std::max(1, static_cast<int>(std::ceil((to - from) / kWidestAngle)));
@@ -261,7 +290,8 @@ class BoreRun {
         volume[k % 2] += s_.fan.batch().moments[0];
       }
       error_ = even_error(volume[0], volume[1]);
-      if (error_ <= outer_rule::kTarget * options_.tolerance * (volume[0] + volume[1])) return true;
+      if (error_ <= outer_rule::kEvenTarget * options_.tolerance * (volume[0] + volume[1]))
+        return true;
     }
     s_.fan.clear();
     error_ = 0.0;

@@ -21,6 +21,7 @@ constexpr double kRoundRim = 2.0;     // longest by shortest way to the rim; the
 constexpr double kMostTurn = 0.5;  // of the columns towards the normal of the rim; more: no normal
 constexpr double kAligned = 0.1;   // a turn after which the next one would be too small to matter
 constexpr double kWhole = 0.999;   // share of a solid in the overlap, that is all of it
+constexpr int kLeastArcs = 4;      // where no corners are known
 constexpr double kWidestAngle = 2.3;  // of an arc between corners [rad]
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -151,7 +152,7 @@ class LinesRun {
       volume[half] = s_.fan.batch().moments[0];
     }
     error_ = even_error(volume[0], volume[1]);
-    return error_ <= outer_rule::kTarget * options_.tolerance * (volume[0] + volume[1]);
+    return error_ <= outer_rule::kEvenTarget * options_.tolerance * (volume[0] + volume[1]);
   }
 
   void integrate_arcs() {
@@ -195,7 +196,8 @@ class LinesRun {
   void fill(const Vec2& from, const Vec2& to, bool whole_turn) {
     double angle = std::atan2(cross(from, to), from.dot(to));
     if (whole_turn || angle <= 0.0) angle += 2.0 * kPi;
-    const int parts = static_cast<int>(std::ceil(angle / kWidestAngle));
+    const int parts =
+        std::max(static_cast<int>(std::ceil(angle / kWidestAngle)), whole_turn ? kLeastArcs : 1);
     for (int k = 1; k < parts; ++k) {
       const double turn = angle * k / parts, c = std::cos(turn), s = std::sin(turn);
       s_.corners.push_back({c * from.x() - s * from.y(), s * from.x() + c * from.y()});

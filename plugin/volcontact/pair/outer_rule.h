@@ -13,6 +13,7 @@ namespace volcontact {
 /// are estimates, of V.
 namespace outer_rule {
 inline constexpr double kTarget = 5e-2;      ///< share of the tolerance asked: no more division
+inline constexpr double kEvenTarget = 1e-2;  ///< the same of even steps, where a kink may be hidden
 inline constexpr int kMaxDepth = 4;          ///< of divisions of an arc
 inline constexpr double kInnerError = 3e-6;  ///< of the rule along a half-plane, per V; as measured
 }  // namespace outer_rule

@@ -112,6 +112,9 @@ std::vector<Case> cases() {
       {"ball off the axis", cup(), Sphere({.radius = 0.010}), at(0.0, {0.001, 5e-4, 0.0165}), 1},
       {"egg", cup(), Ellipsoid({.semi_axes = {0.010, 0.008, 0.013}}), at(0.4, {2e-4, 0, 0.016}), 1},
       {"pill", cup(), Capsule({.radius = 0.009, .half_length = 0.02}), at(0.3, {0, 0, 0.0345}), 1},
+      // The apex of the chamfer lies in the pill.
+      {"pill through a chamfer", chamfered(), Capsule({.radius = 0.010, .half_length = 0.015}),
+       at(0.5, {0.002, -5e-4, -0.005}), 1},
       {"box", cup(), Box({.half_sizes = {0.008, 0.006, 0.01}}), at(0.1, {0.0, 0.001, 0.0195}), 4},
       {"tilted pin", cup(),
        Frustum({.bottom_radius = 0.005, .top_radius = 0.0125, .half_length = 0.0075}),
