@@ -118,7 +118,8 @@ TEST(Csg, HolesAreCarvedOnce) {
   // A chamfer that begins within the bore: each is carved where it is the wider one.
   const Csg chamfer(Frustum({.bottom_radius = .04, .top_radius = .08, .half_length = .02}),
                     at(0, 0, .09));
-  for (const CarvedPiece& piece : (box(.3, .2, .1) - tube(.05, .5) - chamfer).carved_pieces()) {
+  const Csg chamfered = box(.3, .2, .1) - tube(.05, .5) - chamfer;
+  for (const CarvedPiece& piece : chamfered.carved_pieces()) {
     EXPECT_EQ(piece.carved.size(), 1u);
     EXPECT_EQ(piece.bores.size(), 1u);
   }
