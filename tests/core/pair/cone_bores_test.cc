@@ -66,7 +66,7 @@ TEST(ConeBores, ABallInACupIsARing) {
     ASSERT_EQ(out.sites.size(), 1u);
     EXPECT_NEAR(out.total.volume, expected, 1e-7 * expected + 1e-20) << "depth " << depth;
     EXPECT_LE(std::abs(out.total.centroid.x()) + std::abs(out.total.centroid.y()), 1e-12);
-    EXPECT_NEAR(out.total.depth, depth, 5e-3 * depth);  // across the wall
+    EXPECT_NEAR(out.total.depth, depth, 1e-3 * depth);  // across the wall
   }
 }
 
