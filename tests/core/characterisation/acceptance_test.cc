@@ -5,20 +5,13 @@
 // of a bore in bored_lines_test.cc.
 #include <gtest/gtest.h>
 
+#include "core/support/evaluated.h"
 #include "core/support/random.h"
 #include "core/support/reference_integral.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact::test {
 namespace {
-
-Interference evaluated(const Shape& a, const Shape& b, const Pose& X_AB,
-                       const InterferenceOptions& options = {}) {
-  InterferenceWorkspace workspace;
-  Interference out;
-  interference(a, b, X_AB, options, workspace, out);
-  return out;
-}
 
 // Volume, centroid and inertia, relative; the area vector by A's area, along the normal n alone
 // where one is given: of thin overlaps the reference knows no more.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/support/contact_poses.h"
+#include "core/support/evaluated.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact::test {
@@ -392,14 +393,6 @@ const Shape& shape(const std::string& name) {
     if (e.name == name) return e.shape;
   }
   throw std::invalid_argument("no example is named " + name);
-}
-
-Interference evaluated(const Shape& a, const Shape& b, const Pose& X_AB,
-                       const InterferenceOptions& options = {}) {
-  InterferenceWorkspace workspace;
-  Interference out;
-  interference(a, b, X_AB, options, workspace, out);
-  return out;
 }
 
 TEST(FoundPoses, VolumesAreWithinTheCertifiedBoundsInBothOrders) {

@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include "core/support/evaluated.h"
 #include "core/support/gradient.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact {
 namespace {
+
+using test::evaluated;
 
 constexpr double kBore = 0.01;  // radius [m]
 constexpr double kHalf = 0.02;  // half height of the block
@@ -16,14 +19,6 @@ constexpr double kHalf = 0.02;  // half height of the block
 Shape bored_block() {
   return Csg(Csg::Operation::kDifference, Csg(Box({.half_sizes = {0.03, 0.03, kHalf}})),
              Csg(Cylinder({.radius = kBore, .half_length = 0.03})));
-}
-
-Interference evaluated(const Shape& a, const Shape& b, const Pose& X_AB,
-                       Engine engine = Engine::kAuto, double tolerance = 1e-3) {
-  InterferenceWorkspace workspace;
-  Interference out;
-  interference(a, b, X_AB, {.tolerance = tolerance, .engine = engine}, workspace, out);
-  return out;
 }
 
 // Area of a disc of radius r outside of a disc of radius R whose center is d away.

@@ -3,11 +3,14 @@
 // Holes with a cone for a wall: cups and chamfers.
 #include <gtest/gtest.h>
 
+#include "core/support/evaluated.h"
 #include "core/support/gradient.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact {
 namespace {
+
+using test::evaluated;
 
 constexpr double kHalf = 0.02;                   // half height of the block [m]
 constexpr double kBottom = 0.004, kTop = 0.014;  // radii of the cup
@@ -30,14 +33,6 @@ double cup_radius(double z) { return kTop - kSlope * (kHalf - z); }
 // A bore of 10 mm radius, widened to 13 mm over its last 3 mm.
 Csg bore() { return Csg(Cylinder({.radius = 0.010, .half_length = 0.03})); }
 Csg chamfered() { return without(without(block(), bore()), cone(0.010, 0.013, 0.017, kHalf)); }
-
-Interference evaluated(const Shape& a, const Shape& b, const Pose& X_AB,
-                       Engine engine = Engine::kAuto, double tolerance = 1e-3) {
-  InterferenceWorkspace workspace;
-  Interference out;
-  interference(a, b, X_AB, {.tolerance = tolerance, .engine = engine}, workspace, out);
-  return out;
-}
 
 // Volume between two solids of revolution about z: pi int (r_b^2 - r_a^2) where that is positive,
 // by Simpson's rule, which is exact for what is quadratic in z.

@@ -7,6 +7,7 @@
 #include <limits>
 #include <new>
 
+#include "core/support/evaluated.h"
 #include "core/support/gradient.h"
 #include "core/support/matchers.h"
 #include "core/support/random_shapes.h"
@@ -30,6 +31,8 @@ thread_local long allocations = 0;
 
 namespace volcontact {
 namespace {
+
+using test::evaluated;
 
 using test::Random;
 
@@ -60,14 +63,6 @@ const std::vector<Served> kServed{
     {kBall, kBall, Engine::kClosedForm},   {kGround, kBox, Engine::kClip},
     {kGround, kGem, Engine::kClip},        {kBox, kBox, Engine::kClip},
     {kBox, kGem, Engine::kClip},           {kGem, kGem, Engine::kClip}};
-
-Interference evaluated(const Shape& a, const Shape& b, const Pose& X_AB,
-                       const InterferenceOptions& options = {}) {
-  InterferenceWorkspace workspace;
-  Interference result;
-  interference(a, b, X_AB, options, workspace, result);
-  return result;
-}
 
 Pose touching_pose(Random& random) { return {random.rotation(), random.in_box(0.35)}; }
 
