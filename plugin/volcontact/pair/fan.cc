@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "volcontact/pair/gauss.h"
@@ -38,11 +39,14 @@ FanFrame round_frame(const Vec3& center, const Mat3& spread, const Vec3& t) {
   return {center, basis.col(0) * l(0, 0) + basis.col(1) * l(1, 0), basis.col(1) * l(1, 1), t};
 }
 
-void Fan::clear(FanSums& sums, std::vector<FanSums::OnPlane>& planes, int count) {
-  sums = FanSums{};
+void Fan::clear(FanSums& sums, std::vector<FanSums::OnPlane>& planes) const {
+  std::fill_n(sums.moments, 10, 0.0);
+  sums.depth_moment = 0.0;
+  sums.bore = {};
+  std::fill_n(sums.rounds, faces_.round_count, FanSums::OnRound{});
   sums.low = kFar;
   sums.high = -kFar;
-  planes.assign(count, FanSums::OnPlane{});
+  planes.assign(faces_.active_planes, FanSums::OnPlane{});
   sums.planes = planes.data();
 }
 
@@ -176,18 +180,26 @@ FanSeam seen_from(const Segment& segment, const FanFrame& frame) {
 }  // namespace
 
 void Fan::set(const FaceSet& faces, const std::vector<PlaneFace>& idle, const FanFrame& frame) {
-  planes_.clear();
+  seen_.clear();
+  std::array<int, FanFaces::kGroups> next{};  // sizes of the groups, then where they go on
   const double unit = frame.central ? frame.t.norm() : 1.0;
-  for (int group = 0; group < FanFaces::kGroups; ++group) {
-    faces_.first[group] = static_cast<int>(planes_.size());
-    const bool idle_group = group >= FanFaces::kIdleLowerA;
-    const std::vector<PlaneFace>& list = idle_group ? idle : faces.planes;
+  for (const bool is_idle : {false, true}) {
+    const std::vector<PlaneFace>& list = is_idle ? idle : faces.planes;
     for (std::size_t i = 0; i < list.size(); ++i) {
       const FanPlane plane = seen_from(list[i], static_cast<int>(i), frame);
-      if (group_of(plane.n_t / unit, list[i].owner, idle_group) == group) planes_.push_back(plane);
+      const int group = group_of(plane.n_t / unit, list[i].owner, is_idle);
+      if (group == FanFaces::kGroups) continue;
+      seen_.push_back({plane, group});
+      ++next[group];
     }
   }
-  faces_.first[FanFaces::kGroups] = static_cast<int>(planes_.size());
+  faces_.first[0] = 0;
+  for (int group = 0; group < FanFaces::kGroups; ++group) {
+    faces_.first[group + 1] = faces_.first[group] + next[group];
+    next[group] = faces_.first[group];
+  }
+  planes_.resize(seen_.size());
+  for (const Seen& s : seen_) planes_[next[s.group]++] = s.plane;
   faces_.active_planes = faces_.first[FanFaces::kIdleLowerA];
   faces_.planes = planes_.data();
 
@@ -216,7 +228,7 @@ void Fan::set(const FaceSet& faces, const std::vector<PlaneFace>& idle, const Fa
   if (work_.size() < size) work_.resize(size);
 }
 
-void Fan::clear() { clear(total_, total_planes_, faces_.active_planes); }
+void Fan::clear() { clear(total_, total_planes_); }
 
 void Fan::ends(SimdPath path, const double* u, const double* v, double* rho, double* height) {
   VOLCONTACT_SIMD_CALL(path, ends, faces_, work_.data()->x, u, v, rho, height);
@@ -224,7 +236,7 @@ void Fan::ends(SimdPath path, const double* u, const double* v, double* rho, dou
 
 void Fan::integrate(SimdPath path, const double* u, const double* v, const double* weight,
                     double* section) {
-  clear(batch_, batch_planes_, faces_.active_planes);
+  clear(batch_, batch_planes_);
   VOLCONTACT_SIMD_CALL(path, integrate, faces_, work_.data()->x, u, v, weight, batch_, section);
 }
 

@@ -148,9 +148,14 @@ class Fan {
   void clear();
 
  private:
-  static void clear(FanSums& sums, std::vector<FanSums::OnPlane>& planes, int count);
+  void clear(FanSums& sums, std::vector<FanSums::OnPlane>& planes) const;
 
+  struct Seen {
+    FanPlane plane;
+    int group;
+  };
   FanFaces faces_;
+  std::vector<Seen> seen_;
   std::vector<FanPlane> planes_;
   FanSums batch_, total_;
   std::vector<FanSums::OnPlane> batch_planes_, total_planes_;

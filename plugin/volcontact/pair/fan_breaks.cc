@@ -311,7 +311,7 @@ class BreakSearch {
     const double height = frame_.central ? 1.0 / y.z() : y.z();
     breaks_.low = std::min(breaks_.low, height);
     breaks_.high = std::max(breaks_.high, height);
-    const double length = std::hypot(y.x(), y.y()), rho = frame_.central ? length * height : length;
+    const double length = y.head<2>().norm(), rho = frame_.central ? length * height : length;
     if (use == kTop || !(rho > 1e-9)) return;
     if (faces_.has_bore && rho < 1.0 - 1e-9) return;
     breaks_.directions.push_back({y.x() / length, y.y() / length});

@@ -69,6 +69,7 @@ namespace {
 
 constexpr int kMaxRoundings = 12;    // how often the frame is made anew
 constexpr double kRounding = 1e-12;  // of a common point, per its distance from both frames
+constexpr int kMaxTurns = 5;         // in search of a place behind both planes of an edge
 constexpr int kMaxMoves = 8;         // from a common point on the faces into the overlap
 constexpr double kRound = 3.5;       // longest by shortest way out of a well-rounded overlap
 constexpr double kThinnest = 1e-14;  // squared relative length below which one rounding cannot see
@@ -110,16 +111,30 @@ class WindowSearch {
     }
   }
 
+  // From where to where a solid reaches.
+  struct Span {
+    Vec3 along;
+    double low = 0.0, high = 0.0;
+    const Solid2* solid = nullptr;
+  };
+  // Opposite faces come one after the other: the last span may be known but for its sign.
+  static Span span_along(const Vec3& e, const Solid2& s, const Span& last) {
+    if (last.solid == &s && last.along == -e) return {e, -last.high, -last.low, &s};
+    return {e, -s.view.support_height(s.X, -e), s.view.support_height(s.X, e), &s};
+  }
+
   // Sets aside the planes that the other solid does not reach; false when one separates the two.
   bool sort_planes() {
     std::vector<PlaneFace>& planes = faces_.active.planes;
     std::size_t kept = 0;
+    Span span{Vec3::Zero()};
     for (const PlaneFace& plane : planes) {
       const Solid2& s = solid(other(plane.owner));
       if (s.view.bounded()) {
-        if (-s.view.support_height(s.X, -plane.normal) >= plane.offset) return false;
+        span = span_along(plane.normal, s, span);
+        if (span.low >= plane.offset) return false;
         // Of two faces in one plane A's stays.
-        const double reach = s.view.support_height(s.X, plane.normal) - plane.offset;
+        const double reach = span.high - plane.offset;
         const double rounding = kRounding * (std::abs(plane.offset) + s.X.translation.norm());
         if (reach <= (plane.owner == Owner::kA ? -2.0 * rounding : rounding)) {
           faces_.idle.push_back(plane);
@@ -171,17 +186,15 @@ class WindowSearch {
     return round(x) + scale2 * beyond * beyond;
   }
 
-  // A common point: half way into the plane that a solid's deepest place lies behind, or between
-  // the middles, or by the general method.
+  // A common point: half way into the plane that a solid's deepest place lies behind, or the two
+  // planes of an edge, or between the middles, or by the general method.
   bool find_start(Vec3& start) const {
     for (const PlaneFace& plane : faces_.active.planes) {
-      const Solid2& s = solid(other(plane.owner));
-      if (!s.view.bounded()) continue;
-      const Vec3 deepest = s.view.support(s.X, -plane.normal);
-      const Vec3 inward = s.view.middle(s.X) - deepest;
-      const double depth = plane.offset - plane.normal.dot(deepest);
-      start = deepest + std::min(0.5, 0.5 * depth / plane.normal.dot(inward)) * inward;
-      if (inside(start)) return true;
+      if (!solid(other(plane.owner)).view.bounded()) continue;
+      if (start_from(deepest(plane.owner, plane.normal), plane.owner, start)) return true;
+    }
+    for (Owner owner : {Owner::kA, Owner::kB}) {
+      if (count_planes(owner) == 2 && start_at_edge(owner, start)) return true;
     }
     if (solids_[0].view.bounded() && solids_[1].view.bounded()) {
       return find_common_point(solids_[0].view, solids_[1].view, solids_[1].X, start) &&
@@ -190,6 +203,64 @@ class WindowSearch {
     for (const Solid2& s : solids_) {
       start = s.view.middle(s.X);
       if (s.view.bounded() && inside(start)) return true;
+    }
+    return false;
+  }
+
+  // The place of the other solid that lies deepest against `outward`.
+  Vec3 deepest(Owner owner, const Vec3& outward) const {
+    const Solid2& s = solid(other(owner));
+    return s.view.support(s.X, -outward);
+  }
+
+  // From a place on the other solid towards its middle, as far as half way out of the owner's
+  // planes.
+  bool start_from(const Vec3& place, Owner owner, Vec3& start) const {
+    const Solid2& s = solid(other(owner));
+    const Vec3 inward = s.view.middle(s.X) - place;
+    double way = 0.5;
+    for (const PlaneFace& plane : faces_.active.planes) {
+      if (plane.owner != owner) continue;
+      const double depth = plane.offset - plane.normal.dot(place);
+      const double speed = plane.normal.dot(inward);
+      if (depth > 0.0 && speed > 0.0) way = std::min(way, 0.5 * depth / speed);
+    }
+    start = place + way * inward;
+    return inside(start);
+  }
+
+  // Turns from one plane of an edge to the other until the deepest place lies behind both. False
+  // position with halvings (Illinois).
+  bool start_at_edge(Owner owner, Vec3& start) const {
+    if (!solid(other(owner)).view.bounded()) return false;
+    const PlaneFace* edge[2];
+    int count = 0;
+    for (const PlaneFace& plane : faces_.active.planes) {
+      if (plane.owner == owner) edge[count++] = &plane;
+    }
+    Vec3 place;
+    double least;
+    // How much deeper behind the second plane.
+    const auto lead = [&](double turn) {
+      place = deepest(owner, (1.0 - turn) * edge[0]->normal + turn * edge[1]->normal);
+      const double one = edge[0]->offset - edge[0]->normal.dot(place);
+      const double two = edge[1]->offset - edge[1]->normal.dot(place);
+      least = std::min(one, two);
+      return two - one;
+    };
+    double t0 = 0.0, f0 = lead(t0), t1 = 1.0, f1 = lead(t1);
+    if (!(f0 < 0.0 && f1 > 0.0)) return false;
+    for (int step = 0; step < kMaxTurns; ++step) {
+      const double t = t1 - f1 * (t1 - t0) / (f1 - f0), f = lead(t);
+      if (least > 0.0) return start_from(place, owner, start);
+      if ((f > 0.0) != (f1 > 0.0)) {
+        t0 = t1;
+        f0 = f1;
+      } else {
+        f0 *= 0.5;
+      }
+      t1 = t;
+      f1 = f;
     }
     return false;
   }
@@ -262,7 +333,7 @@ class WindowSearch {
       look_from(c);
       double m[9];
       for (int i = 0; i < 9; ++i) m[i] = spread(i / 3, i % 3);
-      VOLCONTACT_SIMD_CALL(path_, chords, view_, m, step > 0, s);
+      VOLCONTACT_SIMD_CALL(path_, chords, view_, m, step == 0, s);
       if (!(s.total > 0.0)) return;
       // A ball of radius r has the chord ends r: from them 3/4 r and 3/5 r^2 are the moments of the
       // solid between the center and the ends.
