@@ -18,7 +18,7 @@ MAY_INCLUDE = {
     "volcontact/model": {"base", "metrics", "shape", "pair", "force"},
     "adaptor": {"base", "metrics", "shape", "pair", "force", "model"},
     "c_api": {"base", "metrics", "shape", "pair", "force", "model"},
-    "cgal": {"base", "metrics", "shape", "pair"},
+    "cgal": set(),  # a program of its own under another licence
 }
 # The only folder that may include each library of others.
 OWNER = {"mujoco": "adaptor", "CGAL": "cgal"}

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The `volcontact` program: one module per command.
 
-Exit status: 0 all went well, 1 the scene or the request is at fault, 2 wrong usage, 3 it ran and
-MuJoCo or volcontact warned of the numbers, 130 interrupted.
+Exit status: 0 all went well, 1 the scene, the mesh or the request is at fault, 2 wrong usage, 3 it
+ran and MuJoCo or volcontact warned of the numbers, 130 interrupted.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from collections.abc import Sequence
 import mujoco
 
 import volcontact
-from volcontact.cli import check, compare, run
+from volcontact.cli import check, compare, mesh, run
 from volcontact.cli.terminal import Terminal
 
 __all__ = ["main"]
 
-_COMMANDS = (run, compare, check)
+_COMMANDS = (run, compare, check, mesh)
 _ERROR, _INTERRUPTED = 1, 130
 
 _EXAMPLES = """\
@@ -26,6 +26,7 @@ examples:
   volcontact check scene.xml                       what volcontact understands of a scene
   volcontact run scene.xml --duration 2            step it and say how it ended
   volcontact compare scene.xml --out report        volumetric beside native contact, with pictures
+  volcontact mesh check part.stl                   whether a mesh is a solid
 """
 
 

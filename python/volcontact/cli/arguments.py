@@ -18,16 +18,23 @@ def add_command(
     commands: Subparsers, name: str, purpose: str, examples: str
 ) -> argparse.ArgumentParser:
     """Adds a command with its help text and examples, the scene and --json."""
-    parser = commands.add_parser(
+    parser = plain_command(commands, name, purpose, examples)
+    parser.add_argument("scene", metavar="SCENE", type=scene, help="MJCF file")
+    parser.add_argument("--json", action="store_true", help="print the result as JSON")
+    return parser
+
+
+def plain_command(
+    commands: Subparsers, name: str, purpose: str, examples: str
+) -> argparse.ArgumentParser:
+    """Adds a command with its help text and examples, and no argument yet."""
+    return commands.add_parser(
         name,
         help=purpose,
         description=purpose[0].upper() + purpose[1:] + ".",
         epilog=f"examples:\n{examples}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("scene", metavar="SCENE", type=scene, help="MJCF file")
-    parser.add_argument("--json", action="store_true", help="print the result as JSON")
-    return parser
 
 
 def add_time(parser: argparse.ArgumentParser, duration: float) -> None:
