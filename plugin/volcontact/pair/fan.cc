@@ -6,22 +6,17 @@
 #include <array>
 #include <utility>
 
-#include "volcontact/pair/gauss.h"
+#include "volcontact/pair/fan_limits.h"
 
 namespace volcontact {
 namespace {
 
-constexpr double kFar = 1e30;     // stands for "no bound"
-constexpr double kSteep = 1e-9;   // a plane whose normal is this normal to the columns is a wall
-constexpr double kOnFace = 1e-9;  // a crossing this close to the envelope counts, per height
+using namespace fan_limits;
+constexpr double kSteep = 1e-9;  // a plane whose normal is this normal to the columns is a wall
 constexpr double kOnSilhouette = 1e-6;  // a root this small is zero, per the largest one
 constexpr double kBeforeWall = 1e-10;   // of rho: there the tube along the columns is wide open
 constexpr double kWallTilt = 1e-7;      // a tube tilted less against the columns is a wall [rad]
 constexpr double kSameApex = 1e-10;     // a cone whose apex is this near to the center is a wall
-constexpr int kNodes = 5;               // Gauss nodes on each piece of a half-plane
-constexpr int kKnotParts = 3;           // of a half-plane, each with one knot of two round faces
-constexpr int kRootSteps = 8;           // at most; each of them squares the error
-using InnerRule = GaussRule<kNodes>;
 
 }  // namespace
 }  // namespace volcontact

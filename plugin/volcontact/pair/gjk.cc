@@ -9,6 +9,7 @@ namespace {
 
 constexpr int kMaxSteps = 64;
 constexpr double kTouch = 1e-15;  // relative distance below which the solids touch
+constexpr double kNearEnough = 0.1;  // of a ball's depth in a solid, to which it is known
 
 // A point of the difference A - B, and the point of A it comes from.
 struct Corner {
@@ -119,6 +120,45 @@ Vec3 nearest_in_hull(const std::vector<Vec3>& points) noexcept {
     v = nearest.place;
   }
   return v;
+}
+
+BallGap ball_gap(const ConvexView& solid, const Pose& X_AS, const Vec3& center,
+                 double radius) noexcept {
+  Corner corners[4];
+  double weights[4];
+  int count = 1;
+  corners[0].w = solid.middle(X_AS) - center;
+  Vec3 v = corners[0].w;  // the place of the simplex nearest the center
+  double deepest = -std::numeric_limits<double>::infinity();  // bound of the distance from below
+  BallGap gap{false, Vec3::UnitZ(), 0.0, center};
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const double distance = v.norm();
+    if (!(distance > kTouch * radius)) break;
+    const Vec3 normal = v / -distance;
+    const Vec3 w = solid.support(X_AS, normal) - center;
+    const double least = -normal.dot(w);
+    if (least > deepest) {
+      deepest = least;
+      gap.normal = normal;
+      gap.offset = normal.dot(center) - least;
+      if (least > radius) {
+        gap.apart = true;
+        return gap;
+      }
+    }
+    if (distance - deepest <= kNearEnough * (radius - distance)) break;
+    corners[count++].w = w;
+    if (count == 4 && encloses(corners, weights)) {
+      v.setZero();
+      break;
+    }
+    const Nearest nearest = nearest_place(corners, count);
+    if (!(nearest.distance2 < v.squaredNorm())) break;
+    count = keep_used(corners, count, nearest);
+    v = nearest.place;
+  }
+  gap.place = center + v;
+  return gap;
 }
 
 bool find_common_point(const ConvexView& a, const ConvexView& b, const Pose& X_AB,

@@ -14,6 +14,20 @@ namespace volcontact {
 bool find_common_point(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
                        Vec3& point) noexcept;
 
+/// What keeps a ball and a convex solid apart, or a place of the solid in the ball.
+struct BallGap {
+  bool apart;
+  Vec3 normal;    ///< unit length; when apart, normal . x <= offset in the solid
+  double offset;  ///< and the ball lies beyond
+  Vec3 place;     ///< of the solid, about the nearest to the center; when not apart, in the ball
+};
+
+/// Parts the ball about `center` from a bounded convex solid, in A's frame, by a supporting plane of
+/// the solid, which is certain, or finds a place of the solid in the ball: to about a tenth of the
+/// ball's depth as near to the center as any. By Gilbert, Johnson and Keerthi's method, too.
+BallGap ball_gap(const ConvexView& solid, const Pose& X_AS, const Vec3& center,
+                 double radius) noexcept;
+
 /// The point of the convex hull of some points (at least one) nearest the origin.
 Vec3 nearest_in_hull(const std::vector<Vec3>& points) noexcept;
 

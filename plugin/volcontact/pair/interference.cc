@@ -12,6 +12,7 @@
 #include "volcontact/pair/closed_form/sphere_sphere.h"
 #include "volcontact/pair/composed_lines.h"
 #include "volcontact/pair/octree.h"
+#include "volcontact/pair/ring_lines.h"
 
 namespace volcontact {
 
@@ -19,6 +20,7 @@ struct InterferenceWorkspace::Scratch {
   ClipScratch clip;
   LinesScratch lines;
   ComposedScratch composed;
+  RingScratch ring;
   OctreeScratch octree;
 };
 
@@ -40,6 +42,8 @@ constexpr bool has_clip = requires(const A& a, const B& b, const Pose& X_AB, Cli
 };
 template <typename A, typename B>
 constexpr bool has_lines = HasFaces<A> && HasFaces<B> && (HasRoundFaces<A> || HasRoundFaces<B>);
+template <typename A, typename B>
+constexpr bool has_ring = std::is_same_v<A, Torus> && HasFaces<B> && !std::is_same_v<B, HalfSpace>;
 template <typename S>
 constexpr bool is_composed = std::is_same_v<S, Csg>;
 template <typename A, typename B>
@@ -58,7 +62,7 @@ constexpr bool serves_pair(Engine engine) {
     case Engine::kClip:
       return has_clip<A, B> || has_clip<B, A>;
     case Engine::kLines:
-      return has_lines<A, B> || has_composed_lines<A, B>;
+      return has_lines<A, B> || has_composed_lines<A, B> || has_ring<A, B> || has_ring<B, A>;
     case Engine::kOctree:
       return !both_unbounded<A, B>;
   }
@@ -108,12 +112,27 @@ VolumeMetrics clip_metrics(const A& a, const B& b, const Pose& X_AB, ClipScratch
   }
 }
 
+// Turns metrics made for (B, A) into those of (A, B).
+void mirror_sites(const Pose& X_AB, Interference& out) {
+  const auto mirrored = [&](const VolumeMetrics& metrics_B) {
+    return metrics_B.touching() ? reversed(transformed(metrics_B, X_AB)) : metrics_B;
+  };
+  out.total = mirrored(out.total);
+  for (VolumeMetrics& site : out.sites) site = mirrored(site);
+}
+
 // False when the pose is beyond the engine.
 template <typename A, typename B>
 bool lines(const A& a, const B& b, const Pose& X_AB, const InterferenceOptions& options,
            InterferenceWorkspace::Scratch& scratch, Interference& out) {
   if constexpr (has_lines<A, B>) {
     lines_interference(ConvexView(a), ConvexView(b), X_AB, options, scratch.lines, out);
+  } else if constexpr (has_ring<A, B>) {
+    ring_interference(a, ConvexView(b), X_AB, options, scratch.ring, scratch.composed.regions, out);
+  } else if constexpr (has_ring<B, A>) {
+    ring_interference(b, ConvexView(a), X_AB.inverse(), options, scratch.ring,
+                      scratch.composed.regions, out);
+    mirror_sites(X_AB, out);
   } else {
     for (auto& pieces : scratch.composed.pieces) pieces.clear();
     add_lines_pieces(a, scratch.composed.pieces[0]);

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/ring_lines.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volcontact/pair/even_turn.h"
+#include "volcontact/pair/outer_rule.h"
+#include "volcontact/pair/ring_breaks.h"
+
+namespace volcontact {
+namespace {
+
+constexpr double kWidestAngle = 1.6;  // of an undivided arc [rad]
+constexpr double kSameAngle = 1e-11;  // [rad]
+constexpr double kNearEnd = 3e-5;     // of a range: to which its ends are known at least
+constexpr double kOnAxis = 1e-8;      // of a plane from the axis, per radius
+constexpr double kEndError = 5.0;     // error by its estimate where an arc ends in nothing
+constexpr double kWhole = 0.999;      // share of a solid in the overlap, that is all of it
+
+class RingRun {
+ public:
+  RingRun(const Torus& torus, const ConvexView& body, const Pose& X,
+          const InterferenceOptions& options, RingScratch& scratch, LinesRegions& regions)
+      : torus_(torus), body_(body), X_(X), options_(options), s_(scratch), regions_(regions) {}
+
+  void run() {
+    set_faces();
+    s_.fan.set(s_.faces, torus_.major_radius(), torus_.minor_radius());
+    find_ring_sites(body_, X_, s_.path, s_.fan, s_.sites);
+    if (s_.sites.ranges.empty()) return;
+    find_ring_breaks(s_.faces, torus_.major_radius(), torus_.minor_radius(), s_.breaks);
+    for (const RingRange& range : s_.sites.ranges) integrate(range);
+  }
+
+ private:
+  // The planes that the torus reaches, and the round faces.
+  void set_faces() {
+    s_.faces.clear();
+    FaceWriter writer(s_.faces, X_, Owner::kB);
+    body_.write_faces(writer);
+    std::erase_if(s_.faces.planes, [&](const PlaneFace& plane) {
+      return torus_.support_height(plane.normal) <= plane.offset;
+    });
+    // A plane that holds the axis is seen edge on: it is moved a little.
+    const double least = kOnAxis * torus_.major_radius();
+    for (PlaneFace& plane : s_.faces.planes) {
+      if (std::abs(plane.normal.z()) < kOnAxis && std::abs(plane.offset) < least) {
+        plane.offset = least;
+      }
+    }
+  }
+
+  struct Arc {
+    double from, to;
+    bool begins, ends;  // with a section of no size
+
+    // The angle at x in [0, 1] and its derivative: a section that grows from nothing like a power
+    // of the angle is smooth in x.
+    void at(double x, double& angle, double& speed) const {
+      const double width = to - from;
+      if (begins && ends) {
+        angle = from + width * x * x * (3.0 - 2.0 * x);
+        speed = 6.0 * width * x * (1.0 - x);
+      } else if (begins) {
+        angle = from + width * x * x;
+        speed = 2.0 * width * x;
+      } else if (ends) {
+        angle = to - width * (1.0 - x) * (1.0 - x);
+        speed = 2.0 * width * (1.0 - x);
+      } else {
+        angle = from + width * x;
+        speed = width;
+      }
+    }
+  };
+
+  // The breaks within a range, in order, with its ends. A whole turn begins at a break. A break near
+  // an end is the end, known better: a plane across the tube ends a section at once.
+  void set_corners(RingRange& range) {
+    corners_.clear();
+    if (range.whole && !s_.breaks.empty()) {
+      range.low = s_.breaks[0];
+      range.high = range.low + 2.0 * kPi;
+    }
+    const double near_end = kNearEnd * (range.high - range.low);
+    for (double angle : s_.breaks) {
+      const double turned =
+          angle - 2.0 * kPi * std::floor((angle - range.low + kSameAngle) / (2.0 * kPi));
+      if (turned < range.high + kSameAngle) corners_.push_back(turned);
+    }
+    std::sort(corners_.begin(), corners_.end());
+    if (corners_.empty() || range.whole || corners_.front() > range.low + near_end) {
+      corners_.insert(corners_.begin(), range.low);
+    }
+    if (range.whole || corners_.back() < range.high - near_end) corners_.push_back(range.high);
+    corners_.erase(std::unique(corners_.begin(), corners_.end(),
+                               [](double a, double b) { return b - a < kSameAngle; }),
+                   corners_.end());
+    range.low = corners_.front();
+    range.high = corners_.back();
+  }
+
+  void integrate(RingRange range) {
+    s_.fan.clear();
+    error_ = volume_scale_ = 0.0;
+    set_corners(range);
+    const bool done = range.whole && s_.breaks.empty() && even_turn();
+    for (std::size_t i = 0; i + 1 < corners_.size() && !done; ++i) {
+      const double from = corners_[i], to = corners_[i + 1];
+      const int parts = std::max(1, static_cast<int>(std::ceil((to - from) / kWidestAngle)));
+      for (int k = 0; k < parts; ++k) {
+        const Arc arc{from + (to - from) * k / parts, from + (to - from) * (k + 1) / parts,
+                      !range.whole && i == 0 && k == 0,
+                      !range.whole && i + 2 == corners_.size() && k + 1 == parts};
+        integrate_arc(arc, 0.0, 1.0, 0);
+      }
+    }
+    add_region();
+  }
+
+  void integrate_arc(const Arc& arc, double x_from, double x_to, int depth) {
+    double u[kLanes], v[kLanes], weight[kLanes], section[kLanes];
+    for (int i = 0; i < kLanes; ++i) {
+      double angle, speed;
+      arc.at(x_from + (x_to - x_from) * OuterRule::kNodes[i], angle, speed);
+      u[i] = std::cos(angle);
+      v[i] = std::sin(angle);
+      weight[i] = OuterRule::kWeights[i] * speed * (x_to - x_from);
+    }
+    s_.fan.integrate(s_.path, u, v, weight, section);
+    double volume = 0.0;
+    for (int i = 0; i < kLanes; ++i) volume += section[i] *= weight[i];
+    const double error = (arc.begins || arc.ends ? kEndError : 1.0) * legendre_error(section);
+    volume_scale_ = std::max(volume_scale_, volume);
+    if (error > outer_rule::kTarget * options_.tolerance * volume_scale_ &&
+        depth < outer_rule::kMaxDepth) {
+      const double middle = 0.5 * (x_from + x_to);
+      integrate_arc(arc, x_from, middle, depth + 1);
+      integrate_arc(arc, middle, x_to, depth + 1);
+      return;
+    }
+    error_ += error;
+    s_.fan.accept_batch();
+  }
+
+  // All round and without corners: equal steps of the angle. False when 32 of them are too few.
+  bool even_turn() {
+    for (int batches : {2, 4}) {
+      double u[kLanes], v[kLanes], weight[kLanes], section[kLanes], volume[2] = {0.0, 0.0};
+      std::fill_n(weight, kLanes, 2.0 * kPi / (batches * kLanes));
+      s_.fan.clear();
+      for (int k = 0; k < batches; ++k) {
+        even_directions(batches * kLanes, k, u, v);
+        s_.fan.integrate(s_.path, u, v, weight, section);
+        s_.fan.accept_batch();
+        volume[k % 2] += s_.fan.batch().moments[0];
+      }
+      error_ = even_error(volume[0], volume[1]);
+      if (error_ <= outer_rule::kEvenTarget * options_.tolerance * (volume[0] + volume[1])) {
+        return true;
+      }
+    }
+    s_.fan.clear();
+    error_ = 0.0;
+    return false;
+  }
+
+  void add_region() {
+    const RingSums& sums = s_.fan.total();
+    const double* m = sums.moments;
+    MomentSum sum;
+    sum.volume = m[0];
+    sum.first = Vec3(m[1], m[2], m[3]);
+    sum.second << m[4], m[5], m[7], m[5], m[6], m[8], m[7], m[8], m[9];
+    set_surface(sum);
+    VolumeMetrics metrics = sum.metrics();
+    if (!metrics.touching()) return;
+    metrics.volume_error = error_ + outer_rule::kInnerError * metrics.volume;
+    if (error_ > options_.tolerance * metrics.volume) metrics.status = Status::kApproximate;
+    set_depth(metrics);
+    settle_contained(metrics);
+    LinesRegion& region = regions_.add();
+    region.metrics = metrics;
+    add_patches(region.patches);
+  }
+
+  // From the planes of a body that has nothing else, else from the torus.
+  void set_surface(MomentSum& sum) const {
+    const RingSums& sums = s_.fan.total();
+    const FanFaces& fan = s_.fan.faces().fan;
+    sum.area = sums.area;
+    const bool flat = s_.faces.rounds.empty();
+    for (int i = 0; i < fan.active_planes; ++i) {
+      const double* x = sums.planes[i].sums;
+      sum.counter_area += x[0];
+      if (!flat) continue;
+      const Vec3& n = s_.faces.planes[s_.fan.plane_face(i)].normal;
+      sum.area_vector -= x[0] * n;
+      sum.area_moment -= Vec3(x[1], x[2], x[3]).cross(n);
+    }
+    for (int i = 0; i + 1 < fan.round_count; ++i) sum.counter_area += sums.round_area[i];
+    if (flat) return;
+    sum.area_vector = Vec3(sums.vector[0], sums.vector[1], sums.vector[2]);
+    sum.area_moment = Vec3(sums.moment[0], sums.moment[1], 0.0);
+  }
+
+  // Depth under the planes of a flat body, in proportion to the squares of their area vectors; in
+  // other bodies that under the surface of the tube, (r^2 - t^2) / 2 r.
+  void set_depth(VolumeMetrics& metrics) const {
+    const RingSums& sums = s_.fan.total();
+    const double R = torus_.major_radius(), r = torus_.minor_radius();
+    const double* m = sums.moments;
+    metrics.depth = r - std::sqrt(std::max(0.0, sums.least_inside));
+    metrics.depth_moment =
+        ((r * r - R * R) * m[0] + 2.0 * R * sums.radial - m[4] - m[6] - m[9]) / (2.0 * r);
+    if (!s_.faces.rounds.empty()) return;
+    double weight = 0.0, moment = 0.0, depth = 0.0;
+    const FanFaces& fan = s_.fan.faces().fan;
+    for (int i = 0; i < fan.active_planes; ++i) {
+      const PlaneFace& plane = s_.faces.planes[s_.fan.plane_face(i)];
+      const double area = sums.planes[i].sums[0];
+      weight += area * area;
+      moment +=
+          area * area * (plane.offset - plane.normal.dot(metrics.centroid)) * metrics.volume;
+      depth += area * area * (plane.offset + torus_.support_height(-plane.normal));
+    }
+    if (!(weight > 0.0)) return;
+    metrics.depth_moment = moment / weight;
+    metrics.depth = depth / weight;
+  }
+
+  void settle_contained(VolumeMetrics& metrics) const {
+    if (metrics.area == 0.0) {
+      const VolumeMetrics own = body_.own_metrics();
+      if (metrics.volume > kWhole * own.volume) {
+        metrics = transformed(own, X_);
+        metrics.status = Status::kContained;
+      }
+    } else if (metrics.counter_area == 0.0) {
+      const VolumeMetrics own = torus_.own_metrics();
+      if (metrics.volume > kWhole * own.volume) {
+        metrics = own;
+        metrics.status = Status::kContained;
+      }
+    }
+  }
+
+  void add_patches(std::vector<LinesRegion::PlanePatch>& patches) const {
+    const FanFaces& fan = s_.fan.faces().fan;
+    for (int i = 0; i < fan.active_planes; ++i) {
+      const PlaneFace& plane = s_.faces.planes[s_.fan.plane_face(i)];
+      const double* x = s_.fan.total().planes[i].sums;
+      if (!(x[0] > 0.0)) continue;
+      patches.push_back(
+          {plane.owner, plane.normal, plane.offset, x[0], Vec3(x[1], x[2], x[3]) / x[0]});
+    }
+  }
+
+  const Torus& torus_;
+  const ConvexView& body_;
+  const Pose& X_;
+  const InterferenceOptions& options_;
+  RingScratch& s_;
+  LinesRegions& regions_;
+  std::vector<double>& corners_ = s_.corners;
+  double error_ = 0.0, volume_scale_ = 0.0;
+};
+
+}  // namespace
+
+void add_ring_regions(const Torus& torus, const ConvexView& body, const Pose& X,
+                      const InterferenceOptions& options, RingScratch& scratch,
+                      LinesRegions& regions) noexcept {
+  RingRun(torus, body, X, options, scratch, regions).run();
+}
+
+void ring_interference(const Torus& torus, const ConvexView& body, const Pose& X_AB,
+                       const InterferenceOptions& options, RingScratch& scratch,
+                       LinesRegions& regions, Interference& out) noexcept {
+  out.sites.clear();
+  out.total = VolumeMetrics{};
+  if (!(torus.own_metrics().volume > 0.0) || !(body.own_metrics().volume > 0.0)) return;
+  regions.cut(0);
+  add_ring_regions(torus, body, X_AB, options, scratch, regions);
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    const VolumeMetrics& site = regions[i].metrics;
+    out.total = i == 0 ? site : out.total + site;
+    out.sites.push_back(site);
+  }
+}
+
+}  // namespace volcontact

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "volcontact/pair/interference.h"
+#include "volcontact/pair/lines_region.h"
+#include "volcontact/pair/ring_sites.h"
+
+namespace volcontact {
+
+/// Memory of the engine for rings.
+struct RingScratch {
+  SimdPath path = best_simd_path();
+  FaceSet faces;
+  RingFan fan;
+  RingSites sites;
+  std::vector<double> breaks, corners;
+};
+
+/// Regions of the overlap of a torus with a bounded convex body at the pose X in its frame, by
+/// columns in half-planes through the axis of the torus. Adds them to `regions`, in the frame of
+/// the torus, with the torus as A; one for every contact site. `volume_error` is an estimate.
+/// docs/theory.md, "Rings".
+void add_ring_regions(const Torus& torus, const ConvexView& body, const Pose& X,
+                      const InterferenceOptions& options, RingScratch& scratch,
+                      LinesRegions& regions) noexcept;
+
+/// Interference of a torus with a convex body: metrics in the frame of the torus.
+void ring_interference(const Torus& torus, const ConvexView& body, const Pose& X_AB,
+                       const InterferenceOptions& options, RingScratch& scratch,
+                       LinesRegions& regions, Interference& out) noexcept;
+
+}  // namespace volcontact
