@@ -8,7 +8,7 @@ namespace volcontact {
 namespace {
 
 constexpr int kMaxSteps = 64;
-constexpr double kTouch = 1e-15;  // relative distance below which the solids touch
+constexpr double kTouch = 1e-15;     // relative distance below which the solids touch
 constexpr double kNearEnough = 0.1;  // of a ball's depth in a solid, to which it is known
 
 // A point of the difference A - B, and the point of A it comes from.

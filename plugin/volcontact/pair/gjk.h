@@ -22,9 +22,9 @@ struct BallGap {
   Vec3 place;     ///< of the solid, about the nearest to the center; when not apart, in the ball
 };
 
-/// Parts the ball about `center` from a bounded convex solid, in A's frame, by a supporting plane of
-/// the solid, which is certain, or finds a place of the solid in the ball: to about a tenth of the
-/// ball's depth as near to the center as any. By Gilbert, Johnson and Keerthi's method, too.
+/// Parts the ball about `center` from a bounded convex solid, in A's frame, by a supporting plane
+/// of the solid, which is certain, or finds a place of the solid in the ball: to about a tenth of
+/// the ball's depth as near to the center as any. By Gilbert, Johnson and Keerthi's method, too.
 BallGap ball_gap(const ConvexView& solid, const Pose& X_AS, const Vec3& center,
                  double radius) noexcept;
 

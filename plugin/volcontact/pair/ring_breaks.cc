@@ -69,7 +69,8 @@ class RingBreaks {
   }
 
   double distance(const Vec3& x) const {
-    return std::hypot(std::hypot(x.x(), x.y()) - major_, x.z()) - minor_;
+    const double across = std::sqrt(x.x() * x.x() + x.y() * x.y()) - major_;
+    return std::sqrt(across * across + x.z() * x.z()) - minor_;
   }
 
   // The edge common to two planes: its ends, and where it pierces the ring.
@@ -120,9 +121,10 @@ class RingBreaks {
 
   template <typename Place>
   void pierce(Place&& x_at, double from, double to) {
-    each_root([&](double t) { return distance(x_at(t)); }, from, to, [&](double t) {
-      if (inside(x_at(t))) note(x_at(t));
-    });
+    each_root([&](double t) { return distance(x_at(t)); }, from, to,
+              [&](double t) {
+                if (inside(x_at(t))) note(x_at(t));
+              });
   }
 
   // Between places that are not far apart, by bracketed false position.

@@ -13,6 +13,7 @@ constexpr double kOnSilhouette = 1e-6;  // a root this small is zero, per the la
 constexpr double kBeforeWall = 1e-10;   // of the section: there a tube along the columns is open
 constexpr int kLeastMiddleSteps = 3;    // of the search for a long column
 constexpr int kMiddleSteps = 45;        // narrow it to 4e-10 of the disc
+constexpr double kBeyondDomain = 1.000001;  // where a section ends at least, rounding included
 
 }  // namespace
 }  // namespace volcontact

@@ -22,21 +22,21 @@ struct RingFaces {
 
 /// Sums over sections of the overlap, in the ring's frame and about its center.
 struct RingSums {
-  double moments[10];    ///< int dV times 1, x, y, z, xx, xy, yy, xz, yz, zz
-  double radial;         ///< int rho dV
-  double area;           ///< of the ring's surface in the body
-  double vector[3];      ///< int n dS over it
-  double moment[2];      ///< x and y of int x cross n dS; that about the axis vanishes
-  double least_inside;   ///< least squared distance from the middle of the tube
+  double moments[10];   ///< int dV times 1, x, y, z, xx, xy, yy, xz, yz, zz
+  double radial;        ///< int rho dV
+  double area;          ///< of the ring's surface in the body
+  double vector[3];     ///< int n dS over it
+  double moment[2];     ///< x and y of int x cross n dS; that about the axis vanishes
+  double least_inside;  ///< least squared distance from the middle of the tube
   double round_area[FanFaces::kMaxRounds];  ///< of the body's faces in the ring
   FanSums::OnPlane* planes;                 ///< as many as there are planes
 };
 
 /// The overlap of a ring and a convex body in half-planes through the axis of the ring, eight at a
-/// time. There the ring is a disc, the body's faces are lines and arcs, and what they have in common
-/// is convex. Columns run along the axis. A section begins in a column inside, found by golden
-/// section as their length is a concave function of the place, and is followed as in Fan to either
-/// side. docs/theory.md, "Rings".
+/// time. There the ring is a disc, the body's faces are lines and arcs, and what they have in
+/// common is convex. Columns run along the axis. A section begins in a column inside, found by
+/// golden section as their length is a concave function of the place, and is followed as in Fan to
+/// either side. docs/theory.md, "Rings".
 class RingFan {
  public:
   /// The faces are those of the body alone, owned by Owner::kB.

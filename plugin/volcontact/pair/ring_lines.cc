@@ -13,9 +13,10 @@ namespace {
 
 constexpr double kWidestAngle = 1.6;  // of an undivided arc [rad]
 constexpr double kSameAngle = 1e-11;  // [rad]
-constexpr double kNearEnd = 3e-5;     // of a range: to which its ends are known at least
+constexpr double kNearEnd = 3e-4;     // of a range: to which its ends are known at least
 constexpr double kOnAxis = 1e-8;      // of a plane from the axis, per radius
 constexpr double kEndError = 5.0;     // error by its estimate where an arc ends in nothing
+constexpr double kFallError = 10.0;   // the same by the fall of waves, as measured
 constexpr double kWhole = 0.999;      // share of a solid in the overlap, that is all of it
 
 class RingRun {
@@ -53,16 +54,13 @@ class RingRun {
 
   struct Arc {
     double from, to;
-    bool begins, ends;  // with a section of no size
+    bool begins, ends;  // with a section of no size; not both
 
     // The angle at x in [0, 1] and its derivative: a section that grows from nothing like a power
     // of the angle is smooth in x.
     void at(double x, double& angle, double& speed) const {
       const double width = to - from;
-      if (begins && ends) {
-        angle = from + width * x * x * (3.0 - 2.0 * x);
-        speed = 6.0 * width * x * (1.0 - x);
-      } else if (begins) {
+      if (begins) {
         angle = from + width * x * x;
         speed = 2.0 * width * x;
       } else if (ends) {
@@ -75,8 +73,8 @@ class RingRun {
     }
   };
 
-  // The breaks within a range, in order, with its ends. A whole turn begins at a break. A break near
-  // an end is the end, known better: a plane across the tube ends a section at once.
+  // The breaks within a range, in order, with its ends. A whole turn begins at a break. A break
+  // near an end is the end, known better: a plane across the tube ends a section at once.
   void set_corners(RingRange& range) {
     corners_.clear();
     if (range.whole && !s_.breaks.empty()) {
@@ -105,18 +103,70 @@ class RingRun {
     s_.fan.clear();
     error_ = volume_scale_ = 0.0;
     set_corners(range);
-    const bool done = range.whole && s_.breaks.empty() && even_turn();
+    const bool done =
+        range.whole ? s_.breaks.empty() && even_turn() : corners_.size() == 2 && whole_range(range);
     for (std::size_t i = 0; i + 1 < corners_.size() && !done; ++i) {
       const double from = corners_[i], to = corners_[i + 1];
-      const int parts = std::max(1, static_cast<int>(std::ceil((to - from) / kWidestAngle)));
+      const bool begins = !range.whole && i == 0, ends = !range.whole && i + 2 == corners_.size();
+      const int parts =
+          std::max(begins && ends ? 2 : 1, static_cast<int>(std::ceil((to - from) / kWidestAngle)));
       for (int k = 0; k < parts; ++k) {
         const Arc arc{from + (to - from) * k / parts, from + (to - from) * (k + 1) / parts,
-                      !range.whole && i == 0 && k == 0,
-                      !range.whole && i + 2 == corners_.size() && k + 1 == parts};
+                      begins && k == 0, ends && k + 1 == parts};
         integrate_arc(arc, 0.0, 1.0, 0);
       }
     }
     add_region();
+  }
+
+  // A range without breaks. At its ends sections mostly grow like an odd power of the root of the
+  // angle: then the integrand, as a function of theta, angle = middle - half cos theta, is even and
+  // periodic, and equal steps converge fastest. False when they do not.
+  bool whole_range(const RingRange& range) {
+    double u[kLanes], v[kLanes], weight[kLanes], section[kLanes];
+    const double half = 0.5 * (range.high - range.low), middle = range.low + half;
+    const EvenSteps& steps = even_steps();
+    for (int i = 0; i < kLanes; ++i) {
+      const double angle = middle - half * steps.cos[1][i];
+      u[i] = std::cos(angle);
+      v[i] = std::sin(angle);
+      weight[i] = half * kPi / kLanes * steps.sin[i];
+    }
+    s_.fan.integrate(s_.path, u, v, weight, section);
+    double waves[kLanes] = {}, volume = 0.0;
+    for (int i = 0; i < kLanes; ++i) {
+      section[i] *= weight[i];
+      volume += section[i];
+      for (int k = 1; k < kLanes; ++k) waves[k] += 2.0 * section[i] * steps.cos[k][i];
+    }
+    // The error is the wave number 16, and no more than this foretells from those before.
+    const double last = std::abs(waves[5]) + std::abs(waves[6]) + std::abs(waves[7]);
+    const double first = std::abs(waves[1]) + std::abs(waves[2]) + std::abs(waves[3]);
+    error_ = first > 0.0 ? last * std::min(1.0, kFallError * last / first) : last;
+    volume_scale_ = volume;
+    if (error_ > outer_rule::kTarget * options_.tolerance * volume) {
+      error_ = 0.0;
+      return false;
+    }
+    s_.fan.accept_batch();
+    return true;
+  }
+
+  // Eight equal steps of theta over half a turn.
+  struct EvenSteps {
+    double cos[kLanes][kLanes], sin[kLanes];  // of multiples 0 to 7 of theta, and of theta
+  };
+  static const EvenSteps& even_steps() {
+    static const EvenSteps steps = [] {
+      EvenSteps all;
+      for (int i = 0; i < kLanes; ++i) {
+        const double theta = kPi * (i + 0.5) / kLanes;
+        for (int k = 0; k < kLanes; ++k) all.cos[k][i] = std::cos(k * theta);
+        all.sin[i] = std::sin(theta);
+      }
+      return all;
+    }();
+    return steps;
   }
 
   void integrate_arc(const Arc& arc, double x_from, double x_to, int depth) {
@@ -221,8 +271,7 @@ class RingRun {
       const PlaneFace& plane = s_.faces.planes[s_.fan.plane_face(i)];
       const double area = sums.planes[i].sums[0];
       weight += area * area;
-      moment +=
-          area * area * (plane.offset - plane.normal.dot(metrics.centroid)) * metrics.volume;
+      moment += area * area * (plane.offset - plane.normal.dot(metrics.centroid)) * metrics.volume;
       depth += area * area * (plane.offset + torus_.support_height(-plane.normal));
     }
     if (!(weight > 0.0)) return;

@@ -9,13 +9,13 @@
 namespace volcontact {
 namespace {
 
-constexpr int kMaxBalls = 96;              // tried at most
-constexpr double kShortArc = kPi / 6.0;    // one with a ball that meets the body is not divided [rad]
-constexpr double kNothing = 1e-9;          // an arc this short holds nothing [rad]
+constexpr int kMaxBalls = 96;            // tried at most
+constexpr double kShortArc = kPi / 6.0;  // one with a ball that meets the body is not divided [rad]
+constexpr double kNothing = 1e-9;        // an arc this short holds nothing [rad]
 constexpr double kSampleStep = kPi / 24.0;  // between half-planes, at most [rad]
-constexpr int kLeastSamples = 8;           // of an arc
-constexpr int kEndRounds = 9;              // each of them narrows an end to a fifth
-constexpr double kEndWidth = 1e-5;         // to which an end is known, of the range
+constexpr int kLeastSamples = 8;            // of an arc
+constexpr int kEndRounds = 9;               // each of them narrows an end to a fifth
+constexpr double kEndWidth = 1e-4;          // to which an end is known, of the range
 
 class SiteSearch {
  public:
@@ -46,8 +46,8 @@ class SiteSearch {
     return angle - 2.0 * kPi * std::floor((angle - to) / (2.0 * kPi) + 0.5);
   }
 
-  // Leaves the arcs that no plane parts from the body in `doubtful`, and half-planes that meet it in
-  // `samples`.
+  // Leaves the arcs that no plane parts from the body in `doubtful`, and half-planes that meet it
+  // in `samples`.
   void part_by_planes() {
     const Vec3 middle = body_.middle(X_);
     start_ = std::atan2(middle.y(), middle.x());
@@ -118,11 +118,10 @@ class SiteSearch {
     }
     std::sort(s_.samples.begin(), s_.samples.end(),
               [](const Sample& a, const Sample& b) { return a.angle < b.angle; });
-    s_.samples.erase(std::unique(s_.samples.begin(), s_.samples.end(),
-                                 [](const Sample& a, const Sample& b) {
-                                   return b.angle - a.angle < kNothing;
-                                 }),
-                     s_.samples.end());
+    s_.samples.erase(
+        std::unique(s_.samples.begin(), s_.samples.end(),
+                    [](const Sample& a, const Sample& b) { return b.angle - a.angle < kNothing; }),
+        s_.samples.end());
     for (std::size_t from = 0; from < s_.samples.size(); from += kLanes) {
       double angle[kLanes], length[kLanes];
       for (std::size_t i = 0; i < kLanes; ++i) {

@@ -75,5 +75,33 @@ TEST(NearestInHull, KnowsCornersEdgesAndFaces) {
   EXPECT_LE(nearest_in_hull({a, b, c, Vec3(-1, -1, -1)}).norm(), 1e-12);
 }
 
+TEST(BallGap, ABallIsPartedExactlyWhereItIsFartherThanItsRadius) {
+  test::Random random(34);
+  const Sphere ball({.radius = 0.3});
+  const Box box({.half_sizes = {0.3, 0.2, 0.1}});
+  for (int i = 0; i < 500; ++i) {
+    const bool round = i % 2 == 0;
+    const Pose X = random.pose(0.1);
+    const Vec3 center = random.in_box(0.8);
+    const Vec3 in_solid = X.inverse() * center;
+    const Vec3 nearest = in_solid.cwiseMax(-box.half_sizes()).cwiseMin(box.half_sizes());
+    const double distance = round ? in_solid.norm() - 0.3 : (in_solid - nearest).norm();
+    const double radius = random.uniform(0.0, 0.6);
+    if (std::abs(distance - radius) < 1e-9) continue;
+    const ConvexView solid = round ? ConvexView(ball) : ConvexView(box);
+    const BallGap gap = ball_gap(solid, X, center, radius);
+    ASSERT_EQ(gap.apart, distance > radius) << "distance " << distance << " radius " << radius;
+    if (gap.apart) {
+      EXPECT_NEAR(gap.offset, solid.support_height(X, gap.normal), 1e-12);
+      EXPECT_GT(gap.normal.dot(center), gap.offset + radius);
+    } else {
+      EXPECT_LE((gap.place - center).norm(), radius);
+      EXPECT_LE(round ? ball.signed_distance(X.inverse() * gap.place)
+                      : box.signed_distance(X.inverse() * gap.place),
+                1e-12);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace volcontact

@@ -76,8 +76,10 @@ TEST(Interference, AutoTakesTheFirstEngineThatServes) {
   }
   EXPECT_EQ(engine_for(kBox, kCan), Engine::kLines);
   EXPECT_EQ(evaluated(kBox, kCan, touching_pose(random)).engine, Engine::kLines);
-  EXPECT_EQ(engine_for(kBox, kRing), Engine::kOctree);
-  EXPECT_EQ(evaluated(kBox, kRing, touching_pose(random)).engine, Engine::kOctree);
+  EXPECT_EQ(engine_for(kBox, kRing), Engine::kLines);
+  EXPECT_EQ(evaluated(kBox, kRing, touching_pose(random)).engine, Engine::kLines);
+  EXPECT_EQ(engine_for(kRing, kRing), Engine::kOctree);
+  EXPECT_EQ(evaluated(kRing, kRing, touching_pose(random)).engine, Engine::kOctree);
 }
 
 TEST(Interference, ServesSaysWhichEnginesCan) {
@@ -229,6 +231,8 @@ TEST(Interference, AWarmEvaluationAllocatesNothing) {
                   Csg(Cylinder({.radius = 0.31, .half_length = 1.0})));
   pairs.push_back({kBox, kCan, Engine::kLines});
   pairs.push_back({bored, kCan, Engine::kLines});
+  pairs.push_back({kRing, kCan, Engine::kLines});
+  pairs.push_back({kRing, kBox, Engine::kLines});
   for (const Served& pair : pairs) {
     for (const auto& [a, b] : {std::pair{pair.a, pair.b}, std::pair{pair.b, pair.a}}) {
       std::vector<Pose> poses;
