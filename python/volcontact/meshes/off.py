@@ -42,7 +42,7 @@ def read_off(path: str, content: bytes) -> Triangles:
             path,
             f"line {rows[-1][0] if rows else line}",
             f"{vertices} points and {faces} faces are announced on line {line}, "
-            f"{len(rows)} lines follow instead of {vertices + faces}",
+            f"{vertices + faces} lines ought to follow, here are {len(rows)}",
         )
     points = points_of(path, [row for _, row in rows[:vertices]], [n for n, _ in rows[:vertices]])
     polygons = Polygons(path, first=0)

@@ -25,7 +25,9 @@ def read_ply(path: str, content: bytes) -> Triangles:
             fail(
                 path,
                 f"line {header.lines}",
-                f"the header announces no {needed}" if needed not in names else f"two of {needed}",
+                f"the header announces no {needed}"
+                if needed not in names
+                else f"two elements are named {needed}",
                 "A mesh needs points and faces: export triangles",
             )
     vertex, face = header.elements[names.index("vertex")], header.elements[names.index("face")]
@@ -145,7 +147,7 @@ def _read_binary(path: str, content: bytes, header: Header) -> Triangles:
         elif element.name == "face":
             triangles, bytes_of = _triangles(path, corners, starts, len(points))
     if at != len(content):
-        fail(path, f"byte {at}", f"there are {len(content) - at} bytes behind the last row")
+        fail(path, f"byte {at}", f"the rows end here, and {len(content) - at} bytes follow")
     kind_of_file = "PLY, binary"
     return Triangles(points, triangles, path, kind_of_file, bytes_of, "byte")
 

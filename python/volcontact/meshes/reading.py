@@ -48,6 +48,7 @@ def read_mesh(path: str | os.PathLike[str]) -> Triangles:
     """
     name = os.fspath(path)
     content = _content(name)
+    _refuse_stand_ins(name, content)
     suffix = Path(name).suffix.lower()
     if suffix not in _READERS:
         fail(
@@ -141,6 +142,15 @@ def _content(name: str) -> bytes:
             raise
         reason = getattr(error, "strerror", None) or str(error)
         fail(name, "", f"it cannot be read: {reason}", "Check the path and its permissions")
+
+
+def _refuse_stand_ins(name: str, content: bytes) -> None:
+    """What often lies where a mesh ought to be."""
+    start = content[:200].lstrip().lower()
+    if start.startswith(b"version https://git-lfs"):
+        fail(name, "line 1", "this stands for a file that Git LFS keeps", "Run git lfs pull")
+    if start.startswith((b"<!doctype html", b"<html")):
+        fail(name, "line 1", "this is a web page", "Download the file itself")
 
 
 def _sniffed(content: bytes) -> str | None:

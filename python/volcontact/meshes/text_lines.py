@@ -88,7 +88,11 @@ def count_of(path: str, line: int, word: str, what: str, most: int) -> int:
     if not (word.isascii() and word.isdecimal()):
         fail(path, f"line {line}", f"the number of {what} is {_short(word)}")
     if len(word) > 18 or int(word) > most:
-        fail(path, f"line {line}", f"{_short(word)} {what} are announced, more than fit the file")
+        fail(
+            path,
+            f"line {line}",
+            f"{word[:20]} {what} are announced, the file is too short for them",
+        )
     return int(word)
 
 
