@@ -47,13 +47,15 @@ class CellCut {
     }
   }
 
-  /// Corners of what the tangent planes left of the last cell, from the cell's centre, each drawn
-  /// back against the unit vector `e` to the true faces, where that stays within the cell: calls
-  /// visit(corner).
+  /// Corners of what the tangent planes leave of the cell, from its centre, each drawn back against
+  /// the unit vector `e` to the true faces, where that stays within the cell: calls visit(corner).
   template <typename Visit>
-  void for_each_corner(const Vec3& half, const Vec3& e, Visit&& visit) const {
+  void for_each_corner(const std::vector<CellFace>& faces, Cell& cell, const Vec3& e,
+                       Visit&& visit) {
+    if (!collect(faces, cell)) return;
+    cut(cell.half);
     for (Vec3 corner : polytope_.points()) {
-      if (draw_back(half, e, corner)) visit(corner);
+      if (draw_back(cell.half, e, corner)) visit(corner);
     }
   }
 
@@ -98,12 +100,13 @@ class CellCut {
     Mat3 second = Mat3::Zero();
   };
   struct Columns;
-  // A plane that bounds the gap, seen along a column: its height there is near(x, y) + slope w, w
-  // the way from the tangent plane into the gap. `near` is an under-estimate and `far` an
-  // over-estimate, as far as the other face bends.
+  // What bounds the gap, seen along a column: its height there is near(x, y) + slope w, w the way
+  // from the tangent plane into the gap. `near` is an under-estimate and `far` an over-estimate, as
+  // far as the other face bends.
   struct Limit {
     Linear2 near, far;
     double slope;
+    const Tangent* face;  // null: the plane is all there is
     // Heights that are negative where columns of up to this length touch, or lie whole in, the
     // inside.
     Linear2 touched(double length) const { return near.raised(std::min(0.0, slope * length)); }
@@ -135,9 +138,15 @@ class CellCut {
   Gap bent_gap(int index, Columns& columns);
   void keep_touched(int index, const Columns& columns);
   struct BentColumns;
-  double most_bend(const Tangent& other, const Columns& columns, double length) const;
-  void find_limits(int index, const Columns& columns, double length);
+  static Limit limit_of(const Tangent& other, const Columns& columns, double from, double to,
+                        const ConvexPolygon& polygon);
+  static Limit plane_limit(const Tangent& other, const Columns& columns);
+  void find_limits(int index, const Columns& columns);
   void add_band(std::size_t k, const BentColumns& bent, Gap& gap);
+  void keep_touched_by_rest(std::size_t k, double length);
+  void keep_whole_by_rest(std::size_t k, double length);
+  void add_strip(std::size_t k, const BentColumns& bent, Gap& gap);
+  void add_ended(std::size_t k, const Limit& limit, const BentColumns& bent, Gap& gap);
   void bound(Cell& cell);
   void estimate(Cell& cell);
   void choose_split(Cell& cell) const;
@@ -148,7 +157,7 @@ class CellCut {
   std::span<FaceLoop> loops_;
   std::vector<SurfacePoint> sample_;
   Moments gap_sample_;  // between plane and face, of the loop last sampled
-  ConvexPolygon polygon_, band_, part_;
+  ConvexPolygon polygon_, band_, strip_, part_, short_;
   std::vector<Limit> limits_;
   std::vector<Tangent> tangents_;
   bool all_flat_ = false;

@@ -12,6 +12,7 @@ using namespace cell_math;
 namespace {
 
 constexpr double kSteepLimit = 1e-6;
+constexpr int kStrips = 2;  // of a band: half the cells of one, and hardly more with three
 
 }  // namespace
 
@@ -129,13 +130,7 @@ struct CellCut::BentColumns {
   }
   // Of the bend, at the middle of the polygon's corners.
   Linear2 tangent(const ConvexPolygon& polygon) const {
-    double x = 0.0, y = 0.0;
-    for (const auto& p : polygon.points()) {
-      x += p.x;
-      y += p.y;
-    }
-    x /= static_cast<double>(polygon.points().size());
-    y /= static_cast<double>(polygon.points().size());
+    const auto [x, y] = polygon.middle();
     const double sign = columns.tangent.bend == volcontact::Bend::kConvex ? 1.0 : -1.0;
     const double dx = sign * (columns.qx + 2.0 * columns.qxx * x + columns.qxy * y);
     const double dy = sign * (columns.qy + columns.qxy * x + 2.0 * columns.qyy * y);
@@ -143,8 +138,9 @@ struct CellCut::BentColumns {
   }
 };
 
-// Keeps the columns in which a piece between the offsets may lie in the cell and in the other
-// faces.
+// The faces take the place of their planes one after the other, and what each of them changes adds
+// up: seen from a face, those before it are themselves and those after it still planes. Keeps the
+// columns in which a piece between the offsets may lie in the cell and in the others.
 void CellCut::keep_touched(int index, const Columns& columns) {
   const Linear2& h = columns.plane;
   const double half = columns.half[columns.a];
@@ -152,87 +148,182 @@ void CellCut::keep_touched(int index, const Columns& columns) {
   polygon_.cut({h.a - half + columns.from, h.b, h.c});
   for (int j = 0; j < static_cast<int>(tangents_.size()); ++j) {
     if (j == index || polygon_.empty()) continue;
-    const double up = columns.slope_up(tangents_[j]);
-    Linear2 height = columns.along(tangents_[j]);
-    height.a += std::min(up * columns.from, up * columns.to) - tangents_[j].beyond();
-    polygon_.cut(height);
+    const Limit limit = j > index
+                            ? plane_limit(tangents_[j], columns)
+                            : limit_of(tangents_[j], columns, columns.from, columns.to, polygon_);
+    polygon_.cut(limit.near.raised(std::min(limit.slope * columns.from, limit.slope * columns.to)));
   }
 }
 
-// Upper bound of the bend of another face over all columns of this length.
-double CellCut::most_bend(const Tangent& other, const Columns& columns, double length) const {
-  if (other.exact()) return 0.0;
-  if (other.bend != Bend::kConvex || other.cone) return other.within();
-  double most = 0.0;  // convex: greatest in a corner
-  const Vec3 along = -columns.into() * length * columns.sign * Vec3::Unit(columns.a);
-  for (const ConvexPolygon::Point& p : polygon_.points()) {
-    const Vec3 x = columns.point(p);
-    most = std::max({most, other.bend_at(x), other.bend_at(x - along)});
+// The plane of another face along the columns over a polygon, between these offsets from their
+// plane, with bounds of that face. A bend to one side is convex: it lies above its tangent in the
+// middle, and farthest above it in a corner.
+CellCut::Limit CellCut::limit_of(const Tangent& other, const Columns& columns, double from,
+                                 double to, const ConvexPolygon& polygon) {
+  const Linear2 height = columns.along(other);
+  const double slope = columns.slope_up(other);
+  if (other.exact() || other.cone ||
+      (other.bend != Bend::kConvex && other.bend != Bend::kConcave)) {
+    return {height.raised(-other.beyond()), height.raised(other.within()), slope, &other};
   }
-  return most + other.slack;
+  const double side = other.bend == Bend::kConvex ? 1.0 : -1.0, half_way = 0.5 * (from + to);
+  const Vec3 up = columns.sign * Vec3::Unit(columns.a);
+  const Vec3 middle = columns.point(polygon.middle()) + half_way * up;
+  const Vec3 bent = side * (other.hessian * (middle - other.touch));
+  const Vec3 bent_up = side * columns.sign * other.hessian.col(columns.a);
+  const double climb = columns.sign * bent[columns.a];
+  Linear2 tangent{0.5 * bent.dot(middle - other.touch) - bent.dot(middle) + climb * columns.plane.a,
+                  bent[columns.b] + climb * columns.plane.b,
+                  bent[columns.c] + climb * columns.plane.c};
+  // Over the tangent the bend is 1/2 d^T H d, d from the middle.
+  double most = 0.0;
+  for (const ConvexPolygon::Point& p : polygon.points()) {
+    const Vec3 d = columns.point(p) - (middle - half_way * up);
+    const double square = side * d.dot(other.hessian * d), slant = d.dot(bent_up);
+    const double along = columns.sign * bent_up[columns.a];
+    for (const double step : {from - half_way, to - half_way}) {
+      most = std::max(most, 0.5 * square + step * (slant + 0.5 * step * along));
+    }
+  }
+  if (side > 0.0) {
+    const Linear2 near = height.plus(tangent).raised(-other.slack);
+    return {near, near.raised(most + 2.0 * other.slack), slope + climb, &other};
+  }
+  const Linear2 far = height.plus(tangent.scaled(-1.0)).raised(other.slack);
+  return {far.raised(-most - 2.0 * other.slack), far, slope - climb, &other};
 }
 
-void CellCut::find_limits(int index, const Columns& columns, double length) {
+CellCut::Limit CellCut::plane_limit(const Tangent& other, const Columns& columns) {
+  const Linear2 height = columns.along(other);
+  return {height, height, columns.slope_up(other), nullptr};
+}
+
+void CellCut::find_limits(int index, const Columns& columns) {
   limits_.clear();
   const Linear2& h = columns.plane;
   const double half = columns.half[columns.a];
   const Linear2 top{h.a - half, h.b, h.c}, bottom{-h.a - half, -h.b, -h.c};
-  limits_.push_back({top, top, columns.into()});
-  limits_.push_back({bottom, bottom, -columns.into()});
+  limits_.push_back({top, top, columns.into(), nullptr});
+  limits_.push_back({bottom, bottom, -columns.into(), nullptr});
   for (int j = 0; j < static_cast<int>(tangents_.size()); ++j) {
     if (j == index) continue;
-    const Tangent& other = tangents_[j];
-    const Linear2 height = columns.along(other);
-    limits_.push_back({height.raised(-other.beyond()),
-                       height.raised(most_bend(other, columns, length)),
-                       columns.into() * columns.slope_up(other)});
+    limits_.push_back(j > index
+                          ? plane_limit(tangents_[j], columns)
+                          : limit_of(tangents_[j], columns, columns.from, columns.to, polygon_));
+    limits_.back().slope *= columns.into();
   }
 }
 
-// The columns of `band_` end at limit k, within their length or a little before or after.
+// Some columns of `band_` end at limit k, within their length or a little before or after. How many
+// do depends on their length: strip by strip, across the direction in which the face bends.
 void CellCut::add_band(std::size_t k, const BentColumns& bent, Gap& gap) {
-  const Limit& limit = limits_[k];
+  double low[2] = {kInfinity, kInfinity}, high[2] = {-kInfinity, -kInfinity};
+  for (const auto& p : band_.points()) {
+    low[0] = std::min(low[0], p.x);
+    high[0] = std::max(high[0], p.x);
+    low[1] = std::min(low[1], p.y);
+    high[1] = std::max(high[1], p.y);
+  }
+  const double width[2] = {high[0] - low[0], high[1] - low[1]};
+  const int axis = std::abs(bent.columns.qxx) * width[0] * width[0] <
+                   std::abs(bent.columns.qyy) * width[1] * width[1];
+  const Linear2 along{0.0, axis == 0 ? 1.0 : 0.0, axis == 0 ? 0.0 : 1.0};
+  const int strips = k < 2 ? 1 : kStrips;  // a side of the cell
+  for (int strip = 0; strip < strips; ++strip) {
+    const double from = low[axis] + strip * width[axis] / strips;
+    const double to = low[axis] + (strip + 1) * width[axis] / strips;
+    strip_ = band_;
+    if (strip > 0) strip_.cut(along.scaled(-1.0).raised(from));
+    if (strip + 1 < strips) strip_.cut(along.raised(-to));
+    add_strip(k, bent, gap);
+  }
+}
+
+// Of `part_`, the columns that lie in the limits after k, at least partly, or whole.
+void CellCut::keep_touched_by_rest(std::size_t k, double length) {
+  for (std::size_t j = k + 1; j < limits_.size() && !part_.empty(); ++j) {
+    part_.cut(limits_[j].touched(length));
+  }
+}
+void CellCut::keep_whole_by_rest(std::size_t k, double length) {
+  for (std::size_t j = k + 1; j < limits_.size() && !part_.empty(); ++j) {
+    part_.cut(limits_[j].whole(length));
+  }
+}
+
+// The strip sees the limit closer by: over it, the other face bends less.
+void CellCut::add_strip(std::size_t k, const BentColumns& bent, Gap& gap) {
+  if (strip_.empty()) return;
+  const double length = std::min(bent.length, bent.most_anywhere * bent.largest_bend(strip_));
+  Limit limit = limits_[k];
+  if (limit.face) {
+    const double end = bent.columns.into() * length;
+    limit = limit_of(*limit.face, bent.columns, std::min(0.0, end), std::max(0.0, end), strip_);
+    limit.slope *= bent.columns.into();
+  }
+  strip_.cut(limit.touched(length));
+  if (strip_.empty()) return;
+  part_ = strip_;
+  const Linear2 whole = limit.whole(length);
+  part_.cut(whole);
+  keep_touched_by_rest(k, bent.length);
+  gap.high += bent.integral(bent.most, part_);
+  keep_whole_by_rest(k, bent.length);
+  gap.low += bent.integral(bent.least, part_);
+  strip_.cut(whole.scaled(-1.0));
+  if (!strip_.empty()) add_ended(k, limit, bent, gap);
+}
+
+// Columns of `strip_` that limit k, seen there, may end within their length.
+void CellCut::add_ended(std::size_t k, const Limit& limit, const BentColumns& bent, Gap& gap) {
   // Along a steep limit the band is too thin to be worth a division by next to nothing.
   const bool steep =
       std::abs(limit.slope) < kSteepLimit * (std::abs(limit.near.b) + std::abs(limit.near.c));
-  part_ = band_;
-  for (std::size_t j = k + 1; j < limits_.size() && !part_.empty(); ++j) {
-    part_.cut(limits_[j].touched(bent.length));
+  const bool begins = !steep && limit.slope < 0.0, ends = !steep && limit.slope > 0.0;
+  // The bend lies above its tangent, and farthest above it in a corner.
+  const Linear2 tangent = bent.tangent(strip_);
+  double over = 0.0;
+  for (const auto& p : strip_.points()) {
+    over = std::max(over, bent.columns.bend(p.x, p.y) - tangent(p.x, p.y));
   }
-  if (!part_.empty()) {
-    double most = bent.integral(bent.most, part_);
-    if (!steep && limit.slope < 0.0) {
-      const double longest = std::min(bent.length, bent.most_anywhere * bent.largest_bend(part_));
-      const Linear2 left = limit.near.scaled(1.0 / limit.slope).raised(longest);
-      most = std::min(most, part_.integral(left));
-    } else if (!steep && limit.slope > 0.0) {
-      most = std::min(most, part_.integral(limit.near.scaled(-1.0 / limit.slope)));
-    }
-    gap.high += std::max(0.0, most);
+  const Linear2 shortest = tangent.scaled(bent.least_anywhere);
+  const Linear2 longest = tangent.raised(over).scaled(bent.most_anywhere);
+  part_ = strip_;
+  keep_touched_by_rest(k, bent.length);
+  if (begins) {
+    const Linear2 left = longest.plus(limit.near.scaled(1.0 / limit.slope));
+    part_.cut(left.scaled(-1.0));
+    gap.high += std::min(bent.integral(bent.most, part_), part_.integral(left));
+  } else if (ends) {
+    const Linear2 end = limit.near.scaled(-1.0 / limit.slope);
+    const Linear2 surplus = longest.plus(end.scaled(-1.0));
+    short_ = part_;
+    short_.cut(surplus);
+    gap.high += bent.integral(bent.most, short_);
+    part_.cut(surplus.scaled(-1.0));
+    gap.high += std::max(0.0, std::min(bent.integral(bent.most, part_), part_.integral(end)));
+  } else {
+    gap.high += bent.integral(bent.most, part_);
   }
-  if (steep || limit.slope == 0.0) return;
-  part_ = band_;
-  for (std::size_t j = k + 1; j < limits_.size() && !part_.empty(); ++j) {
-    part_.cut(limits_[j].whole(bent.length));
-  }
+  if (!begins && !ends) return;
+  part_ = strip_;
+  keep_whole_by_rest(k, bent.length);
   if (part_.empty()) return;
-  // A convex function lies above its tangent: at least so long are the columns.
-  const Linear2 length = bent.tangent(part_).scaled(bent.least_anywhere);
-  if (limit.slope < 0.0) {
-    const Linear2 left = length.plus(limit.far.scaled(1.0 / limit.slope));
+  if (begins) {
+    const Linear2 left = shortest.plus(limit.far.scaled(1.0 / limit.slope));
     part_.cut(left.scaled(-1.0));
     gap.low += part_.integral(left);
     return;
   }
   const Linear2 end = limit.far.scaled(-1.0 / limit.slope);
-  part_.cut(length.scaled(-1.0));
+  part_.cut(shortest.scaled(-1.0));
   part_.cut(end.scaled(-1.0));
-  const Linear2 surplus = length.plus(end.scaled(-1.0));
-  band_ = part_;
+  const Linear2 surplus = shortest.plus(end.scaled(-1.0));
+  strip_ = part_;
   part_.cut(surplus);
-  gap.low += part_.integral(length);
-  band_.cut(surplus.scaled(-1.0));
-  gap.low += band_.integral(end);
+  gap.low += part_.integral(shortest);
+  strip_.cut(surplus.scaled(-1.0));
+  gap.low += strip_.integral(end);
 }
 
 // A face bent to one side. In each column the gap is t with bend = rise t - 1/2 bend_along t^2, so
@@ -258,7 +349,7 @@ CellCut::Gap CellCut::bent_gap(int index, Columns& columns) {
     keep_touched(index, columns);
     if (polygon_.empty()) return gap;
   }
-  find_limits(index, columns, bent.length);
+  find_limits(index, columns);
   // From the polygon of all columns, limit after limit takes the band where it cuts columns.
   for (std::size_t k = 0; k < limits_.size() && !polygon_.empty(); ++k) {
     const Linear2 whole = limits_[k].whole(bent.length);

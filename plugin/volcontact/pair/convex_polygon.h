@@ -23,29 +23,57 @@ class ConvexPolygon {
     double x, y;
   };
 
+  ConvexPolygon() {
+    points_.reserve(kUsual);
+    kept_.reserve(kUsual);
+    heights_.reserve(kUsual);
+  }
+  ConvexPolygon(const ConvexPolygon& other) : ConvexPolygon() { points_ = other.points_; }
+  ConvexPolygon& operator=(const ConvexPolygon& other) {
+    points_ = other.points_;
+    return *this;
+  }
+
   /// Rectangle |x| <= half_x, |y| <= half_y.
   void start(double half_x, double half_y) {
     points_.assign({{-half_x, -half_y}, {half_x, -half_y}, {half_x, half_y}, {-half_x, half_y}});
   }
   const std::vector<Point>& points() const { return points_; }
   bool empty() const { return points_.size() < 3; }
+  /// Mean of its corners.
+  Point middle() const {
+    Point sum{0.0, 0.0};
+    for (const Point& p : points_) sum = {sum.x + p.x, sum.y + p.y};
+    const auto count = static_cast<double>(points_.size());
+    return {sum.x / count, sum.y / count};
+  }
 
   /// Keeps what has height <= 0.
   void cut(const Linear2& height) {
-    if (!(highest(height) > 0.0)) return;
-    kept_.clear();
-    Point last = points_.back();
-    double last_height = height(last.x, last.y);
-    for (const Point& p : points_) {
-      const double h = height(p.x, p.y);
-      if ((h > 0.0) != (last_height > 0.0)) {
-        const double t = last_height / (last_height - h);
-        kept_.push_back({last.x + t * (p.x - last.x), last.y + t * (p.y - last.y)});
-      }
-      if (!(h > 0.0)) kept_.push_back(p);
+    const std::size_t count = points_.size();
+    if (heights_.size() < count) heights_.resize(count);
+    double highest = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < count; ++i) {
+      heights_[i] = height(points_[i].x, points_[i].y);
+      highest = std::max(highest, heights_[i]);
+    }
+    if (!(highest > 0.0)) return;
+    kept_.resize(2 * count + 1);  // as many as rounding may make, and one that does not stay
+    Point* kept = kept_.data();
+    Point last = points_[count - 1];
+    double last_height = heights_[count - 1];
+    for (std::size_t i = 0; i < count; ++i) {
+      const Point p = points_[i];
+      const double h = heights_[i];
+      const double t = last_height / (last_height - h);  // of use where the line is crossed
+      *kept = {last.x + t * (p.x - last.x), last.y + t * (p.y - last.y)};
+      kept += (h > 0.0) != (last_height > 0.0);
+      *kept = p;
+      kept += !(h > 0.0);
       last = p;
       last_height = h;
     }
+    kept_.resize(kept - kept_.data());
     points_.swap(kept_);
   }
 
@@ -75,12 +103,15 @@ class ConvexPolygon {
   }
 
  private:
+  static constexpr std::size_t kUsual = 64;  // memory that is enough but for many more faces
+
   double twice_area(std::size_t i) const {
     const Point &p = points_[0], &q = points_[i - 1], &r = points_[i];
     return (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
   }
 
   std::vector<Point> points_, kept_;
+  std::vector<double> heights_;
 };
 
 }  // namespace volcontact

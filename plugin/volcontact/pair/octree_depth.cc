@@ -182,11 +182,12 @@ double farthest_in(const OctreeTask& task, OctreeScratch& s, int leaf, const Vec
                    double least) {
   Cell cell = s.cells[leaf];
   const double center = e.dot(cell.center);
-  if (!(cell.sums.volume > 0.0) || center + e.cwiseAbs().dot(cell.half) <= least) return least;
-  CellCut& cutter = s.cutters[task.thread()];
-  cutter.evaluate(s.faces, cell);
-  cutter.for_each_corner(
-      cell.half, e, [&](const Vec3& corner) { least = std::max(least, center + e.dot(corner)); });
+  const double reach =
+      (e.cwiseProduct(cell.content_low)).cwiseMax(e.cwiseProduct(cell.content_high)).sum();
+  if (!(cell.sums.volume > 0.0) || center + reach <= least) return least;
+  s.cutters[task.thread()].for_each_corner(s.faces, cell, e, [&](const Vec3& corner) {
+    least = std::max(least, center + e.dot(corner));
+  });
   return least;
 }
 

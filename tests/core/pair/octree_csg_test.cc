@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "core/support/csg_solids.h"
+#include "core/support/random.h"
+#include "volcontact/pair/interference.h"
 #include "volcontact/pair/octree.h"
 #include "volcontact/shape/csg_metrics.h"
 
@@ -67,6 +69,34 @@ TEST(OctreeCsg, AreasLeaveSeamsOut) {
   EXPECT_NEAR(m.counter_area, 2.0 * kPi * radius * depth, 1e-2 * m.counter_area);
   EXPECT_NEAR(m.area_vector.z(), disc, 1e-2 * disc);
   EXPECT_NEAR(m.volume, kPi * depth * depth * (radius - depth / 3.0), 1e-2 * m.volume);
+}
+
+// Wall against wall, 0.02 mm apart and a thousand times as long. The expected volumes are those of
+// the lines engine, which knows no cells and integrates the wall's columns to 1e-7. Bounds of each
+// wall by itself would take 3800 cells; together they need a third.
+TEST(OctreeCsg, WallsThatAreNearlyParallelNeedFewCells) {
+  const Shape block = box(.02, .02, .01) - tube(.01, .02);
+  const Shape peg = Cylinder({.radius = 0.00998, .half_length = 0.02});
+  test::Random random(8);
+  InterferenceWorkspace workspace;
+  Interference cells, lines;
+  for (int i = 0; i < 12; ++i) {
+    const double towards = random.uniform(0.0, 2.0 * kPi);
+    const Pose X{
+        test::turn({std::cos(towards), std::sin(towards), 0.0}, random.uniform(.0025, .004)),
+        random.in_box(2e-6)};
+    interference(block, peg, X, {.engine = Engine::kLines}, workspace, lines);
+    ASSERT_EQ(lines.engine, Engine::kLines);
+    for (const double tolerance : {1e-1, 1e-2}) {
+      interference(block, peg, X,
+                   {.tolerance = tolerance, .engine = Engine::kOctree, .most_cells = 1300},
+                   workspace, cells);
+      EXPECT_EQ(cells.total.status, Status::kOk);
+      EXPECT_EQ(cells.sites.size(), 2u);
+      EXPECT_LE(std::abs(cells.total.volume - lines.total.volume),
+                cells.total.volume_error + 1e-7 * lines.total.volume);
+    }
+  }
 }
 
 }  // namespace
