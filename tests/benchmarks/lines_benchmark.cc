@@ -44,6 +44,7 @@ const Shape kBox = Box({.half_sizes = {1.0, 1.0, 0.5}});
 const Shape kEgg = Ellipsoid({.semi_axes = {0.5, 0.35, 0.2}});
 const Shape kCan = Cylinder({.radius = 0.2, .half_length = 0.4});
 const Shape kPill = Capsule({.radius = 0.2, .half_length = 0.4});
+const Shape kRing = Torus({.major_radius = 0.35, .minor_radius = 0.12});
 
 // A block with a bore of 10 mm radius.
 Shape bored_block() {
@@ -86,6 +87,20 @@ void peg_in_bore_20um(benchmark::State& state) {
 void peg_free_in_bore_20um(benchmark::State& state) {
   run(state, bored_block(), peg(2e-5), {Mat3::Identity(), Vec3::Zero()}, 1e-6, 0.0, 0);
 }
+void ring_stands_on_box_face(benchmark::State& state) {
+  run(state, kBox, kRing, {test::turn(Vec3::UnitX(), 1.3), {0.1, 0.05, 0.94}}, 1e-3, 1e-2, 1);
+}
+void can_beside_ring(benchmark::State& state) {
+  run(state, kRing, kCan, {test::turn(Vec3::UnitX(), 0.4), {0.66, 0.0, 0.05}}, 1e-3, 1e-2, 1);
+}
+void ball_in_hole_of_ring(benchmark::State& state) {
+  const Shape ball = Sphere({.radius = 0.3});
+  run(state, kRing, ball, {Mat3::Identity(), {0.0, 0.0, 0.2}}, 1e-3, 0.0, 1);
+}
+void bar_across_ring(benchmark::State& state) {
+  const Shape bar = Box({.half_sizes = {1.0, 0.1, 0.05}});
+  run(state, kRing, bar, {Mat3::Identity(), {0.0, 0.0, 0.16}}, 1e-3, 1e-3, 2);
+}
 
 BENCHMARK(ellipsoid_over_box_edge);
 BENCHMARK(can_cap_edge_into_box_face);
@@ -96,6 +111,10 @@ BENCHMARK(ball_at_wall_of_bore);
 BENCHMARK(peg_in_bore_300um);
 BENCHMARK(peg_in_bore_20um);
 BENCHMARK(peg_free_in_bore_20um);
+BENCHMARK(ring_stands_on_box_face);
+BENCHMARK(can_beside_ring);
+BENCHMARK(ball_in_hole_of_ring);
+BENCHMARK(bar_across_ring);
 
 }  // namespace
 }  // namespace volcontact

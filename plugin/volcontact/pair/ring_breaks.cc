@@ -105,6 +105,7 @@ class RingBreaks {
 
   // A round edge: where it pierces the ring, and where a half-plane touches it.
   void follow(const Rim& rim) {
+    if (distance(rim.center) > rim.radius_u.norm()) return;
     const auto x_at = [&](double t) -> Vec3 {
       return rim.center + rim.radius_u * std::cos(t) + rim.radius_v * std::sin(t);
     };

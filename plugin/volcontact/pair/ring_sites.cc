@@ -204,13 +204,22 @@ class SiteSearch {
       const double width = kEndWidth * (full[1] - full[0]);
       if (full[0] - empty[0] <= width && empty[1] - full[1] <= width) break;
       constexpr int kParts = kLanes / 2 + 1;
-      double angle[kLanes], length[kLanes];
+      double angle[kLanes], length[kLanes], cos[kLanes], sin[kLanes];
       for (int end = 0; end < 2; ++end) {
+        const double step = (empty[end] - full[end]) / kParts;
+        const double c = std::cos(step), s = std::sin(step);
+        double u = std::cos(full[end]), v = std::sin(full[end]);
         for (int i = 1; i < kParts; ++i) {
-          angle[end * (kParts - 1) + i - 1] = full[end] + (empty[end] - full[end]) * i / kParts;
+          const int lane = end * (kParts - 1) + i - 1;
+          const double turned = c * u - s * v;
+          v = s * u + c * v;
+          u = turned;
+          angle[lane] = full[end] + i * step;
+          cos[lane] = u;
+          sin[lane] = v;
         }
       }
-      probe(angle, length);
+      fan_.probe(path_, cos, sin, length);
       for (int end = 0; end < 2; ++end) {
         const double from_empty = empty[end];
         for (int i = 1; i < kParts; ++i) {

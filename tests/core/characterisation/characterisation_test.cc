@@ -86,7 +86,9 @@ INSTANTIATE_TEST_SUITE_P(
                       NamedPair{"sphere", "cylinder"}, NamedPair{"sphere", "bored_block"},
                       NamedPair{"ellipsoid", "box"}, NamedPair{"capsule", "cylinder"},
                       NamedPair{"cylinder", "box"}, NamedPair{"cylinder", "hollow_cylinder"},
-                      NamedPair{"frustum", "ellipsoid"}, NamedPair{"capsule", "convex_polytope"}),
+                      NamedPair{"frustum", "ellipsoid"}, NamedPair{"capsule", "convex_polytope"},
+                      NamedPair{"sphere", "torus"}, NamedPair{"torus", "box"},
+                      NamedPair{"cylinder", "torus"}, NamedPair{"torus", "convex_polytope"}),
     [](const auto& test) { return std::string(test.param.first) + "_" + test.param.second; });
 
 TEST(Spread, MedianAndWorst) {

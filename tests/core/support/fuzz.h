@@ -13,7 +13,7 @@ namespace volcontact::test {
 enum class Cost : int {
   kLow = 0,     ///< simple convex solids: microseconds
   kMiddle = 1,  ///< composed solids with bores: now and then left to the octree
-  kHigh = 2,    ///< tori, and composed solids with cones on either side: the octree, at length
+  kHigh = 2,    ///< two tori, and composed solids with tori or cones: the octree, at length
 };
 Cost cost_of(const Example& a, const Example& b);
 
