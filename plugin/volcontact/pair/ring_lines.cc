@@ -16,6 +16,7 @@ constexpr double kSameAngle = 1e-11;  // [rad]
 constexpr double kNearEnd = 3e-4;     // of a range: to which its ends are known at least
 constexpr double kOnAxis = 1e-8;      // of a plane from the axis, per radius
 constexpr double kEndError = 5.0;     // error by its estimate where an arc ends in nothing
+constexpr double kTarget = 1e-2;      // share of the tolerance asked of an arc: kinks may be hidden
 constexpr double kFallError = 10.0;   // the same by the fall of waves, as measured
 constexpr double kWhole = 0.999;      // share of a solid in the overlap, that is all of it
 
@@ -183,8 +184,7 @@ class RingRun {
     for (int i = 0; i < kLanes; ++i) volume += section[i] *= weight[i];
     const double error = (arc.begins || arc.ends ? kEndError : 1.0) * legendre_error(section);
     volume_scale_ = std::max(volume_scale_, volume);
-    if (error > outer_rule::kTarget * options_.tolerance * volume_scale_ &&
-        depth < outer_rule::kMaxDepth) {
+    if (error > kTarget * options_.tolerance * volume_scale_ && depth < outer_rule::kMaxDepth) {
       const double middle = 0.5 * (x_from + x_to);
       integrate_arc(arc, x_from, middle, depth + 1);
       integrate_arc(arc, middle, x_to, depth + 1);
