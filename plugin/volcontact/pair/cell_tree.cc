@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "volcontact/base/ordered_sum.h"
 #include "volcontact/pair/cell_math.h"
 
 namespace volcontact {
@@ -166,7 +165,7 @@ void CellTree::sample_fields(int first, int last) {
 void CellTree::evaluate(int first, int last, double rough_above) {
   sample_fields(first, last);
   const int count = last - first;
-  for_each_task(count, task_.threads_for(count), kEvaluateGrain, [&](int i) {
+  task_.crew.for_each(count, kEvaluateGrain, [&](int i) {
     s_.cutters[task_.thread()].evaluate(s_.faces, s_.cells[first + i], rough_above);
   });
 }
@@ -241,7 +240,7 @@ bool CellTree::precise() const {
 // bounds.
 void CellTree::smooth() {
   const int count = static_cast<int>(s_.pending.size());
-  for_each_task(count, task_.threads_for(count), kEvaluateGrain, [&](int i) {
+  task_.crew.for_each(count, kEvaluateGrain, [&](int i) {
     OctreeScratch::Pending& leaf = s_.pending[i];
     Cell& cell = s_.cells[leaf.cell];
     if (!cell.rough) return;
@@ -274,25 +273,38 @@ bool CellTree::divide_worst() {
   return true;
 }
 
-void CellTree::refine() {
-  s_.pending.clear();
-  s_.next_pending.clear();
-  evaluate(0, s_.cell_count, 0.0);
-  take_up(0, s_.cell_count);
+// Whether others would help, who are not at hand yet.
+bool CellTree::wants_crew() const {
+  return !task_.crew.open() && task_.worth_sharing(2 * static_cast<int>(s_.pending.size()));
+}
+
+bool CellTree::refine() {
   do {
-    while (!precise() && !approximate_) approximate_ = !divide_worst();
+    while (!precise() && !approximate_) {
+      if (wants_crew()) return false;
+      approximate_ = !divide_worst();
+    }
     smooth();
   } while (!precise() && !approximate_);
   approximate_ = !precise();
+  return true;
 }
 
-void CellTree::grow() {
-  plant();
-  refine();
+bool CellTree::grow() {
+  if (!planted_) {
+    plant();
+    s_.pending.clear();
+    s_.next_pending.clear();
+    evaluate(0, s_.cell_count, 0.0);
+    take_up(0, s_.cell_count);
+    planted_ = true;
+  }
+  if (!refine()) return false;
   s_.leaves.clear();
   for (int i = 0; i < s_.cell_count; ++i) {
     if (!s_.cells[i].divided && !s_.cells[i].empty) s_.leaves.push_back(i);
   }
+  return true;
 }
 
 }  // namespace volcontact

@@ -12,8 +12,9 @@ class CellTree {
  public:
   CellTree(OctreeTask& task, OctreeScratch& scratch) : task_(task), s_(scratch) {}
 
-  /// Leaves the leaves that may hold volume in `scratch.leaves`.
-  void grow();
+  /// Leaves the leaves that may hold volume in `scratch.leaves`. False when the rest is worth
+  /// sharing and the crew of the task is not open: then to be called again.
+  bool grow();
   double high() const { return high_; }
   bool approximate() const { return approximate_; }
   /// A field was no number somewhere.
@@ -34,7 +35,8 @@ class CellTree {
   bool precise() const;
   void smooth();
   bool divide_worst();
-  void refine();
+  bool wants_crew() const;
+  bool refine();
   double threshold() const;
   void divide(int index);
 
@@ -42,6 +44,7 @@ class CellTree {
   OctreeScratch& s_;
   double low_ = 0.0, volume_ = 0.0, high_ = 0.0;
   double settled_ = 0.0;  // volume of the leaves without doubt
+  bool planted_ = false;
   bool approximate_ = false;
   bool invalid_ = false;
 };

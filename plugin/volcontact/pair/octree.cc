@@ -77,7 +77,7 @@ VolumeMetrics metrics_of(const OctreeTask& task, OctreeScratch& s, LeafRange lea
                          bool approximate) {
   const int count = leaves.last - leaves.first;
   const auto t = ordered_sum<OctreeScratch::Totals>(
-      count, task.threads_for(count), kSumGrain, s.partial_totals,
+      task.crew, count, kSumGrain, s.partial_totals,
       [&](int i) { return totals_of(s.cells[s.leaves[leaves.first + i]]); });
   VolumeMetrics metrics = metrics_from(t);
   metrics.volume_error = std::max(t.high - t.volume, t.volume - t.low) + task.rounding;
@@ -97,12 +97,7 @@ VolumeMetrics metrics_of(const OctreeTask& task, OctreeScratch& s, LeafRange lea
   return metrics;
 }
 
-void run(OctreeTask& task, OctreeScratch& s, Interference& out) {
-  const std::size_t threads = task.thread_limit;
-  if (s.cutters.size() < threads) s.cutters.resize(threads);
-  if (s.columns.size() < threads) s.columns.resize(threads);
-  CellTree tree(task, s);
-  tree.grow();
+void measure(const OctreeTask& task, OctreeScratch& s, const CellTree& tree, Interference& out) {
   if (tree.invalid()) {
     out.total.status = Status::kInvalid;
     return;
@@ -128,6 +123,18 @@ void run(OctreeTask& task, OctreeScratch& s, Interference& out) {
   }
   out.total = out.sites[0];
   for (std::size_t i = 1; i < out.sites.size(); ++i) out.total = out.total + out.sites[i];
+}
+
+void run(OctreeTask& task, OctreeScratch& s, Interference& out) {
+  const std::size_t threads = task.thread_limit;
+  if (s.cutters.size() < threads) s.cutters.resize(threads);
+  if (s.columns.size() < threads) s.columns.resize(threads);
+  CellTree tree(task, s);
+  if (tree.grow()) return measure(task, s, tree, out);
+  task.crew.run(task.thread_limit, [&] {
+    tree.grow();
+    measure(task, s, tree, out);
+  });
 }
 
 bool unbounded(const SolidView& view) { return !view.bounds.bounded(); }
@@ -166,13 +173,15 @@ void octree_interference(const SolidView& a, const SolidView& b, const Pose& X_A
   if (a.own.volume == 0.0 || b.own.volume == 0.0) return;
   const OverlapWindow window = find_window(a, b, X_AB, scratch.hull, scratch.part);
   if (window.apart) return;
+  Crew crew;
   OctreeTask task{.a = a,
                   .b = b,
                   .window = window,
                   .tolerance = options.tolerance,
                   .most_cells = options.most_cells,
                   .asked_threads = options.threads,
-                  .thread_limit = thread_limit(options.threads)};
+                  .thread_limit = thread_limit(options.threads),
+                  .crew = crew};
   run(task, scratch, out);
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "volcontact/base/ordered_sum.h"
 #include "volcontact/pair/piece_ray.h"
 
 namespace volcontact {
@@ -136,7 +135,7 @@ OctreeScratch::ColumnSum ColumnPass::sum(LeafRange leaves, int levels, bool fine
   const int count = leaves.last - leaves.first, grain = fields ? count : kLeavesPerTask;
   const int tasks = (count + grain - 1) / grain;
   if (s_.partial_columns.size() < static_cast<std::size_t>(tasks)) s_.partial_columns.resize(tasks);
-  for_each_task(tasks, fields ? 1 : task_.threads_for(count), 1, [&](int task) {
+  task_.crew.for_each(tasks, 1, [&](int task) {
     OctreeScratch::Columns& columns = s_.columns[task_.thread()];
     columns.starts.clear();
     const int last = std::min(count, (task + 1) * grain);
@@ -240,7 +239,7 @@ double farthest(const OctreeTask& task, OctreeScratch& s, LeafRange leaves, cons
   const int count = leaves.last - leaves.first;
   const int tasks = (count + kLeavesPerTask - 1) / kLeavesPerTask;
   s.partial_heights.assign(tasks, height);
-  for_each_task(tasks, task.threads_for(count), 1, [&](int k) {
+  task.crew.for_each(tasks, 1, [&](int k) {
     const int last = std::min(leaves.last, leaves.first + (k + 1) * kLeavesPerTask);
     for (int i = leaves.first + k * kLeavesPerTask; i < last; ++i) {
       s.partial_heights[k] = farthest_in(task, s, s.leaves[i], e, s.partial_heights[k]);

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 #include <vector>
 
+#include "volcontact/base/crew.h"
 #include "volcontact/pair/cell_cut.h"
 #include "volcontact/pair/cell_sites.h"
 #include "volcontact/pair/interference.h"
@@ -75,24 +72,19 @@ struct OctreeTask {
   int most_cells;
   int asked_threads;  ///< 0: by work
   int thread_limit;
+  Crew& crew;
   double scale = 0.0;     ///< size of the numbers that the faces are computed from [m]
   double rounding = 0.0;  ///< of a volume [m^3]
 
   const SolidView& solid(int owner) const { return owner == 0 ? a : b; }
   const Pose& X_SW(int owner) const { return owner == 0 ? window.X_AW : window.X_BW; }
-  int threads_for(int tasks) const {
+  bool worth_sharing(int cells) const {
     constexpr int kWorthAsking = 32;    // cells, when the caller wants threads
     constexpr int kWorthThreads = 256;  // cells, when their number is our choice
-    return tasks < (asked_threads == 0 ? kWorthThreads : kWorthAsking) ? 1 : thread_limit;
+    return thread_limit > 1 && cells >= (asked_threads == 0 ? kWorthThreads : kWorthAsking);
   }
   /// Number of the calling thread, below thread_limit; 0 for a caller that is one of many.
-  int thread() const {
-#ifdef _OPENMP
-    return thread_limit == 1 ? 0 : omp_get_thread_num();
-#else
-    return 0;
-#endif
-  }
+  int thread() const { return thread_limit == 1 ? 0 : Crew::number(); }
 };
 
 }  // namespace volcontact

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -14,28 +13,20 @@ namespace {
 // Terms of very different size and sign: any other order gives other bits.
 double term(int i) { return std::sin(1.7 * i) * std::pow(10.0, i % 17 - 8); }
 
-TEST(ForEachTask, CallsEveryTaskOnce) {
-  for (int threads : {1, 2, 3, 4, 8}) {
-    for (int grain : {1, 7, 1000}) {
-      std::vector<std::atomic<int>> calls(1003);
-      for_each_task(1003, threads, grain, [&](int i) { ++calls[i]; });
-      for (const auto& count : calls) ASSERT_EQ(count.load(), 1);
-    }
-  }
-}
-
-TEST(ForEachTask, NothingToDoIsNothingDone) {
-  int calls = 0;
-  for_each_task(0, 4, 16, [&](int) { ++calls; });
-  EXPECT_EQ(calls, 0);
+// The sum of `count` terms on a crew of so many threads.
+double sum_on(int threads, int count, int grain, std::vector<double>& partial) {
+  Crew crew;
+  double sum = 0.0;
+  crew.run(threads, [&] { sum = ordered_sum<double>(crew, count, grain, partial, term); });
+  return sum;
 }
 
 TEST(OrderedSum, SameBitsForAnyNumberOfThreads) {
   std::vector<double> partial;
   for (int count : {1, 63, 64, 65, 5000}) {
-    const double one = ordered_sum<double>(count, 1, 64, partial, term);
+    const double one = sum_on(1, count, 64, partial);
     for (int threads : {2, 3, 4, 8}) {
-      const double many = ordered_sum<double>(count, threads, 64, partial, term);
+      const double many = sum_on(threads, count, 64, partial);
       EXPECT_EQ(std::bit_cast<std::uint64_t>(one), std::bit_cast<std::uint64_t>(many));
     }
   }
@@ -44,9 +35,10 @@ TEST(OrderedSum, SameBitsForAnyNumberOfThreads) {
 // The test above means something only if order matters for these terms.
 TEST(OrderedSum, TermsOfTheTestDependOnTheOrder) {
   std::vector<double> partial;
-  const double forward = ordered_sum<double>(5000, 1, 64, partial, term);
+  Crew alone;
+  const double forward = sum_on(1, 5000, 64, partial);
   const double backward =
-      ordered_sum<double>(5000, 1, 64, partial, [](int i) { return term(4999 - i); });
+      ordered_sum<double>(alone, 5000, 64, partial, [](int i) { return term(4999 - i); });
   EXPECT_NE(std::bit_cast<std::uint64_t>(forward), std::bit_cast<std::uint64_t>(backward));
 }
 
@@ -58,21 +50,20 @@ TEST(OrderedSum, IsTheSumOfBlocksInIndexOrder) {
     for (int i = 10 * block; i < std::min(25, 10 * block + 10); ++i) sum += term(i);
     wanted += sum;
   }
-  EXPECT_EQ(ordered_sum<double>(25, 4, 10, partial, term), wanted);
+  EXPECT_EQ(sum_on(4, 25, 10, partial), wanted);
 }
 
 TEST(OrderedSum, OfNothingIsZero) {
   std::vector<double> partial;
-  EXPECT_EQ(ordered_sum<double>(0, 4, 64, partial, term), 0.0);
+  EXPECT_EQ(sum_on(4, 0, 64, partial), 0.0);
 }
 
 // A second use with fewer blocks must not add what the first one left.
 TEST(OrderedSum, ScratchLeavesNoTrace) {
   std::vector<double> partial;
-  ordered_sum<double>(5000, 2, 64, partial, term);
+  sum_on(2, 5000, 64, partial);
   std::vector<double> fresh;
-  EXPECT_EQ(ordered_sum<double>(100, 2, 64, partial, term),
-            ordered_sum<double>(100, 2, 64, fresh, term));
+  EXPECT_EQ(sum_on(2, 100, 64, partial), sum_on(2, 100, 64, fresh));
 }
 
 }  // namespace

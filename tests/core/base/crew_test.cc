@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/base/crew.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <vector>
+
+namespace volcontact {
+namespace {
+
+TEST(Crew, CallsEveryTaskOnce) {
+  for (int threads : {1, 2, 3, 4, 8, 16}) {
+    for (int grain : {1, 7, 1000}) {
+      Crew crew;
+      std::vector<std::atomic<int>> calls(1003);
+      crew.run(threads, [&] { crew.for_each(1003, grain, [&](int i) { ++calls[i]; }); });
+      for (const auto& count : calls) ASSERT_EQ(count.load(), 1);
+    }
+  }
+}
+
+// A thread that comes late to a loop must not take it for the next one.
+TEST(Crew, ManyShortLoopsFollowEachOther) {
+  Crew crew;
+  std::vector<int> number(64, 0);
+  crew.run(4, [&] {
+    for (int round = 0; round < 5000; ++round) {
+      crew.for_each(1 + round % 64, 1, [&](int i) { number[i] += round; });
+    }
+  });
+  for (int i = 0; i < 64; ++i) {
+    int sum = 0;
+    for (int round = 0; round < 5000; ++round) sum += i <= round % 64 ? round : 0;
+    ASSERT_EQ(number[i], sum);
+  }
+}
+
+// What a loop writes, the program and the next loop see.
+TEST(Crew, ALoopEndsWithTheLastOfItsTasks) {
+  Crew crew;
+  std::vector<double> one(500, 0.0), two(500, 0.0);
+  crew.run(3, [&] {
+    for (int round = 1; round <= 200; ++round) {
+      crew.for_each(500, 16, [&](int i) { one[i] = round + i; });
+      crew.for_each(500, 16, [&](int i) { two[i] = one[499 - i]; });
+      for (int i = 0; i < 500; ++i) ASSERT_EQ(two[i], round + 499 - i);
+    }
+  });
+}
+
+TEST(Crew, IsOpenDuringItsProgramOnly) {
+  Crew crew;
+  EXPECT_FALSE(crew.open());
+  crew.run(2, [&] { EXPECT_TRUE(crew.open()); });
+  EXPECT_FALSE(crew.open());
+  crew.run(1, [&] { EXPECT_FALSE(crew.open()); });
+}
+
+TEST(Crew, NothingToDoIsNothingDone) {
+  Crew crew;
+  int calls = 0;
+  crew.run(4, [&] { crew.for_each(0, 16, [&](int) { ++calls; }); });
+  EXPECT_EQ(calls, 0);
+}
+
+}  // namespace
+}  // namespace volcontact
