@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include "core/support/evaluated.h"
 #include "core/support/random.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact {
 namespace {
 
+using test::evaluated;
 using Operation = Csg::Operation;
 
 Csg box(double x, double y, double z, const Vec3& at) {
@@ -17,14 +19,6 @@ Csg box(double x, double y, double z, const Vec3& at) {
 Csg operator+(const Csg& a, const Csg& b) { return Csg(Operation::kUnion, a, b); }
 Csg operator-(const Csg& a, const Csg& b) { return Csg(Operation::kDifference, a, b); }
 
-Interference evaluated(const Shape& a, const Shape& b, const Pose& X_AB,
-                       Engine engine = Engine::kLines, double tolerance = 1e-3) {
-  InterferenceWorkspace workspace;
-  Interference out;
-  interference(a, b, X_AB, {.tolerance = tolerance, .engine = engine}, workspace, out);
-  return out;
-}
-
 TEST(ComposedLines, ATableHasFourSites) {
   Csg table = box(0.5, 0.4, 0.02, {0.0, 0.0, 0.5});
   for (double x : {-0.4, 0.4}) {
@@ -32,7 +26,7 @@ TEST(ComposedLines, ATableHasFourSites) {
   }
   const double depth = 0.001;
   const Interference out =
-      evaluated(HalfSpace(), table, {Mat3::Identity(), {0.0, 0.0, 0.01 - depth}});
+      evaluated(HalfSpace(), table, {Mat3::Identity(), {0.0, 0.0, 0.01 - depth}}, Engine::kLines);
   ASSERT_EQ(out.sites.size(), 4u);
   for (const VolumeMetrics& site : out.sites) {
     EXPECT_NEAR(site.volume, 0.06 * 0.06 * depth, 1e-6 * site.volume);
@@ -48,7 +42,7 @@ TEST(ComposedLines, ASeamJoinsItsSides) {
   const Csg bars = box(0.3, 0.1, 0.1, {0.2, 0.0, 0.0}) + box(0.1, 0.3, 0.1, {0.0, 0.2, 0.0});
   const double depth = 0.01, area = 0.6 * 0.2 + 0.2 * 0.4;
   const Interference out =
-      evaluated(HalfSpace(), bars, {Mat3::Identity(), {0.0, 0.0, 0.1 - depth}});
+      evaluated(HalfSpace(), bars, {Mat3::Identity(), {0.0, 0.0, 0.1 - depth}}, Engine::kLines);
   ASSERT_EQ(out.sites.size(), 1u);
   EXPECT_NEAR(out.total.volume, area * depth, 1e-6 * area * depth);
   EXPECT_NEAR(out.total.area, area, 1e-6 * area);
@@ -82,7 +76,7 @@ TEST(ComposedLines, StaysWithinTheCertifiedBoundsOfTheOctree) {
     for (const Shape& other : others) {
       for (int k = 0; k < kPoses; ++k) {
         const Pose X = random.pose(0.4);
-        const Interference out = evaluated(other, solid, X);
+        const Interference out = evaluated(other, solid, X, Engine::kLines);
         if (out.engine != Engine::kLines) continue;
         ++by_lines;
         const Interference octree = evaluated(other, solid, X, Engine::kOctree, 3e-2);
