@@ -3,6 +3,10 @@
 
 #include <cmath>
 
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
 /// A function on vectors: inlined into the kernel that uses it, and compiled with it.
 #define VOLCONTACT_SIMD_INLINE [[gnu::always_inline]] inline
 

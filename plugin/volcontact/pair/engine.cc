@@ -19,6 +19,8 @@ const char* to_string(Engine engine) {
       return "clip";
     case Engine::kLines:
       return "lines";
+    case Engine::kColumns:
+      return "columns";
     case Engine::kOctree:
       return "octree";
   }

@@ -11,11 +11,12 @@ enum class Engine : int {
   kClosedForm = 1,  ///< formulas: half-space with every round shape, sphere-sphere
   kClip = 2,        ///< exact clipping of half-space, box and convex polytope
   kLines = 3,       ///< quadrature of exact columns: convex solids of plane and round faces
+  kColumns = 5,     ///< signed columns over pairs of triangles: meshes with one another
   kOctree = 4,      ///< recursive cells with certified bounds; serves every pair
 };
 
-inline constexpr Engine kEngines[] = {Engine::kAuto, Engine::kClosedForm, Engine::kClip,
-                                      Engine::kLines, Engine::kOctree};
+inline constexpr Engine kEngines[] = {Engine::kAuto,  Engine::kClosedForm, Engine::kClip,
+                                      Engine::kLines, Engine::kColumns,    Engine::kOctree};
 
 const char* to_string(Engine engine);
 

@@ -10,6 +10,7 @@
 #include "volcontact/pair/closed_form/half_space_sphere.h"
 #include "volcontact/pair/closed_form/half_space_torus.h"
 #include "volcontact/pair/closed_form/sphere_sphere.h"
+#include "volcontact/pair/columns.h"
 #include "volcontact/pair/composed_lines.h"
 #include "volcontact/pair/octree.h"
 #include "volcontact/pair/ring_lines.h"
@@ -21,6 +22,7 @@ struct InterferenceWorkspace::Scratch {
   LinesScratch lines;
   ComposedScratch composed;
   RingScratch ring;
+  ColumnsScratch columns;
   OctreeScratch octree;
 };
 
@@ -49,6 +51,11 @@ constexpr bool is_composed = std::is_same_v<S, Csg>;
 template <typename A, typename B>
 constexpr bool has_composed_lines =
     (is_composed<A> && (is_composed<B> || HasFaces<B>)) || (HasFaces<A> && is_composed<B>);
+template <typename S>
+constexpr bool is_mesh = std::is_same_v<S, Mesh>;
+template <typename A, typename B>
+constexpr bool has_columns = (is_mesh<A> && (HasTriangles<B> || std::is_same_v<B, HalfSpace>)) ||
+                             (is_mesh<B> && HasTriangles<A>);
 template <typename A, typename B>
 constexpr bool both_unbounded = std::is_same_v<A, HalfSpace> && std::is_same_v<B, HalfSpace>;
 
@@ -63,6 +70,8 @@ constexpr bool serves_pair(Engine engine) {
       return has_clip<A, B> || has_clip<B, A>;
     case Engine::kLines:
       return has_lines<A, B> || has_composed_lines<A, B> || has_ring<A, B> || has_ring<B, A>;
+    case Engine::kColumns:
+      return has_columns<A, B> || has_columns<B, A>;
     case Engine::kOctree:
       return !both_unbounded<A, B>;
   }
@@ -80,7 +89,8 @@ bool serves_pair(Engine engine, const A& a, const B& b) {
 
 template <typename A, typename B>
 Engine engine_for_pair(const A& a, const B& b) {
-  for (Engine engine : {Engine::kClosedForm, Engine::kClip, Engine::kLines, Engine::kOctree}) {
+  for (Engine engine :
+       {Engine::kClosedForm, Engine::kClip, Engine::kLines, Engine::kColumns, Engine::kOctree}) {
     if (serves_pair(engine, a, b)) return engine;
   }
   return Engine::kAuto;
@@ -142,6 +152,22 @@ bool lines(const A& a, const B& b, const Pose& X_AB, const InterferenceOptions& 
   return is_finite(out.total);
 }
 
+template <typename A, typename B>
+void columns(const A& a, const B& b, const Pose& X_AB, const InterferenceOptions& options,
+             ColumnsScratch& scratch, Interference& out) {
+  if constexpr (has_columns<A, B>) {
+    const SurfaceView surface_a = surface_of(a, scratch.box[0]);
+    if constexpr (HasTriangles<B>) {
+      columns_interference(surface_a, surface_of(b, scratch.box[1]), X_AB, options, scratch, out);
+    } else {
+      columns_interference(surface_a, b, X_AB, options, scratch, out);
+    }
+  } else {
+    columns(b, a, X_AB.inverse(), options, scratch, out);
+    mirror_sites(X_AB, out);
+  }
+}
+
 // `out.total` as the only site.
 void set_one_site(Interference& out) {
   out.sites.resize(out.total.touching() ? 1 : 0);
@@ -195,6 +221,13 @@ void interference(const Shape& a, const Shape& b, const Pose& X_AB,
       if (out.engine == Engine::kLines) {
         if (lines(solid_a, solid_b, X_AB, options, workspace.scratch(), out)) return;
         out.engine = Engine::kOctree;
+      }
+    }
+    if constexpr (serves_pair<A, B>(Engine::kColumns)) {
+      if (out.engine == Engine::kColumns) {
+        columns(solid_a, solid_b, X_AB, options, workspace.scratch().columns, out);
+        if (is_finite(out.total)) return;
+        return set_status(Status::kInvalid, out);
       }
     }
     octree_interference(a, b, X_AB, options, workspace.scratch().octree, out);

@@ -17,7 +17,6 @@ namespace {
 // from one plane: well above the rounding of rotated vertices, well below what a volume could show.
 constexpr double kCoplanar = 1e-13;
 
-using Triangle = std::array<int, 3>;
 using Loop = std::vector<int>;
 
 double area_of(const Triangle& t, const std::vector<Vec3>& points) {
@@ -187,6 +186,9 @@ ConvexPolytope::ConvexPolytope(const std::vector<Vec3>& points) {
     }
   }
   const double size = (data->bounds.max - data->bounds.min).norm();
+  MeshTopology surface;
+  make_topology(points, triangles, surface);
+  data->tree = make_obb_tree(surface);
 
   std::vector<Loop> loops = faces_of_hull(triangles, points, size);
   std::map<int, int> index_of;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "volcontact/shape/obb_tree.h"
 #include "volcontact/shape/polytope_graph.h"
 #include "volcontact/shape/solid.h"
 
@@ -33,6 +34,9 @@ class ConvexPolytope {
   /// The surface in the form that clipping works on; its face numbers are those of faces().
   const PolytopeGraph& graph() const { return data_->graph; }
 
+  /// The surface as triangles.
+  const ObbTree& tree() const { return data_->tree; }
+
   Aabb bounds() const { return data_->bounds; }
   Vec3 support(const Vec3& e) const;
   double support_height(const Vec3& e) const { return e.dot(support(e)); }
@@ -48,6 +52,7 @@ class ConvexPolytope {
     std::vector<Vec3> vertices;
     std::vector<Face> faces;
     PolytopeGraph graph;
+    ObbTree tree;
     Aabb bounds;
     VolumeMetrics metrics;
     double surface_area = 0.0;

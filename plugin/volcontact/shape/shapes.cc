@@ -32,6 +32,10 @@ Csg composed(const Shape& shape) {
           throw std::invalid_argument(
               "a solid with a signed distance cannot be composed: combine the distances instead, "
               "min(a, b), max(a, b) or max(a, -b)");
+        } else if constexpr (std::is_same_v<Solid, Mesh>) {
+          throw std::invalid_argument(
+              "a mesh cannot be composed: cut or join the triangles themselves, for example with "
+              "manifold3d or trimesh, and make a mesh of the result");
         } else {
           return Csg(solid);
         }

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/columns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "volcontact/pair/columns/contained.h"
+
+namespace volcontact {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kReach = 1e-13;      // of the size: where rounding decides whether faces touch
+constexpr int kMostContacts = 20000;  // of one query
+constexpr double kFlux = 1e-8;        // of the square of the length of a curve
+constexpr int kCellsOfLeafPair = 2;   // about
+
+double size_of(const Aabb& bounds) {
+  return bounds.min.cwiseAbs().cwiseMax(bounds.max.cwiseAbs()).sum();
+}
+
+bool bounds_apart(const Aabb& a, const Aabb& b, const Pose& X_AB) {
+  const Vec3 p = X_AB * b.center() - a.center();
+  const Vec3 half_a = a.half_sizes(), half_b = b.half_sizes();
+  if ((p.cwiseAbs().array() > (half_a + X_AB.rotation.cwiseAbs() * half_b).array()).any()) {
+    return true;
+  }
+  const Vec3 q = X_AB.rotation.transpose() * p;
+  return (q.cwiseAbs().array() > (half_b + X_AB.rotation.transpose().cwiseAbs() * half_a).array())
+      .any();
+}
+
+class Columns {
+ public:
+  // Without b: the half-space z < 0 of B's frame.
+  Columns(const SurfaceView& a, const SurfaceView* b, const Pose& X_AB, ColumnsScratch& scratch,
+          Interference& out)
+      : a_(a), b_(b), X_AB_(X_AB), X_BA_(X_AB.inverse()), scratch_(scratch), out_(out) {
+    rounding_ = 4.0 * kEpsilon *
+                (size_of(a.bounds) + X_AB.translation.lpNorm<1>() +
+                 (b != nullptr ? size_of(b->bounds) : 0.0));
+    out.total = VolumeMetrics{};
+    out.sites.clear();
+  }
+
+  void meshes(int most_leaf_pairs) {
+    if (bounds_apart(a_.bounds, b_->bounds, X_AB_)) return;
+    most_leaf_pairs_ = most_leaf_pairs;
+    const double reach = kReach * (size_of(a_.bounds) + size_of(b_->bounds));
+    const bool counted =
+        find_contacts(*a_.tree, *b_->tree, X_BA_, reach, kMostContacts, scratch_.crossing);
+    for (std::vector<int>& parts : scratch_.crossing_parts) parts.clear();
+    if (!counted || !add_patches()) {
+      out_.sites.clear();
+      add_all_columns();
+    }
+    finish();
+  }
+
+  void half_space() {
+    const Pose& X_CA = X_BA_;
+    const Vec3 up_A = X_CA.rotation.row(2).transpose();
+    const Vec3 middle = X_CA * a_.bounds.center();
+    const double reach = a_.bounds.half_sizes().dot(up_A.cwiseAbs());
+    if (middle.z() - reach >= 0.0) return;
+    if (middle.z() + reach <= 0.0) return add_immersed();
+    make_cells_below(*a_.tree, X_CA, scratch_.cells);
+    add_regions(X_CA, Pose{}, X_AB_, nullptr);
+    finish();
+  }
+
+ private:
+  // The whole of A below the half-space's plane, where the depth still means something.
+  void add_immersed() {
+    VolumeMetrics m = a_.own;
+    const Vec3 up_A = X_BA_.rotation.row(2).transpose();
+    m.area = a_.surface_area;
+    m.volume_error = rounding_ * m.area;
+    m.status = Status::kContained;
+    m.depth_moment = -(X_BA_ * m.centroid).z() * m.volume;
+    m.depth = a_.bounds.half_sizes().dot(up_A.cwiseAbs()) - (X_BA_ * a_.bounds.center()).z();
+    out_.sites.push_back(m);
+    finish();
+  }
+
+  std::vector<ColumnCell>& cells() { return scratch_.cells.cells; }
+
+  // Each patch on its own, and what does not cross. False when some patch needs all the columns.
+  bool add_patches() {
+    if (!scratch_.crossing.contacts.empty()) {
+      find_patches(scratch_.crossing.contacts, scratch_.patches);
+      for (const ContactPatch& patch : scratch_.patches.patches) {
+        if (!add_patch(patch)) return false;
+      }
+      if (a_.part_count() == 1 && b_->part_count() == 1) return true;
+    }
+    auto& crossing = scratch_.crossing_parts;
+    for (std::vector<int>& parts : crossing) std::sort(parts.begin(), parts.end());
+    const VolumeMetrics inside =
+        contained_parts(a_, *b_, X_AB_, crossing[0], crossing[1], scratch_.cells);
+    if (inside.volume > 0.0) {
+      out_.sites.push_back(inside);
+      out_.sites.back().volume_error = rounding_ * (inside.area + inside.counter_area);
+    } else if (inside.volume < 0.0) {
+      // A cavity within the overlap of the surfaces around it.
+      const auto largest = std::max_element(
+          out_.sites.begin(), out_.sites.end(),
+          [](const VolumeMetrics& x, const VolumeMetrics& y) { return x.volume < y.volume; });
+      if (largest == out_.sites.end()) return false;
+      *largest = *largest + inside;
+      largest->status = Status::kOk;
+    }
+    return true;
+  }
+
+  // Columns from B to A through one patch alone: right when A does not reach below the window, nor
+  // B above it, nor the overlap out of it at the sides, and when A's surface found inside of B is
+  // the one that the curve of the patch bounds.
+  bool add_patch(const ContactPatch& patch) {
+    if (!patch.flux.closed || patch.flux.toward_a.isZero()) return false;
+    const std::vector<TriangleContact>& contacts = scratch_.crossing.contacts;
+    const Vec3 middle_B = 0.5 * (patch.low + patch.high);
+    const Mat3 R_BC = basis_with_z(patch.flux.toward_a);
+    const Pose X_BC{R_BC, middle_B};
+    const Pose X_CB = X_BC.inverse();
+    const Pose X_CA = X_CB * X_BA_;
+    ColumnWindow curve{Vec3::Constant(kInfinity), Vec3::Constant(-kInfinity)};
+    for (int k = patch.first; k < patch.last; ++k) {
+      const TriangleContact& contact = contacts[scratch_.patches.order[k]];
+      // A touch knows a box in B's frame only.
+      for (int corner = 0; corner < (contact.proper ? 2 : 8); ++corner) {
+        Vec3 p = corner == 0 ? contact.p : contact.q;
+        if (!contact.proper) {
+          for (int i = 0; i < 3; ++i) p[i] = (corner >> i & 1) ? contact.q[i] : contact.p[i];
+        }
+        const Vec3 p_C = X_CB * p;
+        curve.low = curve.low.cwiseMin(p_C);
+        curve.high = curve.high.cwiseMax(p_C);
+      }
+    }
+    const Vec3 size = curve.high - curve.low;
+    const double margin = rounding_ + 1e-9 * size.maxCoeff();
+    const double least = std::min(size.x(), size.y()), most = std::max(size.x(), size.y());
+    for (double bulge : {0.5 * least, most}) {
+      ColumnWindow window = curve;
+      window.low -= Vec3(margin, margin, bulge + margin);
+      window.high += Vec3(margin, margin, bulge + margin);
+      if (meets_level(*a_.tree, X_CA, window, window.low.z(), scratch_.cells)) continue;
+      if (meets_level(*b_->tree, X_CB, window, window.high.z(), scratch_.cells)) continue;
+      if (!find_leaf_pairs(*a_.tree, X_CA, *b_->tree, X_CB, window, most_leaf_pairs_,
+                           scratch_.cells)) {
+        return false;
+      }
+      make_cells(*a_.tree, X_CA, *b_->tree, X_CB, window, scratch_.cells);
+      keep_crossing_parts(patch);
+      if (!is_whole(window)) continue;
+      const Vec3 area_vector = R_BC * add_regions(X_CA, X_CB, X_AB_ * X_BC, b_->tree);
+      const double doubt = kFlux * patch.flux.length * patch.flux.length;
+      return (area_vector - patch.flux.area_vector).norm() <= doubt;
+    }
+    return false;
+  }
+
+  // Whether the cells in a window are all that the columns through it hold: they end within its
+  // sides, and where several faces lie above each other the lowest of A and the highest of B look
+  // outwards.
+  bool is_whole(const ColumnWindow& window) {
+    const ColumnCell* largest = nullptr;
+    for (const ColumnCell& cell : cells()) {
+      for (int i = 0; i < cell.count; ++i) {
+        if (cell.x[i] < window.low.x() || cell.x[i] > window.high.x() ||
+            cell.y[i] < window.low.y() || cell.y[i] > window.high.y()) {
+          return false;
+        }
+      }
+      if (largest == nullptr || cell.area > largest->area) largest = &cell;
+    }
+    if (largest == nullptr || !is_layered(cells())) return true;
+    double x = 0.0, y = 0.0;
+    for (int i = 0; i < largest->count; ++i) {
+      x += largest->x[i] / largest->count;
+      y += largest->y[i] / largest->count;
+    }
+    const ColumnCell *lowest = nullptr, *highest = nullptr;
+    double low = kInfinity, high = -kInfinity;
+    for (const ColumnCell& cell : cells()) {
+      if (!covers(cell, x, y)) continue;
+      const double f = height(cell, x, y, cell.slope_f, -0.5);
+      const double g = height(cell, x, y, cell.slope_g, 0.5);
+      if (f < low) low = f, lowest = &cell;
+      if (g > high) high = g, highest = &cell;
+    }
+    return lowest != nullptr && lowest->sign_f < 0 && highest->sign_g > 0;
+  }
+
+  static bool covers(const ColumnCell& cell, double x, double y) {
+    for (int i = 0; i < cell.count; ++i) {
+      const int j = i + 1 == cell.count ? 0 : i + 1;
+      const double side =
+          (cell.x[j] - cell.x[i]) * (y - cell.y[i]) - (cell.y[j] - cell.y[i]) * (x - cell.x[i]);
+      if (side < 0.0) return false;
+    }
+    return true;
+  }
+  static double height(const ColumnCell& cell, double x, double y, const double (&slope)[2],
+                       double side) {
+    return cell.middle[0] + side * cell.delta[0] + slope[0] * (x - cell.x[0]) +
+           slope[1] * (y - cell.y[0]);
+  }
+
+  // Of a surface of several parts, only those that cross in this patch are its business.
+  void keep_crossing_parts(const ContactPatch& patch) {
+    if (a_.part_count() == 1 && b_->part_count() == 1) return;
+    auto& here = scratch_.crossing_here;
+    for (std::vector<int>& parts : here) parts.clear();
+    for (int k = patch.first; k < patch.last; ++k) {
+      const TriangleContact& contact = scratch_.crossing.contacts[scratch_.patches.order[k]];
+      here[0].push_back(a_.part_of_slot(contact.f));
+      here[1].push_back(b_->part_of_slot(contact.g));
+    }
+    for (int side = 0; side < 2; ++side) {
+      std::sort(here[side].begin(), here[side].end());
+      here[side].erase(std::unique(here[side].begin(), here[side].end()), here[side].end());
+      auto& all = scratch_.crossing_parts[side];
+      all.insert(all.end(), here[side].begin(), here[side].end());
+    }
+    const auto holds = [](const std::vector<int>& parts, int part) {
+      return std::binary_search(parts.begin(), parts.end(), part);
+    };
+    std::erase_if(cells(), [&](const ColumnCell& cell) {
+      return !holds(here[0], a_.part_of_slot(cell.f)) || !holds(here[1], b_->part_of_slot(cell.g));
+    });
+  }
+
+  // All columns along one direction; when they are too many, some of them.
+  void add_all_columns() {
+    const std::vector<TriangleContact>& contacts = scratch_.crossing.contacts;
+    scratch_.patches.order.resize(contacts.size());
+    std::iota(scratch_.patches.order.begin(), scratch_.patches.order.end(), 0);
+    const int* order = scratch_.patches.order.data();
+    Vec3 toward_a = flux_of(contacts, order, order + contacts.size()).toward_a;
+    if (toward_a.isZero()) toward_a = Vec3::UnitZ();
+    const Pose X_BC{basis_with_z(toward_a), b_->bounds.center()};
+    const Pose X_CB = X_BC.inverse();
+    const Pose X_CA = X_CB * X_BA_;
+    if (find_leaf_pairs(*a_.tree, X_CA, *b_->tree, X_CB, ColumnWindow{}, most_leaf_pairs_,
+                        scratch_.cells)) {
+      make_cells(*a_.tree, X_CA, *b_->tree, X_CB, ColumnWindow{}, scratch_.cells);
+      add_regions(X_CA, X_CB, X_AB_ * X_BC, b_->tree);
+      return;
+    }
+    const VolumeMetrics m = sampled_columns(a_, X_CA, *b_, X_CB, scratch_.cells, scratch_.sampled);
+    if (m.touching()) out_.sites.push_back(transformed(m, X_AB_ * X_BC));
+  }
+
+  // Returns the area vector of A's surface in them, in C.
+  Vec3 add_regions(const Pose& X_CA, const Pose& X_CB, const Pose& X_AC, const ObbTree* tree_b) {
+    const int regions = find_regions(*a_.tree, tree_b, cells(), scratch_.regions);
+    const ColumnSurface a{a_.tree, &X_CA}, b{tree_b, &X_CB};
+    std::vector<CellSum>& sums = scratch_.sums;
+    sums.clear();
+    Vec3 area_vector = Vec3::Zero();
+    for (int region = 0; region < regions; ++region) {
+      sums.push_back(
+          sum_region(region, cells(), scratch_.regions.region_of, a, b, scratch_.cells.path));
+      area_vector += sums.back().moments.area_vector;
+    }
+    // A surface that looks into a cavity takes its volume away from the region around it.
+    if (std::any_of(sums.begin(), sums.end(),
+                    [&](const CellSum& sum) { return sum.moments.volume < -error_of(sum); })) {
+      for (std::size_t i = 1; i < sums.size(); ++i) sums[0] += sums[i];
+      sums.resize(1);
+    }
+    if (is_layered(cells())) {
+      double volume = 0.0;
+      for (const CellSum& sum : sums) volume += std::max(0.0, sum.moments.volume);
+      const double energy = energy_of(cells());
+      for (CellSum& sum : sums) sum.energy = energy * (sum.moments.volume / volume);
+    }
+    for (const CellSum& sum : sums) {
+      if (!(sum.moments.volume > error_of(sum))) continue;
+      VolumeMetrics m = sum.moments.metrics();
+      m.volume_error = error_of(sum);
+      const double length = m.area_vector.norm();
+      const double along = length > 0.0 ? std::abs(m.area_vector.z()) / length : 1.0;
+      m.depth_moment = sum.energy * along;
+      m.depth = (sum.high - sum.low) * along;
+      out_.sites.push_back(transformed(m, X_AC));
+    }
+    return area_vector;
+  }
+
+  double error_of(const CellSum& sum) const {
+    return 16.0 * kEpsilon * sum.absolute + rounding_ * sum.seen;
+  }
+
+  void finish() {
+    out_.total = VolumeMetrics{};
+    for (const VolumeMetrics& site : out_.sites) out_.total = out_.total + site;
+  }
+
+  const SurfaceView& a_;
+  const SurfaceView* b_;
+  const Pose X_AB_, X_BA_;
+  ColumnsScratch& scratch_;
+  Interference& out_;
+  double rounding_;
+  int most_leaf_pairs_ = 0;
+};
+
+}  // namespace
+
+void columns_interference(const SurfaceView& a, const SurfaceView& b, const Pose& X_AB,
+                          const InterferenceOptions& options, ColumnsScratch& scratch,
+                          Interference& out) noexcept {
+  Columns(a, &b, X_AB, scratch, out).meshes(options.most_cells / kCellsOfLeafPair);
+}
+
+void columns_interference(const SurfaceView& a, const HalfSpace&, const Pose& X_AB,
+                          const InterferenceOptions&, ColumnsScratch& scratch,
+                          Interference& out) noexcept {
+  Columns(a, nullptr, X_AB, scratch, out).half_space();
+}
+
+}  // namespace volcontact

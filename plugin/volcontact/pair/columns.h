@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "volcontact/pair/columns/cell_sums.h"
+#include "volcontact/pair/columns/patches.h"
+#include "volcontact/pair/columns/sampled.h"
+#include "volcontact/pair/columns/surface_view.h"
+#include "volcontact/pair/interference.h"
+
+namespace volcontact {
+
+/// Memory of the columns engine, reused from call to call; no value depends on what it holds.
+struct ColumnsScratch {
+  CrossingScratch crossing;
+  PatchScratch patches;
+  CellScratch cells;
+  RegionScratch regions;
+  SampledScratch sampled;
+  std::vector<CellSum> sums;
+  ObbTree box[2];                      ///< surfaces of A and B where they are boxes
+  std::vector<int> crossing_parts[2];  ///< of A and of B, of the whole pair
+  std::vector<int> crossing_here[2];   ///< of one patch
+};
+
+/// Interference of two solids bounded by closed triangle meshes, exact to rounding: metrics in A's
+/// frame about A's origin. When the budget of cells ends first, sampled columns with
+/// Status::kApproximate. docs/theory.md, "Columns".
+void columns_interference(const SurfaceView& a, const SurfaceView& b, const Pose& X_AB,
+                          const InterferenceOptions& options, ColumnsScratch& scratch,
+                          Interference& out) noexcept;
+
+/// The same with the half-space z < 0 of B's frame.
+void columns_interference(const SurfaceView& a, const HalfSpace& b, const Pose& X_AB,
+                          const InterferenceOptions& options, ColumnsScratch& scratch,
+                          Interference& out) noexcept;
+
+}  // namespace volcontact

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "volcontact/metrics/volume_metrics.h"
+#include "volcontact/pair/columns/cells.h"
+#include "volcontact/pair/columns/surface_view.h"
+
+namespace volcontact {
+
+/// What the overlap owes to those parts of the surfaces that cross nothing of the other solid: each
+/// of them lies wholly inside of it, and bounds the overlap there, or wholly outside. `crossing_a`
+/// and `crossing_b` list the parts that do cross, sorted. In A's frame; the volume is negative
+/// where cavities take away more than there is.
+VolumeMetrics contained_parts(const SurfaceView& a, const SurfaceView& b, const Pose& X_AB,
+                              const std::vector<int>& crossing_a,
+                              const std::vector<int>& crossing_b, CellScratch& scratch) noexcept;
+
+}  // namespace volcontact

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/columns/patches.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace volcontact {
+namespace {
+
+constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
+constexpr double kClosed = 1e-9;     // of the length of the curve
+constexpr double kLeastArea = 1e-4;  // of the square of the length
+
+int find(std::vector<int>& parent, int i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+void join(std::vector<int>& parent, int i, int j) {
+  i = find(parent, i);
+  j = find(parent, j);
+  parent[std::max(i, j)] = std::min(i, j);
+}
+
+void join_neighbors(const std::vector<TriangleContact>& contacts, PatchScratch& scratch) {
+  std::size_t size = 16;
+  while (size < 4 * contacts.size()) size *= 2;
+  scratch.keys.assign(size, kEmpty);
+  scratch.contact_at.resize(size);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (!contacts[i].proper) continue;
+    for (std::uint64_t key : {contacts[i].key_p, contacts[i].key_q}) {
+      std::size_t at = static_cast<std::size_t>((key * 0x9e3779b97f4a7c15u) >> 20) & (size - 1);
+      while (scratch.keys[at] != kEmpty && scratch.keys[at] != key) at = (at + 1) & (size - 1);
+      if (scratch.keys[at] == key) {
+        join(scratch.parent, static_cast<int>(i), scratch.contact_at[at]);
+      } else {
+        scratch.keys[at] = key;
+        scratch.contact_at[at] = static_cast<int>(i);
+      }
+    }
+  }
+}
+
+// Sorts contacts by patch, in the order of the first of each; returns the number of patches.
+int sort_by_patch(PatchScratch& scratch) {
+  const int count = static_cast<int>(scratch.parent.size());
+  scratch.number.assign(scratch.parent.size(), -1);
+  int patches = 0;
+  for (int i = 0; i < count; ++i) {
+    int& number = scratch.number[find(scratch.parent, i)];
+    if (number < 0) number = patches++;
+  }
+  scratch.order.resize(scratch.parent.size());
+  for (int i = 0; i < count; ++i) scratch.order[i] = i;
+  if (patches > 1) {
+    const auto patch_of = [&](int i) { return scratch.number[find(scratch.parent, i)]; };
+    std::sort(scratch.order.begin(), scratch.order.end(), [&](int i, int j) {
+      const int a = patch_of(i), b = patch_of(j);
+      return a != b ? a < b : i < j;
+    });
+  }
+  return patches;
+}
+
+void measure(const std::vector<TriangleContact>& contacts, PatchScratch& scratch, int patches) {
+  scratch.patches.clear();
+  const int count = static_cast<int>(scratch.order.size());
+  for (int first = 0, last; first < count; first = last) {
+    const auto patch_of = [&](int k) {
+      return patches == 1 ? 0 : scratch.number[find(scratch.parent, scratch.order[k])];
+    };
+    const int patch = patch_of(first);
+    for (last = first + 1; last < count && patch_of(last) == patch;) ++last;
+    ContactPatch& out = scratch.patches.emplace_back();
+    out.first = first;
+    out.last = last;
+    out.low = out.high = contacts[scratch.order[first]].p;
+    for (int k = first; k < last; ++k) {
+      const TriangleContact& contact = contacts[scratch.order[k]];
+      out.low = out.low.cwiseMin(contact.p).cwiseMin(contact.q);
+      out.high = out.high.cwiseMax(contact.p).cwiseMax(contact.q);
+    }
+  }
+}
+
+// Half of the middle extent of a patch: as far as the overlap may bulge beyond its curve.
+double bulge(const ContactPatch& patch) {
+  const Vec3 size = patch.high - patch.low;
+  return 0.5 * (size.sum() - size.maxCoeff() - size.minCoeff());
+}
+
+bool near(const ContactPatch& a, const ContactPatch& b) {
+  const double reach = std::max(bulge(a), bulge(b));
+  return ((a.low - b.high).array() <= reach).all() && ((b.low - a.high).array() <= reach).all();
+}
+
+}  // namespace
+
+CurveFlux flux_of(const std::vector<TriangleContact>& contacts, const int* first, const int* last) {
+  CurveFlux flux;
+  if (first == last) return flux;
+  const Vec3 origin = contacts[*first].p;
+  Vec3 gap = Vec3::Zero(), normals = Vec3::Zero();
+  for (const int* i = first; i != last; ++i) {
+    const TriangleContact& contact = contacts[*i];
+    const Vec3 p = contact.p - origin, q = contact.q - origin;
+    const double weight = (q - p).norm();
+    if (contact.proper) {
+      flux.area_vector += 0.5 * p.cross(q);
+      gap += q - p;
+      flux.length += weight;
+    }
+    normals += weight * (contact.normal_g.normalized() - contact.normal_f.normalized());
+  }
+  const double area = flux.area_vector.norm();
+  flux.closed = gap.norm() <= kClosed * flux.length;
+  if (flux.closed && area > kLeastArea * flux.length * flux.length) {
+    flux.toward_a = -flux.area_vector / area;
+  } else if (normals.norm() > 0.0) {
+    flux.toward_a = normals.normalized();
+  }
+  return flux;
+}
+
+void find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& scratch) noexcept {
+  scratch.parent.resize(contacts.size());
+  for (std::size_t i = 0; i < contacts.size(); ++i) scratch.parent[i] = static_cast<int>(i);
+  join_neighbors(contacts, scratch);
+  // Until no two patches are near to each other.
+  for (;;) {
+    measure(contacts, scratch, sort_by_patch(scratch));
+    bool joined = false;
+    for (std::size_t i = 0; i < scratch.patches.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const ContactPatch &a = scratch.patches[i], &b = scratch.patches[j];
+        const int root_a = scratch.order[a.first], root_b = scratch.order[b.first];
+        if (find(scratch.parent, root_a) == find(scratch.parent, root_b)) continue;
+        if (!near(a, b)) continue;
+        join(scratch.parent, root_a, root_b);
+        joined = true;
+      }
+    }
+    if (!joined) break;
+  }
+  for (ContactPatch& patch : scratch.patches) {
+    patch.flux =
+        flux_of(contacts, scratch.order.data() + patch.first, scratch.order.data() + patch.last);
+  }
+}
+
+}  // namespace volcontact

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/columns/surface_view.h"
+
+#include <cmath>
+
+namespace volcontact {
+namespace {
+
+// The cube from -1 to 1.
+ObbTree make_unit_cube() {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i) {
+    corners.emplace_back((i & 1) ? 1.0 : -1.0, (i & 2) ? 1.0 : -1.0, (i & 4) ? 1.0 : -1.0);
+  }
+  MeshTopology cube;
+  make_topology(corners,
+                {{0, 2, 1},
+                 {1, 2, 3},
+                 {4, 5, 6},
+                 {5, 7, 6},
+                 {0, 1, 4},
+                 {1, 5, 4},
+                 {2, 6, 3},
+                 {3, 6, 7},
+                 {0, 4, 2},
+                 {2, 4, 6},
+                 {1, 3, 5},
+                 {3, 7, 5}},
+                cube);
+  return make_obb_tree(cube);
+}
+
+}  // namespace
+
+void make_box_tree(const Vec3& half_sizes, ObbTree& tree) {
+  static const ObbTree cube = make_unit_cube();
+  tree = cube;
+  for (ObbTree::Leaf& leaf : tree.leaves) {
+    for (auto& corner : leaf.corner) {
+      for (int k = 0; k < 3; ++k) {
+        for (double& x : corner[k]) x *= half_sizes[k];
+      }
+    }
+  }
+  for (ObbTree::Node& node : tree.nodes) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      Vec3 half = Vec3::Zero();
+      for (int j = 0; j < 3; ++j) {
+        for (int k = 0; k < 3; ++k) half[k] += std::abs(node.axis[j][k][lane]) * node.half[j][lane];
+      }
+      for (int k = 0; k < 3; ++k) {
+        node.center[k][lane] *= half_sizes[k];
+        node.half[k][lane] = half[k] * half_sizes[k];
+        for (int j = 0; j < 3; ++j) node.axis[j][k][lane] = k == j ? 1.0 : 0.0;
+      }
+    }
+  }
+}
+
+}  // namespace volcontact

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "volcontact/base/simd.h"
+#include "volcontact/base/types.h"
+#include "volcontact/shape/mesh_topology.h"
+
+namespace volcontact {
+
+/// Oriented boxes around the triangles of a surface, kLanes wide: a node holds up to eight boxes
+/// side by side, so that one sequence of vector operations tests them all. Oriented, because the
+/// thickness of a box along a smooth surface falls with the square of its width.
+///
+/// The triangles are renumbered: slot 8 l + i is lane i of leaf l. An unused lane repeats a corner
+/// of lane 0 three times.
+struct ObbTree {
+  struct alignas(64) Node {
+    double center[3][kLanes];   ///< in the frame of the mesh
+    double axis[3][3][kLanes];  ///< axis[k] is the unit vector of half size k
+    double half[3][kLanes];     ///< half sizes, padded by rounding
+    int child[kLanes];          ///< a node, or the complement (~) of a leaf
+    int count = 0;              ///< lanes in use, the first ones
+  };
+  struct alignas(64) Leaf {
+    double corner[3][3][kLanes];  ///< corner[i][axis]
+    int count = 0;
+  };
+
+  std::vector<Node> nodes;  ///< the root is the first
+  std::vector<Leaf> leaves;
+  std::vector<int> triangle_of_slot;  ///< -1 in an unused lane
+  /// Half-edge 3 s + i of slot s: the half-edge on the other side.
+  std::vector<int> twins;
+};
+
+ObbTree make_obb_tree(const MeshTopology& topology);
+
+}  // namespace volcontact
