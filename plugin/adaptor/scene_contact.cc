@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -43,10 +44,20 @@ std::vector<Shape> solids_of(const mjModel* m, const SceneKeys& keys,
   std::vector<Shape> solids(static_cast<std::size_t>(m->ngeom), Shape(HalfSpace()));
   std::set<int> geoms;
   for (const GeomPair& pair : pairs) geoms.insert({pair.a, pair.b});
+  std::map<int, Shape> meshes;  // copies share their data
   for (const int geom : geoms) {
+    Shape& solid = solids[static_cast<std::size_t>(geom)];
     const ComposedGeoms* parts = keys.composed(geom);
-    solids[static_cast<std::size_t>(geom)] =
-        parts ? composed_solid(m, *parts) : solid_of_geom(m, geom);
+    if (parts) {
+      solid = composed_solid(m, *parts);
+    } else if (m->geom_type[geom] == mjGEOM_MESH) {
+      const int mesh = m->geom_dataid[geom];
+      const auto known = meshes.find(mesh);
+      solid = known != meshes.end() ? known->second : solid_of_geom(m, geom, keys.options.mesh);
+      meshes.emplace(mesh, solid);
+    } else {
+      solid = solid_of_geom(m, geom);
+    }
   }
   return solids;
 }
@@ -79,6 +90,13 @@ SceneContact::SceneContact(const mjModel* m)
   warn_about_model(m);
   if (geom_pairs_.empty()) {
     warn_once("no two geoms can touch: check contype, conaffinity and volcontact/option/pairs");
+  }
+  for (int geom = 0; geom < m->ngeom; ++geom) {
+    const Mesh* mesh = std::get_if<Mesh>(&solids_[static_cast<std::size_t>(geom)]);
+    if (mesh != nullptr && mesh->topology().turned) {
+      warn_once("mesh '" + label(m, mjOBJ_MESH, m->geom_dataid[geom]) +
+                "': all its triangles pointed inwards; they were turned");
+    }
   }
   pairs_.reserve(geom_pairs_.size());
   for (const GeomPair& pair : geom_pairs_) add_pair(m, pair);

@@ -356,6 +356,7 @@ class KeyReader {
       for (const Engine engine : kEngines) made["engine"].emplace_back(to_string(engine));
       made["target"] = {std::begin(kTargetWords), std::end(kTargetWords)};
       made["pairs"] = {std::begin(kPairRuleWords), std::end(kPairRuleWords)};
+      made["mesh"] = {std::begin(kMeshFormWords), std::end(kMeshFormWords)};
       return made;
     }();
     return choices;
@@ -421,6 +422,7 @@ class KeyReader {
     if (engine != options_.end()) options.engine = engine_from(engine->second.word);
     set_choice("target", kTargetWords, options.target);
     set_choice("pairs", kPairRuleWords, options.pairs);
+    set_choice("mesh", kMeshFormWords, options.mesh);
   }
 
   // A material that names its law may only give that law's fields.

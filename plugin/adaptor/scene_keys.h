@@ -27,6 +27,13 @@ enum class PairRule : int {
 };
 inline constexpr const char* kPairRuleWords[] = {"native", "listed"};
 
+/// What stands for a mesh geom.
+enum class MeshForm : int {
+  kExact = 0,  ///< its triangles as given
+  kHull = 1,   ///< their convex hull, as MuJoCo does
+};
+inline constexpr const char* kMeshFormWords[] = {"exact", "hull"};
+
 /// The options that are numbers.
 struct OptionNumbers {
   static constexpr const char* kName = "volcontact/option";
@@ -49,6 +56,7 @@ struct SceneOptions {
   Engine engine = Engine::kAuto;
   Target target = Target::kApplied;
   PairRule pairs = PairRule::kNative;
+  MeshForm mesh = MeshForm::kExact;
 };
 
 /// A volcontact/pair/...: its values and the geom pairs it stands for, lower geom first.

@@ -3,6 +3,7 @@
 
 #include <iterator>
 
+#include "adaptor/mesh_solids.h"
 #include "volcontact/base/check.h"
 
 namespace volcontact::adaptor {
@@ -43,7 +44,7 @@ Shape composed_solid(const mjModel* m, const ComposedGeoms& solid) {
   return whole;
 }
 
-Shape solid_of_geom(const mjModel* m, int geom) {
+Shape solid_of_geom(const mjModel* m, int geom, MeshForm form) {
   const Vec3 size = vec3_at(m->geom_size, geom);
   switch (m->geom_type[geom]) {
     case mjGEOM_PLANE:
@@ -58,6 +59,10 @@ Shape solid_of_geom(const mjModel* m, int geom) {
       return Cylinder({.radius = size.x(), .half_length = size.y()});
     case mjGEOM_BOX:
       return Box({.half_sizes = size});
+    case mjGEOM_MESH:
+      return mesh_solid(m, geom, form);
+    case mjGEOM_HFIELD:
+      return height_field_solid(m, geom);
     default:
       throw std::invalid_argument(
           "geom '" + label(m, mjOBJ_GEOM, geom) + "' is of type " + type_name(m, geom) +

@@ -9,9 +9,9 @@
 namespace volcontact::adaptor {
 
 /// The solid of a geom, in the geom's frame. Planes are half-spaces of infinite size, as in
-/// MuJoCo's own collision. Throws std::invalid_argument for meshes, height fields and signed
-/// distance fields.
-Shape solid_of_geom(const mjModel* m, int geom);
+/// MuJoCo's own collision. Throws std::invalid_argument for meshes that bound no solid (see
+/// mesh_solids.h) and for signed distance fields.
+Shape solid_of_geom(const mjModel* m, int geom, MeshForm form = MeshForm::kExact);
 
 /// The solid that a volcontact/solid/... makes of its geoms, in the frame of the first one, ready
 /// to be used.

@@ -318,7 +318,7 @@ TEST(SceneContact, StepHasItsBudgetOfCells) {
         "<body name=\"part\" pos=\".004 .003 .0492\" euler=\"2 1 0\"><freejoint/>"
         "<geom name=\"sleeve\" type=\"cylinder\" size=\".02 .02\" mass=\"1\"/>"
         "<geom name=\"bore\" type=\"cylinder\" size=\".012 .03\" mass=\"0\"/></body></worldbody>" +
-        testing::numeric("volcontact/option/tolerance", "1e-9") + options +
+        testing::numeric("volcontact/option/tolerance", "1e-11") + options +
         "<custom><tuple name=\"volcontact/solid/a\">" + part + "block\" prm=\"1\"/>" + part +
         "hole\" prm=\"-1\"/></tuple><tuple name=\"volcontact/solid/b\">" + part +
         "sleeve\" prm=\"1\"/>" + part + "bore\" prm=\"-1\"/></tuple></custom></mujoco>");

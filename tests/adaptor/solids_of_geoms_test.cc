@@ -47,13 +47,6 @@ TEST(SolidsOfGeoms, LongAxisIsZAsInMuJoCo) {
   EXPECT_NEAR(bounds_of(solid_of_geom(m.get(), 4)).max.z(), 0.3, 1e-15);
 }
 
-TEST(SolidsOfGeoms, MeshIsRefusedByName) {
-  const testing::ModelPointer m = testing::compile(kEveryType);
-  const std::string text = testing::message_of([&] { solid_of_geom(m.get(), 6); });
-  EXPECT_TRUE(testing::contains(text, "geom 'wedge' is of type mesh"));
-  EXPECT_TRUE(testing::contains(text, "later version"));
-}
-
 // A chain with hinges, a slide and a ball joint, so that the tree's centre of mass is far from all
 // geoms.
 constexpr const char* kChain = R"(

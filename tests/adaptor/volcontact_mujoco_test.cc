@@ -78,18 +78,20 @@ TEST(Interface, ModelWithoutGeomsIsRefused) {
   EXPECT_TRUE(testing::contains(answer.message, "no geoms"));
 }
 
-TEST(Interface, MeshThatCanTouchIsRefusedAndOthersAreNot) {
+TEST(Interface, OpenMeshThatCanTouchIsRefusedAndOthersAreNot) {
   const std::string mesh =
-      "<mujoco><asset><mesh name=\"w\" vertex=\"0 0 0  1 0 0  0 1 0  0 0 1\"/></asset><worldbody>"
-      "<geom type=\"plane\" size=\"1 1 1\"/><body><freejoint/><geom name=\"wedge\" type=\"mesh\" "
-      "mesh=\"w\" MASKS/></body></worldbody></mujoco>";
+      "<mujoco><asset><mesh name=\"w\" vertex=\"0 0 0  1 0 0  0 1 0  0 0 1\" "
+      "face=\"0 2 1  0 1 3  1 2 3\"/></asset><worldbody>"
+      "<geom type=\"plane\" size=\"1 1 1\"/><body><freejoint/><inertial pos=\"0 0 0\" mass=\"1\" "
+      "diaginertia=\"1 1 1\"/><geom name=\"wedge\" type=\"mesh\" mesh=\"w\" MASKS/></body>"
+      "</worldbody></mujoco>";
   const auto with = [&](const std::string& masks) {
     std::string text = mesh;
     return testing::compile(text.replace(text.find("MASKS"), 5, masks));
   };
   const Answer answer = ask(volcontact_reserve, with(""));
   EXPECT_EQ(answer.code, VOLCONTACT_ERROR_SCENE);
-  EXPECT_TRUE(testing::contains(answer.message, "geom 'wedge' is of type mesh"));
+  EXPECT_TRUE(testing::contains(answer.message, "geom 'wedge', mesh 'w'"));
   EXPECT_GT(ask(volcontact_reserve, with("contype=\"0\" conaffinity=\"0\"")).code, 0);
 }
 
