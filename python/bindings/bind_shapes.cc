@@ -141,10 +141,65 @@ A half-space may be a member; where the solid stays unbounded it can only meet b
       .def("__repr__", [](const Csg& self) { return csg_text(self); });
 }
 
+using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+void bind_mesh(nb::module_& m) {
+  nb::class_<Mesh> type(
+      m, "Mesh", R"(Solid 'mesh': the inside of a closed oriented triangle mesh, in its own frame.
+
+The triangles are taken as given, not their hull; cavities and several parts are welcome. Equal
+vertices are welded. A mesh that is inside out as a whole is turned: see `turned`. Parts that
+overlap each other count twice.)");
+  type.def(
+      "__init__",
+      [](Mesh* self, const Vertices& vertices, const Triangles& faces) {
+        std::vector<Vec3> points;
+        std::vector<Triangle> triangles;
+        for (Eigen::Index i = 0; i < vertices.rows(); ++i) points.push_back(vertices.row(i));
+        for (Eigen::Index i = 0; i < faces.rows(); ++i) {
+          triangles.push_back({faces(i, 0), faces(i, 1), faces(i, 2)});
+        }
+        new (self) Mesh(points, triangles);
+      },
+      nb::arg("vertices"), nb::arg("faces"),
+      "vertices [m], shape (n, 3); faces: indices of vertices from 0, counterclockwise seen from "
+      "outside, shape (m, 3). Raises ValueError when they bound no solid, and says where");
+  def_solid(type);
+  const auto vertices = [](const Mesh& self) {
+    const std::vector<Vec3>& points = self.topology().vertices;
+    Vertices array(static_cast<Eigen::Index>(points.size()), 3);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      array.row(static_cast<Eigen::Index>(i)) = points[i];
+    }
+    return array;
+  };
+  const auto faces = [](const Mesh& self) {
+    const std::vector<Triangle>& triangles = self.topology().triangles;
+    Triangles array(static_cast<Eigen::Index>(triangles.size()), 3);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      for (int k = 0; k < 3; ++k) array(static_cast<Eigen::Index>(i), k) = triangles[i][k];
+    }
+    return array;
+  };
+  type.def_prop_ro("vertices", vertices, "Corners after welding [m], shape (n, 3)")
+      .def_prop_ro("faces", faces, "Triangles after welding, shape (m, 3)")
+      .def_prop_ro(
+          "turned", [](const Mesh& self) { return self.topology().turned; },
+          "Whether all triangles pointed inwards and were turned")
+      .def_prop_ro(
+          "parts", [](const Mesh& self) { return self.topology().component_count; },
+          "How many connected surfaces it has")
+      .def("__repr__", [](const Mesh& self) {
+        return "Mesh(" + std::to_string(self.topology().vertices.size()) + " vertices, " +
+               std::to_string(self.topology().triangles.size()) + " faces)";
+      });
+}
+
 }  // namespace
 
 void bind_shapes(nb::module_& m) {
   bind_csg(m);
+  bind_mesh(m);
   for_each_type(SimpleShapes{}, [&](auto tag) {
     using Solid = typename decltype(tag)::Type;
     nb::class_<Solid> type(m, camel_case(Solid::kName).c_str(), shape_doc<Solid>().c_str());

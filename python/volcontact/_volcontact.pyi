@@ -91,13 +91,13 @@ class Csg:
     A half-space may be a member; where the solid stays unbounded it can only meet bounded ones.
     """
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -134,18 +134,87 @@ class Csg:
 
     def __repr__(self) -> str: ...
 
+class Mesh:
+    """
+    Solid 'mesh': the inside of a closed oriented triangle mesh, in its own frame.
+
+    The triangles are taken as given, not their hull; cavities and several parts are welcome. Equal
+    vertices are welded. A mesh that is inside out as a whole is turned: see `turned`. Parts that
+    overlap each other count twice.
+    """
+
+    def __init__(self, vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], faces: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C')]) -> None:
+        """
+        vertices [m], shape (n, 3); faces: indices of vertices from 0, counterclockwise seen from outside, shape (m, 3). Raises ValueError when they bound no solid, and says where
+        """
+
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+        """Union with another solid, in one common frame"""
+
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+        """What both solids hold, in one common frame"""
+
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+        """This solid without the other, in one common frame"""
+
+    def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
+        """
+        The same solid elsewhere, as a member of a composed solid.
+
+        Args:
+            X: pose of this solid in the frame of the new one, shape (4, 4)
+
+        Returns:
+            Csg: the solid in its place
+
+        Raises:
+            ValueError: X is no pose
+        """
+
+    def own_metrics(self) -> VolumeMetrics:
+        """Volume, centroid and inertia of the whole solid"""
+
+    def signed_distance(self, point: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> float:
+        """
+        Negative inside; never larger in magnitude than the distance to the surface [m]
+        """
+
+    @property
+    def bounds(self) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]]:
+        """
+        Corners (low, high) of a box around the solid [m], shape (3,) each; infinite where the solid is unbounded
+        """
+
+    @property
+    def vertices(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')]:
+        """Corners after welding [m], shape (n, 3)"""
+
+    @property
+    def faces(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C')]:
+        """Triangles after welding, shape (m, 3)"""
+
+    @property
+    def turned(self) -> bool:
+        """Whether all triangles pointed inwards and were turned"""
+
+    @property
+    def parts(self) -> int:
+        """How many connected surfaces it has"""
+
+    def __repr__(self) -> str: ...
+
 class HalfSpace:
     """Solid 'half_space' in its own frame."""
 
     def __init__(self) -> None: ...
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -195,13 +264,13 @@ class Sphere:
     def radius(self) -> float:
         """radius [m]"""
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -251,13 +320,13 @@ class Ellipsoid:
     def semi_axes(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
         """half the axis lengths [m]"""
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -312,13 +381,13 @@ class Capsule:
     def half_length(self) -> float:
         """half the length of the cylinder, without the round ends [m]"""
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -373,13 +442,13 @@ class Cylinder:
     def half_length(self) -> float:
         """half the length between the flat ends [m]"""
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -439,13 +508,13 @@ class Frustum:
     def half_length(self) -> float:
         """half the length between the flat ends [m]"""
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -495,13 +564,13 @@ class Box:
     def half_sizes(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
         """half the edge lengths [m]"""
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -556,13 +625,13 @@ class Torus:
     def minor_radius(self) -> float:
         """of the tube, at most major_radius [m]"""
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -604,13 +673,13 @@ class ConvexPolytope:
     def __init__(self, vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')]) -> None:
         """vertices [m], shape (n, 3): the solid is their convex hull"""
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -689,7 +758,7 @@ class Interference(VolumeMetrics):
     def engine(self) -> str:
         """The engine that made the numbers"""
 
-def interference(a: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance, b: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance, X_AB: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, *, tolerance: float = 0.001, engine: str = 'auto', threads: int = 1) -> Interference:
+def interference(a: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh, b: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh, X_AB: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, *, tolerance: float = 0.001, engine: str = 'auto', threads: int = 1) -> Interference:
     """
     Interference volume of two solids, in A's frame and about its origin.
 
@@ -698,7 +767,7 @@ def interference(a: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustu
         b: solid B
         X_AB: pose of B in A, shape (4, 4); the identity when left out
         tolerance [-]: relative error asked of the volume, between 0 and 1
-        engine: 'auto', 'closed_form', 'clip', 'lines' or 'octree'
+        engine: 'auto', 'closed_form', 'clip', 'lines', 'columns' or 'octree'
         threads: threads for this one pair, 0 = decide by work; never changes a bit
 
     Returns:
@@ -792,7 +861,7 @@ class RegularizedCoulomb(Friction):
 class Pair:
     """A solid fixed on body A and a solid fixed on body B."""
 
-    def __init__(self, a: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance, b: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance, *, X_Aa: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, X_Bb: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None) -> None:
+    def __init__(self, a: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh, b: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh, *, X_Aa: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, X_Bb: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None) -> None:
         """X_Aa, X_Bb: poses of the solids in their bodies, shape (4, 4)"""
 
 class ByChannel:

@@ -334,6 +334,7 @@ def test_description_says_what_was_understood():
     with vc.attach(vc.load(ball())) as contact:
         description = contact.description
     assert description["options"] == {
+        "mesh": "exact",
         "tolerance": 1e-4,
         "engine": "auto",
         "target": "applied",

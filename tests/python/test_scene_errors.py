@@ -113,10 +113,13 @@ def test_model_without_geoms_is_refused():
         vc.load("<mujoco/>")
 
 
-def test_mesh_that_can_touch_is_refused_by_name():
-    mesh = '<asset><mesh name="wedge" vertex="0 0 0  1 0 0  0 1 0  0 0 1"/></asset>'
+def test_open_mesh_that_can_touch_is_refused_by_name():
+    mesh = (
+        '<asset><mesh name="wedge" vertex="0 0 0  1 0 0  0 1 0  0 0 1" '
+        'face="0 2 1  0 1 3  1 2 3"/></asset>'
+    )
     text = scene(head=mesh).replace('type="box" size=".1 .1 .1"', 'type="mesh" mesh="wedge"')
-    with pytest.raises(ValueError, match="geom 'crate' is of type mesh"):
+    with pytest.raises(ValueError, match=r"geom 'crate', mesh 'wedge' .*3 boundary edges"):
         vc.load(text)
 
 

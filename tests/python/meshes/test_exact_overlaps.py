@@ -13,7 +13,6 @@ trimesh = pytest.importorskip("trimesh")
 
 pytestmark = [
     pytest.mark.skipif(cgal.program() is None, reason=cgal.MISSING),
-    pytest.mark.skipif(not hasattr(vc, "Mesh"), reason="volcontact.Mesh is not there yet"),
 ]
 
 EQUAL = 1e-10  # relative

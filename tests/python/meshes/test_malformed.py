@@ -275,7 +275,7 @@ NOT_SOLID = {
     for name, (points, faces, word) in not_solids().items()
     for kind in ("stl", "obj", "ply", "off", "stl-ascii")
 }
-NEEDS_CGAL = ("cross or touch", "not turned")
+NEEDS_CGAL = ("cross or touch", "not turned inwards")
 
 
 def check(capsys, path: str) -> tuple[int, str]:
