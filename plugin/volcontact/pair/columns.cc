@@ -90,7 +90,7 @@ class Columns {
   // Each patch on its own, and what does not cross. False when some patch needs all the columns.
   bool add_patches() {
     if (!scratch_.crossing.contacts.empty()) {
-      find_patches(scratch_.crossing.contacts, scratch_.patches);
+      if (!find_patches(scratch_.crossing.contacts, scratch_.patches)) return false;
       for (const ContactPatch& patch : scratch_.patches.patches) {
         if (!add_patch(patch)) return false;
       }
@@ -186,28 +186,12 @@ class Columns {
     const ColumnCell *lowest = nullptr, *highest = nullptr;
     double low = kInfinity, high = -kInfinity;
     for (const ColumnCell& cell : cells()) {
-      if (!covers(cell, x, y)) continue;
-      const double f = height(cell, x, y, cell.slope_f, -0.5);
-      const double g = height(cell, x, y, cell.slope_g, 0.5);
+      if (!cell.covers(x, y)) continue;
+      const double f = cell.height_of_f(x, y), g = cell.height_of_g(x, y);
       if (f < low) low = f, lowest = &cell;
       if (g > high) high = g, highest = &cell;
     }
     return lowest != nullptr && lowest->sign_f < 0 && highest->sign_g > 0;
-  }
-
-  static bool covers(const ColumnCell& cell, double x, double y) {
-    for (int i = 0; i < cell.count; ++i) {
-      const int j = i + 1 == cell.count ? 0 : i + 1;
-      const double side =
-          (cell.x[j] - cell.x[i]) * (y - cell.y[i]) - (cell.y[j] - cell.y[i]) * (x - cell.x[i]);
-      if (side < 0.0) return false;
-    }
-    return true;
-  }
-  static double height(const ColumnCell& cell, double x, double y, const double (&slope)[2],
-                       double side) {
-    return cell.middle[0] + side * cell.delta[0] + slope[0] * (x - cell.x[0]) +
-           slope[1] * (y - cell.y[0]);
   }
 
   // Of a surface of several parts, only those that cross in this patch are its business.

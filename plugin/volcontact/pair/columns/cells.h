@@ -26,6 +26,23 @@ struct ColumnCell {
   double delta[kLanes];         ///< height of g above f [m]
   double slope_f[2], slope_g[2];  ///< of the faces' heights along x and y
   double area;                    ///< of the polygon [m^2]
+
+  /// Whether a point lies in the polygon, or off it by no more than a fraction of its edges.
+  bool covers(double px, double py, double slack = 0.0) const {
+    for (int i = 0; i < count; ++i) {
+      const int j = i + 1 == count ? 0 : i + 1;
+      const double dx = x[j] - x[i], dy = y[j] - y[i];
+      const double side = dx * (py - y[i]) - dy * (px - x[i]);
+      if (side < -slack * (dx * dx + dy * dy)) return false;
+    }
+    return true;
+  }
+  double height_of_f(double px, double py) const {
+    return middle[0] - 0.5 * delta[0] + slope_f[0] * (px - x[0]) + slope_f[1] * (py - y[0]);
+  }
+  double height_of_g(double px, double py) const {
+    return middle[0] + 0.5 * delta[0] + slope_g[0] * (px - x[0]) + slope_g[1] * (py - y[0]);
+  }
 };
 
 inline constexpr int kCrossing = 6;  ///< label of an edge where the two faces cross

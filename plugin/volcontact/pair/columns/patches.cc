@@ -8,7 +8,8 @@ namespace volcontact {
 namespace {
 
 constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
-constexpr double kClosed = 1e-9;     // of the length of the curve
+constexpr double kClosed = 1e-9;  // of the length of the curve
+constexpr std::size_t kMostPatches = 100;
 constexpr double kLeastArea = 1e-4;  // of the square of the length
 
 int find(std::vector<int>& parent, int i) {
@@ -122,13 +123,14 @@ CurveFlux flux_of(const std::vector<TriangleContact>& contacts, const int* first
   return flux;
 }
 
-void find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& scratch) noexcept {
+bool find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& scratch) noexcept {
   scratch.parent.resize(contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i) scratch.parent[i] = static_cast<int>(i);
   join_neighbors(contacts, scratch);
   // Until no two patches are near to each other.
   for (;;) {
     measure(contacts, scratch, sort_by_patch(scratch));
+    if (scratch.patches.size() > kMostPatches) return false;
     bool joined = false;
     for (std::size_t i = 0; i < scratch.patches.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
@@ -146,6 +148,7 @@ void find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& sc
     patch.flux =
         flux_of(contacts, scratch.order.data() + patch.first, scratch.order.data() + patch.last);
   }
+  return true;
 }
 
 }  // namespace volcontact

@@ -36,8 +36,8 @@ struct PatchScratch {
 };
 
 /// Joins contacts whose segments meet to patches, and patches whose bounds come nearer than their
-/// smaller width.
-void find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& scratch) noexcept;
+/// smaller width. False when there are too many for that to be quick, as where surfaces coincide.
+bool find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& scratch) noexcept;
 
 CurveFlux flux_of(const std::vector<TriangleContact>& contacts, const int* first, const int* last);
 

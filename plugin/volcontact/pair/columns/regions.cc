@@ -17,17 +17,6 @@ std::uint64_t key_of(int f, int g) {
          static_cast<std::uint32_t>(g);
 }
 
-// Whether a point lies in the polygon of a cell, or off it by no more than a fraction of its edges.
-bool covers(const ColumnCell& cell, double x, double y, double slack = 0.0) {
-  for (int i = 0; i < cell.count; ++i) {
-    const int j = i + 1 == cell.count ? 0 : i + 1;
-    const double dx = cell.x[j] - cell.x[i], dy = cell.y[j] - cell.y[i];
-    const double side = dx * (y - cell.y[i]) - dy * (x - cell.x[i]);
-    if (side < -slack * (dx * dx + dy * dy)) return false;
-  }
-  return true;
-}
-
 // Cells by their faces, and which of their sides are joined.
 class Joiner {
  public:
@@ -94,7 +83,7 @@ class Joiner {
         if (cell.label[i] != label) continue;
         const int j = i + 1 == cell.count ? 0 : i + 1;
         const double x = 0.5 * (cell.x[i] + cell.x[j]), y = 0.5 * (cell.y[i] + cell.y[j]);
-        if (covers(cells_[next], x, y, kTouch)) return next;
+        if (cells_[next].covers(x, y, kTouch)) return next;
       }
     }
     return -1;
@@ -126,11 +115,6 @@ void for_faces(const std::vector<ColumnCell>& cells, std::vector<int>& order, Fa
   }
 }
 
-double height(const ColumnCell& cell, double x, double y, const double (&slope)[2], double side) {
-  return cell.middle[0] + side * cell.delta[0] + slope[0] * (x - cell.x[0]) +
-         slope[1] * (y - cell.y[0]);
-}
-
 // What one side of the cells knows of its faces: whether a column passes through several faces of
 // the other body there (the cells of the face then overlap and cancel each other), and whether
 // anything is left.
@@ -144,10 +128,10 @@ struct Side {
 constexpr Side kSides[2] = {
     {0, [](const ColumnCell& c) { return c.f; },
      [](const ColumnCell& c) { return static_cast<int>(c.sign_g); },
-     [](const ColumnCell& c, double x, double y) { return height(c, x, y, c.slope_g, 0.5); }},
+     [](const ColumnCell& c, double x, double y) { return c.height_of_g(x, y); }},
     {1, [](const ColumnCell& c) { return c.g; },
      [](const ColumnCell& c) { return static_cast<int>(-c.sign_f); },
-     [](const ColumnCell& c, double x, double y) { return -height(c, x, y, c.slope_f, -0.5); }},
+     [](const ColumnCell& c, double x, double y) { return -c.height_of_f(x, y); }},
 };
 
 // Joins what stands on one upright face: the cells above and below it know it by its slot, and
@@ -178,7 +162,7 @@ bool is_blocked(const std::vector<ColumnCell>& cells, int cell, const Side& side
   }
   const double end = side.beyond(own, x, y);
   return std::any_of(first, last, [&](int i) {
-    return i != cell && side.beyond(cells[i], x, y) < end && covers(cells[i], x, y);
+    return i != cell && side.beyond(cells[i], x, y) < end && cells[i].covers(x, y);
   });
 }
 
