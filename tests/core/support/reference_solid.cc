@@ -79,6 +79,11 @@ Solid solid_of(const SignedDistance&) {
   throw std::invalid_argument("reference_solid: a signed distance has no faces");
 }
 
+// Meshes are compared with manifold3d and CGAL, in Python.
+Solid solid_of(const Mesh&) {
+  throw std::invalid_argument("reference_solid: a mesh has too many faces");
+}
+
 Solid solid_of(const Csg& csg) {
   std::vector<Solid> stack;
   for (const Csg::Step& step : csg.steps()) {
