@@ -17,12 +17,17 @@ class Regions {
       : cells_(cells), leaves_(leaves), s_(scratch), count_(static_cast<int>(leaves.size())) {
     s_.parent.resize(leaves.size());
     std::iota(s_.parent.begin(), s_.parent.end(), 0);
+    s_.boxes.resize(leaves.size());
+    for (int i = 0; i < count_; ++i) {
+      s_.boxes[i].min = cell(i).center + cell(i).content_low;
+      s_.boxes[i].max = cell(i).center + cell(i).content_high;
+    }
   }
 
   const Cell& cell(int i) const { return cells_[leaves_[i]]; }
   // Box of the volume in the leaf.
-  Vec3 low(int i) const { return cell(i).center + cell(i).content_low; }
-  Vec3 high(int i) const { return cell(i).center + cell(i).content_high; }
+  const Vec3& low(int i) const { return s_.boxes[i].min; }
+  const Vec3& high(int i) const { return s_.boxes[i].max; }
   int root(int i) {
     while (s_.parent[i] != i) i = s_.parent[i] = s_.parent[s_.parent[i]];
     return i;

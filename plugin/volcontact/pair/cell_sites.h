@@ -10,6 +10,7 @@ namespace volcontact {
 
 /// Memory of sort_by_site, reused from call to call.
 struct SiteScratch {
+  std::vector<Aabb> boxes;  ///< of the volume in the leaves
   std::vector<int> parent;  ///< union-find over leaves
   std::vector<int> order;
   std::vector<int> sorted;

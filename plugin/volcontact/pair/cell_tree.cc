@@ -11,10 +11,10 @@
 namespace volcontact {
 namespace {
 
-constexpr int kEvaluateGrain = 8;  // cells a thread takes at a time
+constexpr int kEvaluateGrain = 1;  // cells a thread takes at a time; one costs microseconds
 // Of the doubt from which cells are divided: a new cell with more is divided in the next round.
 constexpr double kRoughShare = 0.5;
-constexpr double kRestShare = 1.0;  // of the tolerance, left to the cells that are not divided
+constexpr double kRestShare = 1.4;  // of the tolerance, left to the cells that are not divided
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 // The root box is a little larger than the hull, and not in the middle of it, so that neither its
@@ -192,22 +192,23 @@ void CellTree::take_up(int first, int last) {
 }
 
 // Leaves with at least this doubt are divided; the doubts of the others add up to a share of the
-// tolerance at most. By powers of two, so that one pass is enough.
+// tolerance at most. In bins of a quarter of a power of two, so that one pass is enough.
 double CellTree::threshold() const {
-  constexpr int kBins = 64;
+  constexpr int kBins = 256, kShift = 50;  // leaves exponent and two bits of the fraction
+  const auto key = [](double x) { return std::bit_cast<std::int64_t>(x) >> kShift; };
   double largest = 0.0;
   for (const auto& leaf : s_.pending) largest = std::max(largest, leaf.high - leaf.low);
-  const int top = std::ilogb(largest);
+  const std::int64_t top = key(largest);
   std::array<double, kBins> bins{};
   for (const auto& leaf : s_.pending) {
     const double doubt = leaf.high - leaf.low;
-    const int bin = top - std::ilogb(doubt);
+    const std::int64_t bin = top - key(doubt);
     if (bin < kBins) bins[bin] += doubt;
   }
   double rest = 0.0;
   int bin = kBins - 1;
   while (bin > 0 && rest + bins[bin] <= kRestShare * task_.tolerance * volume_) rest += bins[bin--];
-  return std::ldexp(1.0, top - bin);
+  return std::bit_cast<double>((top - bin) << kShift);
 }
 
 void CellTree::divide(int index) {

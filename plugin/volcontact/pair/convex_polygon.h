@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace volcontact {
@@ -23,46 +24,47 @@ class ConvexPolygon {
     double x, y;
   };
 
-  ConvexPolygon() {
-    points_.reserve(kUsual);
-    kept_.reserve(kUsual);
-    heights_.reserve(kUsual);
-  }
-  ConvexPolygon(const ConvexPolygon& other) : ConvexPolygon() { points_ = other.points_; }
+  ConvexPolygon() : points_(kUsual), kept_(kUsual), heights_(kUsual) {}
+  ConvexPolygon(const ConvexPolygon& other) : ConvexPolygon() { *this = other; }
   ConvexPolygon& operator=(const ConvexPolygon& other) {
-    points_ = other.points_;
+    reserve(points_, other.count_);
+    count_ = other.count_;
+    std::copy_n(other.points_.data(), count_, points_.data());
     return *this;
   }
 
   /// Rectangle |x| <= half_x, |y| <= half_y.
   void start(double half_x, double half_y) {
-    points_.assign({{-half_x, -half_y}, {half_x, -half_y}, {half_x, half_y}, {-half_x, half_y}});
+    points_[0] = {-half_x, -half_y};
+    points_[1] = {half_x, -half_y};
+    points_[2] = {half_x, half_y};
+    points_[3] = {-half_x, half_y};
+    count_ = 4;
   }
-  const std::vector<Point>& points() const { return points_; }
-  bool empty() const { return points_.size() < 3; }
+  std::span<const Point> points() const { return {points_.data(), count_}; }
+  bool empty() const { return count_ < 3; }
   /// Mean of its corners.
   Point middle() const {
     Point sum{0.0, 0.0};
-    for (const Point& p : points_) sum = {sum.x + p.x, sum.y + p.y};
-    const auto count = static_cast<double>(points_.size());
+    for (const Point& p : points()) sum = {sum.x + p.x, sum.y + p.y};
+    const auto count = static_cast<double>(count_);
     return {sum.x / count, sum.y / count};
   }
 
   /// Keeps what has height <= 0.
   void cut(const Linear2& height) {
-    const std::size_t count = points_.size();
-    if (heights_.size() < count) heights_.resize(count);
-    double highest = -std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < count; ++i) {
+    reserve(heights_, count_);
+    bool crossed = false;
+    for (std::size_t i = 0; i < count_; ++i) {
       heights_[i] = height(points_[i].x, points_[i].y);
-      highest = std::max(highest, heights_[i]);
+      crossed |= heights_[i] > 0.0;
     }
-    if (!(highest > 0.0)) return;
-    kept_.resize(2 * count + 1);  // as many as rounding may make, and one that does not stay
+    if (!crossed) return;
+    reserve(kept_, 2 * count_ + 1);  // as many as rounding may make, and one that does not stay
     Point* kept = kept_.data();
-    Point last = points_[count - 1];
-    double last_height = heights_[count - 1];
-    for (std::size_t i = 0; i < count; ++i) {
+    Point last = points_[count_ - 1];
+    double last_height = heights_[count_ - 1];
+    for (std::size_t i = 0; i < count_; ++i) {
       const Point p = points_[i];
       const double h = heights_[i];
       const double t = last_height / (last_height - h);  // of use where the line is crossed
@@ -73,18 +75,18 @@ class ConvexPolygon {
       last = p;
       last_height = h;
     }
-    kept_.resize(kept - kept_.data());
+    count_ = kept - kept_.data();
     points_.swap(kept_);
   }
 
   double highest(const Linear2& height) const {
     double highest = -std::numeric_limits<double>::infinity();
-    for (const Point& p : points_) highest = std::max(highest, height(p.x, p.y));
+    for (const Point& p : points()) highest = std::max(highest, height(p.x, p.y));
     return highest;
   }
   double area() const {
     double twice = 0.0;
-    for (std::size_t i = 2; i < points_.size(); ++i) twice += twice_area(i);
+    for (std::size_t i = 2; i < count_; ++i) twice += twice_area(i);
     return 0.5 * twice;
   }
 
@@ -92,7 +94,7 @@ class ConvexPolygon {
   template <typename F>
   double integral(F&& f) const {
     double sum = 0.0;
-    for (std::size_t i = 2; i < points_.size(); ++i) {
+    for (std::size_t i = 2; i < count_; ++i) {
       const Point &p = points_[0], &q = points_[i - 1], &r = points_[i];
       const double x = p.x + q.x + r.x, y = p.y + q.y + r.y;
       double corners = 0.0;
@@ -105,12 +107,18 @@ class ConvexPolygon {
  private:
   static constexpr std::size_t kUsual = 64;  // memory that is enough but for many more faces
 
+  template <typename T>
+  static void reserve(std::vector<T>& memory, std::size_t count) {
+    if (memory.size() < count) memory.resize(2 * count);
+  }
+
   double twice_area(std::size_t i) const {
     const Point &p = points_[0], &q = points_[i - 1], &r = points_[i];
     return (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
   }
 
-  std::vector<Point> points_, kept_;
+  std::size_t count_ = 0;
+  std::vector<Point> points_, kept_;  // grown, never shrunk
   std::vector<double> heights_;
 };
 

@@ -79,7 +79,7 @@ struct OctreeTask {
   const SolidView& solid(int owner) const { return owner == 0 ? a : b; }
   const Pose& X_SW(int owner) const { return owner == 0 ? window.X_AW : window.X_BW; }
   bool worth_sharing(int cells) const {
-    constexpr int kWorthAsking = 32;    // cells, when the caller wants threads
+    constexpr int kWorthAsking = 8;     // cells, when the caller wants threads
     constexpr int kWorthThreads = 256;  // cells, when their number is our choice
     return thread_limit > 1 && cells >= (asked_threads == 0 ? kWorthThreads : kWorthAsking);
   }
