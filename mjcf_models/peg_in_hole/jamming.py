@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Presses a peg that touches its hole at two points, and tells whether it slides or jams.
 
-The jamming diagram of [Whitney1982]: a peg of radius r is l deep in its hole and touches it with its
-end on one side and with its flank on the other, on the rim. A force F_x across, F_z along the hole and
-a moment M about the middle of the end act on it. The two normal forces and their friction balance
-F_x and M, and F_z overcomes the friction, while
+The jamming diagram of [Whitney1982]: a peg of radius r is l deep in its hole and touches it with
+its end on one side and with its flank on the other, on the rim. A force F_x across, F_z along the
+hole and a moment M about the middle of the end act on it. The two normal forces and their friction
+balance F_x and M, and F_z overcomes the friction, while
 
     |M / (r F_z) - mu (1 + lambda) F_x / F_z| < lambda,    lambda = l / (2 r mu).
 
-Outside of these lines it jams. Signs: the peg leans towards +x, so that its end touches at -x, and M
-is about +y, which is what makes it lean further.
+Outside of these lines it jams. Signs: the peg leans towards +x, so that its end touches at -x, and
+M is about +y, which is what makes it lean further.
 
     ./run python mjcf_models/peg_in_hole/jamming.py
 """
@@ -99,6 +99,21 @@ def place_loaded(
         low, high = (low, sink) if enough else (sink, high)
 
 
+def loaded_model(scene: Path) -> mujoco.MjModel:
+    """The scene without gravity, with the time step and the slip speed of the presses."""
+    model = vc.load(scene)
+    model.opt.timestep = TIMESTEP
+    model.opt.gravity[:] = 0.0
+    model.numeric("volcontact/material/assembly/slip_speed").data[0] = SLIP_SPEED
+    return model
+
+
+def end_of(data: mujoco.MjData) -> np.ndarray:
+    """The middle of the peg's lower end [m], shape (3,)."""
+    peg = data.body("peg")
+    return peg.xpos - LENGTH / 2 * peg.xmat.reshape(3, 3)[:, 2]
+
+
 def press(scene: Path, clearance: float, across: float, moment: float) -> Pressed:
     """Presses the peg of a scene, free of gravity.
 
@@ -108,39 +123,76 @@ def press(scene: Path, clearance: float, across: float, moment: float) -> Presse
         across: F_x / F_z [-].
         moment: M / (r F_z) [-].
     """
-    model = vc.load(scene)
-    model.opt.timestep = TIMESTEP
-    model.opt.gravity[:] = 0.0
-    model.numeric("volcontact/material/assembly/slip_speed").data[0] = SLIP_SPEED
+    model = loaded_model(scene)
     data = mujoco.MjData(model)
     body = model.body("peg").id
     force = LOAD * np.array([across, 0.0, -1.0])
     couple = LOAD * RADIUS * moment * np.array([0.0, 1.0, 0.0])
     with vc.attach(model) as contact:
         place_loaded(model, data, contact, clearance)
-        arm = -LENGTH / 2 * data.xmat[body].reshape(3, 3)[:, 2]  # from the middle to the end
-        start = data.xpos[body] + arm
+        start = end_of(data)
         for _ in range(round(DURATION / TIMESTEP)):
-            arm = -LENGTH / 2 * data.xmat[body].reshape(3, 3)[:, 2]
+            arm = end_of(data) - data.xpos[body]
             data.xfrc_applied[body, :3] = force
             data.xfrc_applied[body, 3:] = couple + np.cross(arm, force)
             mujoco.mj_step(model, data)
         mujoco.mj_forward(model, data)
-        arm = -LENGTH / 2 * data.xmat[body].reshape(3, 3)[:, 2]
+        arm = end_of(data) - data.xpos[body]
         turning = data.xmat[body].reshape(3, 3) @ data.qvel[3:6]
         speed = data.qvel[2] + np.cross(turning, arm)[2]
-        travel = start[2] - (data.xpos[body] + arm)[2]
+        travel = (start - end_of(data))[2]
         return Pressed(-float(speed), float(travel), len(contact.sites(data)))
 
 
+def statics(scene: Path, clearance: float, across: float) -> float:
+    """M / (r F_z) at which the peg is about to slide, from normals and centroids of its two sites.
+
+    What the diagram does with corners and an upright peg: three equations of balance in the plane
+    for two normal forces, with full friction, and the moment.
+    """
+    model = loaded_model(scene)
+    data = mujoco.MjData(model)
+    with vc.attach(model) as contact:
+        place_loaded(model, data, contact, clearance)
+        sites = contact.sites(data)
+    balance = np.zeros((3, 3))
+    for column, site in enumerate(sites):
+        on_peg = (
+            site["normal"] if model.geom(int(site["geom_a"])).name == "peg" else -site["normal"]
+        )
+        upwards = np.array([-on_peg[2], 0.0, on_peg[0]])
+        upwards *= np.sign(upwards[2])
+        force = on_peg + FRICTION * upwards
+        torque = np.cross(site["centroid"] - end_of(data), force)
+        balance[:, column] = force[0], force[2], torque[1]
+    balance[2, 2] = 1.0
+    moment = np.linalg.solve(balance, [-across, 1.0, 0.0])[2]  # for F_z = 1
+    return float(moment) / RADIUS
+
+
+def bisect(scene: Path, clearance: float, across: float) -> float:
+    """M / (r F_z) from which on the peg jams, to 0.4 % of lambda."""
+    low, high = 0.8, 1.2  # in lambdas, about the boundary
+    for _ in range(7):
+        share = 0.5 * (low + high)
+        moment = boundary(across) + (share - 1.0) * slenderness()
+        jammed = press(scene, clearance, across, moment).jammed
+        low, high = (low, share) if jammed else (share, high)
+    return boundary(across) + (0.5 * (low + high) - 1.0) * slenderness()
+
+
 def main() -> None:
-    """Presses pegs on either side of the boundary and prints what they do."""
+    """Prints where pegs begin to jam, beside the diagram and the statics."""
+    print("M / (r F_z), and its distance from the diagram in % of lambda")
     for name, clearance in (("scene", 0.2e-3), ("scene_tight", 0.02e-3)):
         for across in (-1.0, 0.0, 1.0):
-            for share in (0.8, 0.9, 1.1, 1.2):
-                moment = boundary(across) + (share - 1.0) * slenderness()
-                pressed = press(FOLDER / f"{name}.xml", clearance, across, moment)
-                print(f"{name}: F_x/F_z {across:+.1f}, M/(r F_z) {moment:+.3f}: {pressed}")
+            diagram = boundary(across)
+            found = [f(FOLDER / f"{name}.xml", clearance, across) for f in (statics, bisect)]
+            off = [100 * (moment - diagram) / slenderness() for moment in found]
+            print(
+                f"{name:12}F_x/F_z {across:+.0f}: diagram {diagram:.3f}, statics of the sites "
+                f"{found[0]:.3f} ({off[0]:+.1f} %), jams from {found[1]:.3f} ({off[1]:+.1f} %)"
+            )
 
 
 if __name__ == "__main__":
