@@ -125,7 +125,7 @@ def press(scene: Path, clearance: float, across: float, moment: float) -> Presse
     """
     model = loaded_model(scene)
     data = mujoco.MjData(model)
-    body = model.body("peg").id
+    body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, "peg")
     force = LOAD * np.array([across, 0.0, -1.0])
     couple = LOAD * RADIUS * moment * np.array([0.0, 1.0, 0.0])
     with vc.attach(model) as contact:
@@ -156,10 +156,9 @@ def statics(scene: Path, clearance: float, across: float) -> float:
         place_loaded(model, data, contact, clearance)
         sites = contact.sites(data)
     balance = np.zeros((3, 3))
+    peg = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, "peg")
     for column, site in enumerate(sites):
-        on_peg = (
-            site["normal"] if model.geom(int(site["geom_a"])).name == "peg" else -site["normal"]
-        )
+        on_peg = site["normal"] if site["geom_a"] == peg else -site["normal"]
         upwards = np.array([-on_peg[2], 0.0, on_peg[0]])
         upwards *= np.sign(upwards[2])
         force = on_peg + FRICTION * upwards

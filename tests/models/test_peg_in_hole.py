@@ -156,8 +156,10 @@ def test_peg_jams_where_the_diagram_says_so(scene: str, clearance: float, across
 
 @pytest.mark.parametrize(("scene", "clearance"), [("scene.xml", WIDE), ("scene_tight.xml", TIGHT)])
 def test_peg_jams_where_the_statics_of_its_sites_says_so(scene: str, clearance: float) -> None:
-    """Much nearer to the boundary, with tilt and centroids as they are and not as the diagram has
-    them. Until it is at rest the peg creeps by 0.1 mm, which is worth 1.6 % of lambda."""
+    """Nearer to the boundary: three equations of balance, with tilt and centroids as they are.
+
+    Until it is at rest the peg creeps by 0.1 mm, which is worth 1.6 % of lambda.
+    """
     across, margin = 0.5, 0.03 * jamming.slenderness()
     moment = jamming.statics(FOLDER / scene, clearance, across)
     assert moment == pytest.approx(jamming.boundary(across), abs=0.1 * jamming.slenderness())
