@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws the pictures of the scenes with meshes: `./run python mjcf_models/make_pictures.py`.
 
-Panels from left to right: some instants under volumetric contact, then, behind a white line, the
-end of the same run under MuJoCo's native contact.
+Panels from left to right: some instants under volumetric contact, then, for some scenes and behind
+a white line, the end of the same run under MuJoCo's native contact.
 """
 
 from __future__ import annotations
@@ -27,29 +27,36 @@ class Picture:
 
     Attributes:
         scene: path below this folder.
-        times: instants to draw under volumetric contact [s].
-        native_time: instant to draw under native contact [s].
+        panels: instants under volumetric contact, in order [s], and the camera of the scene.
+        native: the same, one panel under native contact, or none.
         size: width and height of a panel [pixel].
-        camera: of the scene.
     """
 
     scene: str
-    times: tuple[float, ...]
-    native_time: float
+    panels: tuple[tuple[float, str], ...]
+    native: tuple[float, str] | None = None
     size: tuple[int, int] = (360, 440)
-    camera: str = "overview"
 
 
 PICTURES = {
-    "peg_in_hole/picture.png": Picture("peg_in_hole/scene_mesh.xml", (0.0, 0.05, 0.35), 0.35),
+    "gear_pair/picture.png": Picture(
+        "gear_pair/scene.xml",
+        ((0.0, "overview"), (0.1, "overview"), (0.1, "teeth")),
+        size=(480, 400),
+    ),
+    "peg_in_hole/picture.png": Picture(
+        "peg_in_hole/scene_mesh.xml",
+        ((0.0, "overview"), (0.05, "overview"), (0.35, "overview")),
+        native=(0.35, "overview"),
+    ),
 }
 
 
-def poses(model: mujoco.MjModel, times: tuple[float, ...]) -> list[np.ndarray]:
-    """The positions at these instants [s], in order, each of shape (nq,)."""
+def poses(model: mujoco.MjModel, panels: tuple[tuple[float, str], ...]) -> list[np.ndarray]:
+    """The positions at the instants of the panels, each of shape (nq,)."""
     data = mujoco.MjData(model)
     found = []
-    for time in times:
+    for time, _ in panels:
         while data.time < time - 0.5 * model.opt.timestep:
             mujoco.mj_step(model, data)
         found.append(data.qpos.copy())
@@ -61,13 +68,20 @@ def draw(picture: Picture) -> np.ndarray:
     scene = MODELS / picture.scene
     model = vc.load(scene)
     with vc.attach(model):
-        states = poses(model, picture.times)
-    states += poses(mujoco.MjModel.from_xml_path(str(scene)), (picture.native_time,))
+        states = poses(model, picture.panels)
+    panels = picture.panels
+    if picture.native is not None:
+        panels += (picture.native,)
+        states += poses(mujoco.MjModel.from_xml_path(str(scene)), (picture.native,))
     width, height = picture.size
     with Renderer(model, width=width, height=height) as renderer:
-        panels = [renderer.draw(state, view=picture.camera) for state in states]
-    line = np.full((height, 8, 3), 255, np.uint8)
-    return np.concatenate([*panels[:-1], line, panels[-1]], axis=1)
+        drawn = [
+            renderer.draw(state, view=camera)
+            for state, (_, camera) in zip(states, panels, strict=True)
+        ]
+    if picture.native is not None:
+        drawn.insert(-1, np.full((height, 8, 3), 255, np.uint8))
+    return np.concatenate(drawn, axis=1)
 
 
 def main() -> None:

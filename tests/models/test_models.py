@@ -80,6 +80,9 @@ def test_scene_meets_its_numbers(scene: Path, expected: dict[str, Any], timestep
         assert depth == pytest.approx(expected["depth"], rel=expected["depth_relative_tolerance"])
     if "layer_heights" in expected:
         check_layers(result, expected)
+    for joint, speed in expected.get("joint_speeds", {}).items():
+        found = result.data.joint(joint).qvel[0]
+        assert found == pytest.approx(speed, rel=expected["joint_speed_relative_tolerance"])
 
 
 def check_design_pose(result: Run, expected: dict[str, Any]) -> None:
