@@ -39,6 +39,12 @@ class Picture:
 
 
 PICTURES = {
+    "battery_box_mesh/picture.png": Picture(
+        "battery_box_mesh/scene.xml",
+        ((0.0, "overview"), (0.2, "overview"), (1.0, "overview")),
+        native=(3.0, "overview"),
+        size=(400, 360),
+    ),
     "gear_pair/picture.png": Picture(
         "gear_pair/scene.xml",
         ((0.0, "overview"), (0.1, "overview"), (0.1, "teeth")),
