@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "volcontact/force/elastic_layer.h"
 #include "volcontact/force/laws.h"
 
 namespace volcontact::adaptor {
@@ -10,7 +11,9 @@ namespace {
 
 constexpr const char* kStiffness = "stiffness";
 constexpr const char* kDamping = "damping";
+constexpr const char* kRestitution = "restitution";
 constexpr const char* kFriction = "friction";
+constexpr const char* kStaticFriction = "static_friction";
 constexpr double kDefaultDamping = 1.0;  // [s/m]; a resting contact settles within 1 / (g a)
 
 std::string material_text(const Side& side) {
@@ -30,13 +33,21 @@ const std::string* chosen(const KeyedValues* keyed, const std::string& name) {
 }
 
 std::vector<double> value_of(const Side& side, const FieldRow& field) {
-  const std::vector<double>* own = given(side.material, field.name);
-  return own ? *own : default_value(field, side.native_friction);
+  if (const std::vector<double>* own = given(side.material, field.name)) return *own;
+  if (field.name == kStaticFriction) {  // without a number of its own, as the kinetic one
+    const std::vector<double>* kinetic = given(side.material, kFriction);
+    return kinetic ? *kinetic : std::vector<double>{side.native_friction};
+  }
+  return default_value(field, side.native_friction);
 }
 
 std::string source_of(const Side& side, const FieldRow& field) {
   if (given(side.material, field.name)) return side.material->key;
-  return field.name == kFriction ? "friction of geom " + side.name : "default";
+  if (field.name == kStaticFriction && given(side.material, kFriction)) {
+    return side.material->key + "/" + kFriction;
+  }
+  const bool native = field.name == kFriction || field.name == kStaticFriction;
+  return native ? "friction of geom " + side.name : "default";
 }
 
 // The word for `choice`: the pair's, else the one word the two materials name; empty when nobody
@@ -64,15 +75,30 @@ struct Stiffnesses {
 };
 
 double combined(const std::string& field, double a, double b, const Stiffnesses& k) {
-  if (field == kStiffness) return a * b / (a + b);
-  if (field == kDamping) return (k.b * a + k.a * b) / (k.a + k.b);
+  if (field == kStiffness) return series_stiffness(a, b);
+  if (field == kDamping) return series_damping(k.a, a, k.b, b);
+  if (field == kRestitution) return series_restitution(k.a, a, k.b, b);
   return std::max(a, b);
 }
 
 const char* rule_of(const std::string& field) {
   if (field == kStiffness) return "in series: ";
   if (field == kDamping) return "weighted by compliance: ";
+  if (field == kRestitution) return "its damping weighted by compliance: ";
   return "larger of: ";
+}
+
+// How the normal law of a pair is damped: by `damping`, or by `restitution` where that is given.
+bool has_restitution(const Side& a, const Side& b, const KeyedValues* pair) {
+  if (given(pair, kRestitution)) return true;
+  if (given(pair, kDamping)) return false;
+  const bool damping = given(a.material, kDamping) || given(b.material, kDamping);
+  const bool restitution = given(a.material, kRestitution) || given(b.material, kRestitution);
+  require(!(damping && restitution),
+          "geoms '" + a.name + "' and '" + b.name +
+              "': one of their materials gives damping and one restitution, which exclude each "
+              "other; give one of the two in a volcontact/pair/<name> that lists the two geoms");
+  return restitution;
 }
 
 PairField combine_field(const FieldRow& field, const Side& a, const Side& b,
@@ -83,7 +109,17 @@ PairField combine_field(const FieldRow& field, const Side& a, const Side& b,
     out.source = pair->key;
     return out;
   }
-  const std::vector<double> of_a = value_of(a, field), of_b = value_of(b, field);
+  if (field.name == kDamping && has_restitution(a, b, pair)) {
+    return {field.name, field.unit, {0.0}, "none: restitution is given"};
+  }
+  if (field.name == kRestitution && !has_restitution(a, b, pair)) {
+    return {field.name, field.unit, {1.0}, "none: damping holds"};
+  }
+  std::vector<double> of_a = value_of(a, field), of_b = value_of(b, field);
+  if (field.name == kRestitution) {  // where one side alone gives it, it holds for both
+    if (!given(a.material, field.name)) of_a = of_b;
+    if (!given(b.material, field.name)) of_b = of_a;
+  }
   for (std::size_t i = 0; i < of_a.size(); ++i) {
     out.value.push_back(combined(field.name, of_a[i], of_b[i], stiffnesses));
   }
@@ -91,6 +127,16 @@ PairField combine_field(const FieldRow& field, const Side& a, const Side& b,
   const bool same = source_a == source_b && of_a == of_b;
   out.source = rule_of(field.name) + (same ? source_a + " (both)" : source_a + ", " + source_b);
   return out;
+}
+
+// A pair that gives a kinetic friction above the static one of its materials means both.
+void raise_static(std::vector<PairField>& fields) {
+  PairField& least = fields.back();
+  for (const PairField& field : fields) {
+    if (field.name != kFriction || field.value[0] <= least.value[0]) continue;
+    least.value = field.value;
+    least.source = "as friction";
+  }
 }
 
 Stiffnesses stiffnesses_of(const LawRow& law, const Side& a, const Side& b) {
@@ -122,7 +168,7 @@ ChoiceValues law_choices(const LawRow& law, const Side& a, const Side& b, const 
 }  // namespace
 
 std::vector<double> default_value(const FieldRow& field, double native_friction) {
-  if (field.name == kFriction) return {native_friction};
+  if (field.name == kFriction || field.name == kStaticFriction) return {native_friction};
   if (field.name == kDamping) return {kDefaultDamping};
   return field.defaults;
 }
@@ -143,6 +189,7 @@ PairLaws combine(const Side& a, const Side& b, const KeyedValues* pair) {
   const auto fill = [&](const LawRow& row, FieldValues& values) {
     for (const FieldRow& field : row.fields) {
       out.fields.push_back(combine_field(field, a, b, pair, stiffnesses));
+      if (field.name == kStaticFriction && !given(pair, field.name)) raise_static(out.fields);
       values[field.name] = out.fields.back().value;
     }
   };

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "adaptor/applied_ledger.h"
+#include "adaptor/energy_account.h"
 #include "adaptor/work_sharing.h"
 #include "volcontact/base/check.h"
 
@@ -67,6 +68,15 @@ std::vector<GeomPair> pairs_of(const mjModel* m, const SceneKeys& keys) {
   return pairs_that_can_touch(m, keys);
 }
 
+// Rows for the contact sites: as many as a crowded scene has, not as many as there could be, since
+// every copy of mjData takes them along.
+int rows_for(const std::vector<GeomPair>& pairs) {
+  constexpr std::size_t kPerPair = 16, kPerGeom = 12, kBase = 48;
+  std::set<int> geoms;
+  for (const GeomPair& pair : pairs) geoms.insert({pair.a, pair.b});
+  return static_cast<int>(std::min(kPerPair * pairs.size(), kBase + kPerGeom * geoms.size()));
+}
+
 bool is_finite(const ContactReport& report) {
   double sum = report.elastic_energy + report.power.sum();
   for (const SiteReport& site : report.sites) {
@@ -100,6 +110,7 @@ SceneContact::SceneContact(const mjModel* m)
   }
   pairs_.reserve(geom_pairs_.size());
   for (const GeomPair& pair : geom_pairs_) add_pair(m, pair);
+  if (sites_.row_size > 0) sites_.rows = rows_for(geom_pairs_);
 }
 
 void SceneContact::warn_once(const std::string& warning) {
@@ -131,9 +142,8 @@ void SceneContact::add_pair(const mjModel* m, const GeomPair& geoms) {
   }
   ContactModel model({{a, b, Pose{}, Pose{}}}, laws.laws,
                      {options.tolerance, engine, kInnerThreads, most_cells});
-  const int first_state = states_;
-  states_ += model.state_size();
-  pairs_.push_back({geoms, engine, std::move(laws), first_state, std::move(model)});
+  sites_.row_size = std::max(sites_.row_size, model.row_size());
+  pairs_.push_back({geoms, engine, std::move(laws), std::move(model)});
 }
 
 void SceneContact::warn_about_model(const mjModel* m) {
@@ -168,7 +178,7 @@ UserdataLayout SceneContact::layout(const mjModel* m) const {
   const int channels = keys_.options.target == Target::kApplied ? static_cast<int>(m->nv)
                        : keys_.options.target == Target::kXfrc  ? 6 * static_cast<int>(m->nbody)
                                                                 : 0;
-  return {states_, channels};
+  return {sites_.size(), channels};
 }
 
 UserdataBlock SceneContact::block(const mjModel* m, const mjData* d) const {
@@ -200,27 +210,49 @@ SceneContact::Work SceneContact::plan_work(int threads, Scratch& scratch) const 
   return work;
 }
 
-void SceneContact::evaluate_one(const mjModel* m, const mjData* d, const LawState& states, int k,
+void SceneContact::evaluate_one(const mjModel* m, const mjData* d, const Before& before, int k,
                                 ContactModel::Workspace& workspace,
                                 Scratch& scratch) const noexcept {
   const std::size_t index = static_cast<std::size_t>(k);
-  const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[index])];
+  const int pair_index = scratch.cull.near[index];
+  const PairContact& pair = pairs_[static_cast<std::size_t>(pair_index)];
   const BodyMotion motion{pose_of_geom(d, pair.geoms.a), pose_of_geom(d, pair.geoms.b),
                           twist_of_geom(m, d, pair.geoms.a), twist_of_geom(m, d, pair.geoms.b)};
-  const LawState state{states.committed + pair.first_state, states.pending + pair.first_state,
-                       states.elapsed};
+  SiteMemory memory;
+  memory.elapsed = before.elapsed;
+  if (before.committed && pair.model.row_size() > 0) {
+    memory = SitePool<const double>(before.committed, sites_).rows_of(pair_index, before.elapsed);
+  }
   ContactReport& report = scratch.reports[index];
-  pair.model.evaluate(motion, state, workspace, report);
+  pair.model.evaluate(motion, memory, workspace, report);
   scratch.invalid[index] =
       workspace.interference.total.status == Status::kInvalid || !is_finite(report);
   if (!scratch.invalid[index]) return;
   report.sites.clear();
+  report.memory.clear();
   report.elastic_energy = 0.0;
+  report.bristle_energy = {};
   report.power = {};
-  std::fill_n(state.pending, pair.model.state_size(), 0.0);
+  report.taken = {};
 }
 
-void SceneContact::evaluate(const mjModel* m, const mjData* d, const LawState& states,
+// Writes what the sites of this evaluation keep; false when there was no room for all.
+bool SceneContact::keep_sites(double* states, const Scratch& scratch) const noexcept {
+  const SitePool<double> pool(states, sites_);
+  pool.clear();
+  if (sites_.rows == 0) return true;
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    const int pair = scratch.cull.near[k];
+    const int size = pairs_[static_cast<std::size_t>(pair)].model.row_size();
+    const std::vector<double>& memory = scratch.reports[k].memory;
+    for (std::size_t start = 0; start < memory.size(); start += static_cast<std::size_t>(size)) {
+      if (!pool.push(pair, &memory[start], size)) return false;
+    }
+  }
+  return true;
+}
+
+void SceneContact::evaluate(const mjModel* m, const mjData* d, const Before& before,
                             Scratch& scratch) const noexcept {
   cull_.run(d, scratch.cull);
   const std::vector<int>& near = scratch.cull.near;
@@ -228,7 +260,6 @@ void SceneContact::evaluate(const mjModel* m, const mjData* d, const LawState& s
     scratch.reports.resize(near.size());
     scratch.invalid.resize(near.size());
   }
-  std::fill_n(states.pending, states_, 0.0);
 
   const EvaluationGuard guard(keys_.options.threads);
   const Work work = plan_work(guard.threads(), scratch);
@@ -238,7 +269,7 @@ void SceneContact::evaluate(const mjModel* m, const mjData* d, const LawState& s
   const auto evaluate_some = [&](int first, int last, int thread) {
     ContactModel::Workspace& workspace = scratch.workspaces[static_cast<std::size_t>(thread)];
     for (int i = first; i < last; ++i) {
-      evaluate_one(m, d, states, scratch.order[static_cast<std::size_t>(i)], workspace, scratch);
+      evaluate_one(m, d, before, scratch.order[static_cast<std::size_t>(i)], workspace, scratch);
     }
   };
   evaluate_some(0, work.own_sharing, 0);
@@ -292,22 +323,21 @@ void SceneContact::step(const mjModel* m, mjData* d, Scratch& scratch) const noe
   if (m->nuserdata < layout(m).size()) return;
   const UserdataBlock our = block(m, d);
   our.claim();
-  const double elapsed = open_slot(our, d->time, m->opt.timestep);
-  const bool continues = our.count() > 1;
-  if (scratch.no_states.size() < static_cast<std::size_t>(states_)) {
-    scratch.no_states.assign(static_cast<std::size_t>(states_), 0.0);
-  }
-  const double* committed = continues ? our.slot(1).states() : scratch.no_states.data();
-  evaluate(m, d, {committed, our.slot(0).states(), elapsed}, scratch);
+  const AccountKeeper account(our, d->time, m->opt.timestep, m->opt.integrator == mjINT_RK4);
+  const double* committed = account.continues() ? our.slot(1).states() : nullptr;
+  evaluate(m, d, {committed, account.elapsed()}, scratch);
+  if (!keep_sites(our.slot(0).states(), scratch)) our.forgotten() += 1.0;
 
-  double elastic = 0.0;
-  ByChannel power;
+  EnergyAccount now;
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    elastic += scratch.reports[k].elastic_energy;
-    power += scratch.reports[k].power;
+    const ContactReport& report = scratch.reports[k];
+    now.elastic += report.elastic_energy;
+    now.power += report.power;
+    now.taken += report.taken;
+    now.slide_energy += report.bristle_energy.slide;
+    now.spin_energy += report.bristle_energy.spin;
   }
-  const EnergyAccount before = continues ? our.slot(1).energy() : EnergyAccount{};
-  our.slot(0).set_energy(continued(before, elastic, power, elapsed));
+  account.write(now);
   write_forces(m, d, scratch);
 }
 
@@ -315,12 +345,11 @@ bool SceneContact::revisit(const mjModel* m, const mjData* d, Scratch& scratch) 
   if (m->nuserdata < layout(m).size()) return false;
   const UserdataBlock our = block(m, d);
   if (!our.is_ours() || our.count() == 0) return false;
-  scratch.no_states.resize(static_cast<std::size_t>(states_), 0.0);
-  scratch.unused_states.resize(static_cast<std::size_t>(states_));
-  const bool continues = our.count() > 1;
-  const double elapsed = continues ? our.slot(0).time() - our.slot(1).time() : 0.0;
-  const double* committed = continues ? our.slot(1).states() : scratch.no_states.data();
-  evaluate(m, d, {committed, scratch.unused_states.data(), elapsed}, scratch);
+  Before before;
+  if (our.count() > 1) {
+    before = {our.slot(1).states(), our.slot(0).time() - our.slot(1).time()};
+  }
+  evaluate(m, d, before, scratch);
   return true;
 }
 
@@ -334,6 +363,12 @@ double SceneContact::dropped(const mjModel* m, const mjData* d) const noexcept {
   if (m->nuserdata < layout(m).size()) return 0.0;
   const UserdataBlock our = block(m, d);
   return our.is_ours() ? our.dropped() : 0.0;
+}
+
+double SceneContact::forgotten(const mjModel* m, const mjData* d) const noexcept {
+  if (m->nuserdata < layout(m).size()) return 0.0;
+  const UserdataBlock our = block(m, d);
+  return our.is_ours() ? our.forgotten() : 0.0;
 }
 
 void SceneContact::release(const mjModel* m, mjData* d) const noexcept {

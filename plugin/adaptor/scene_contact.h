@@ -7,6 +7,7 @@
 #include "adaptor/body_forces.h"
 #include "adaptor/pair_list.h"
 #include "adaptor/scene_keys.h"
+#include "adaptor/site_pool.h"
 #include "adaptor/userdata_layout.h"
 #include "volcontact/model/contact_model.h"
 
@@ -17,7 +18,6 @@ struct PairContact {
   GeomPair geoms;
   Engine engine;  ///< the one that will serve
   PairLaws laws;
-  int first_state;  ///< offset in the law states of the scene
   ContactModel model;
 };
 
@@ -32,8 +32,6 @@ class SceneContact {
     std::vector<char> invalid;           ///< whether a report was left out, having no numbers
     std::vector<int> order;              ///< of `near`, as worked off: the long pairs first
     std::vector<ContactModel::Workspace> workspaces;  ///< one per OpenMP thread
-    std::vector<double> no_states;
-    std::vector<double> unused_states;
     BodyForces forces;
   };
 
@@ -64,6 +62,10 @@ class SceneContact {
   /// Evaluations in which a force was no number and was left out.
   double dropped(const mjModel* m, const mjData* d) const noexcept;
 
+  /// Evaluations in which there were more contact sites than userdata keeps: the friction and the
+  /// impact speed of the rest began anew.
+  double forgotten(const mjModel* m, const mjData* d) const noexcept;
+
   /// Takes our part out of the force array of the target.
   void release(const mjModel* m, mjData* d) const noexcept;
 
@@ -82,10 +84,16 @@ class SceneContact {
   void add_pair(const mjModel* m, const GeomPair& geoms);
   void warn_about_model(const mjModel* m);
   void warn_once(const std::string& warning);
-  void evaluate(const mjModel* m, const mjData* d, const LawState& states,
+  // The sites that the evaluation before left, of which `committed` is null when there was none.
+  struct Before {
+    const double* committed = nullptr;
+    double elapsed = 0.0;
+  };
+  void evaluate(const mjModel* m, const mjData* d, const Before& before,
                 Scratch& scratch) const noexcept;
-  void evaluate_one(const mjModel* m, const mjData* d, const LawState& states, int k,
+  void evaluate_one(const mjModel* m, const mjData* d, const Before& before, int k,
                     ContactModel::Workspace& workspace, Scratch& scratch) const noexcept;
+  bool keep_sites(double* states, const Scratch& scratch) const noexcept;
   void write_forces(const mjModel* m, mjData* d, Scratch& scratch) const noexcept;
 
   SceneKeys keys_;
@@ -93,7 +101,7 @@ class SceneContact {
   std::vector<Shape> solids_;  // by geom; of geoms without a pair a placeholder
   std::vector<PairContact> pairs_;
   Cull cull_;
-  int states_ = 0;
+  SitePoolLayout sites_;
   std::vector<std::string> warnings_;
 };
 

@@ -20,12 +20,14 @@ namespace volcontact::adaptor {
 
 /// Sizes of the block, in numbers.
 struct UserdataLayout {
-  static constexpr int kVersion = 1;
-  static constexpr int kHeader = 8;
-  static constexpr int kSlots = 4;      ///< covers the stages of one Runge-Kutta step
-  static constexpr int kSlotHead = 11;  ///< time, step, elastic energy, dissipated x4, power x4
+  static constexpr int kVersion = 2;
+  static constexpr int kHeader = 9;
+  /// A Runge-Kutta step and the one before it, which a step that is redone needs.
+  static constexpr int kSlots = 5;
+  /// Time, step, stage, elastic energy, dissipated x4, power x4, taken x4, bristle energy x2.
+  static constexpr int kSlotHead = 18;
 
-  int states = 0;    ///< law states of all pairs
+  int states = 0;    ///< numbers in which the sites of all pairs are kept
   int channels = 0;  ///< forces in the ledger: nv for applied, 6 nbody for xfrc, 0 for passive
 
   int slot_size() const { return kSlotHead + states; }
@@ -35,9 +37,19 @@ struct UserdataLayout {
 
 /// Energies of one evaluation.
 struct EnergyAccount {
-  double elastic = 0.0;  ///< [J]
-  ByChannel dissipated;  ///< since the start [J]
-  ByChannel power;       ///< at the evaluation [W]
+  double elastic = 0.0;       ///< of the contacts, with that of the bristles [J]
+  ByChannel dissipated;       ///< since the start [J]
+  ByChannel power;            ///< dissipated at the evaluation [W]
+  ByChannel taken;            ///< dissipated, or put into bristles, at the evaluation [W]
+  double slide_energy = 0.0;  ///< of the bristles [J]
+  double spin_energy = 0.0;   ///< [J]
+};
+
+/// What an evaluation was for the integrator.
+enum class Stage : int {
+  kWhole = 0,         ///< at the begin or end of a step
+  kMiddle = 1,        ///< of a Runge-Kutta step, for the first time
+  kSecondMiddle = 2,  ///< for the second time; the slot has the mean power of both
 };
 
 /// What one evaluation left: its time, its energies, its law states.
@@ -49,17 +61,28 @@ class Slot {
   double& step() const { return p_[1]; }
   double* states() const { return p_ + UserdataLayout::kSlotHead; }
 
+  Stage stage() const { return static_cast<Stage>(static_cast<int>(p_[2])); }
+  void set_stage(Stage stage) const { p_[2] = static_cast<int>(stage); }
+
   EnergyAccount energy() const {
-    return {p_[2], {p_[3], p_[4], p_[5], p_[6]}, {p_[7], p_[8], p_[9], p_[10]}};
+    return {p_[3], channels(4), channels(8), channels(12), p_[16], p_[17]};
   }
   void set_energy(const EnergyAccount& e) const {
-    const double numbers[] = {e.elastic,          e.dissipated.normal, e.dissipated.roll,
-                              e.dissipated.slide, e.dissipated.spin,   e.power.normal,
-                              e.power.roll,       e.power.slide,       e.power.spin};
-    std::copy(std::begin(numbers), std::end(numbers), p_ + 2);
+    p_[3] = e.elastic;
+    set_channels(4, e.dissipated);
+    set_channels(8, e.power);
+    set_channels(12, e.taken);
+    p_[16] = e.slide_energy;
+    p_[17] = e.spin_energy;
   }
 
  private:
+  ByChannel channels(int i) const { return {p_[i], p_[i + 1], p_[i + 2], p_[i + 3]}; }
+  void set_channels(int i, const ByChannel& c) const {
+    const double numbers[] = {c.normal, c.roll, c.slide, c.spin};
+    std::copy(std::begin(numbers), std::end(numbers), p_ + i);
+  }
+
   double* p_;
 };
 
@@ -119,6 +142,9 @@ class UserdataBlock {
   /// Evaluations in which a force was no number and was left out.
   double& dropped() const { return header_[7]; }
 
+  /// Evaluations in which there were more sites than rows to keep them in.
+  double& forgotten() const { return header_[8]; }
+
  private:
   static constexpr double kMagic = 860310740.0;
 
@@ -147,21 +173,8 @@ inline double open_slot(const UserdataBlock& block, double time, double step) {
   block.push();
   block.slot(0).time() = time;
   block.slot(0).step() = step;
+  block.slot(0).set_stage(Stage::kWhole);
   return elapsed;
-}
-
-/// The account after `elapsed` seconds: dissipated power integrated by the trapezoidal rule.
-inline EnergyAccount continued(const EnergyAccount& before, double elastic, const ByChannel& power,
-                               double elapsed) {
-  const auto add = [elapsed](double energy, double power_before, double power_now) {
-    return energy + 0.5 * elapsed * (power_before + power_now);
-  };
-  const ByChannel& d = before.dissipated;
-  const ByChannel& p = before.power;
-  return {elastic,
-          {add(d.normal, p.normal, power.normal), add(d.roll, p.roll, power.roll),
-           add(d.slide, p.slide, power.slide), add(d.spin, p.spin, power.spin)},
-          power};
 }
 
 }  // namespace volcontact::adaptor

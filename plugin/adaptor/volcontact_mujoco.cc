@@ -168,6 +168,7 @@ int volcontact_get_energy(const mjModel* m, const mjData* d, volcontact_energy* 
     copy_channels(account.dissipated, energy->dissipated);
     copy_channels(account.power, energy->power);
     energy->dropped = contact->dropped(m, d);
+    energy->forgotten = contact->forgotten(m, d);
     return 0;
   });
 }

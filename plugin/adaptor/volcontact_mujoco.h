@@ -54,6 +54,7 @@ typedef struct volcontact_energy_ {
   double dissipated[4];  // since the start of the simulation [J]
   double power[4];       // dissipated now [W]
   double dropped;        // evaluations in which a force was no number and was left out
+  double forgotten;      // evaluations with more contact sites than userdata keeps
 } volcontact_energy;
 
 // mjVERSION_HEADER of the MuJoCo this library was compiled for.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <nanobind/stl/optional.h>
+
 #include "bindings.h"
 #include "fields.h"
+#include "volcontact/force/elastic_layer.h"
 #include "volcontact/force/laws.h"
 
 namespace volcontact::python {
@@ -15,6 +18,34 @@ void bind_law(nb::module_& m, const char* what) {
   detail::def_law_init<Law, Base>(type, std::make_index_sequence<Law::kFields.size()>{},
                                   std::make_index_sequence<detail::choice_count<Law>()>{});
   def_properties<Law>(type);
+}
+
+void bind_layers(nb::module_& m) {
+  m.def(
+      "layer_stiffness",
+      [](double modulus, double thickness, std::optional<double> poisson_ratio) {
+        return poisson_ratio ? confined_layer_stiffness(modulus, thickness, *poisson_ratio)
+                             : layer_stiffness(modulus, thickness);
+      },
+      nb::kw_only(), nb::arg("modulus"), nb::arg("thickness"),
+      nb::arg("poisson_ratio") = nb::none(),
+      R"(Stiffness of an elastic layer on a rigid core.
+
+Args:
+    modulus [Pa]: Young's modulus E
+    thickness [m]: H
+    poisson_ratio [-]: nu of a layer that cannot bulge sideways; left out, it can
+
+Returns:
+    E / H, or (1 - nu) E / ((1 + nu) (1 - 2 nu) H) [N/m^3])");
+  m.def("series_stiffness", &series_stiffness, nb::arg("stiffness_a"), nb::arg("stiffness_b"),
+        "k_v [N/m^3] of two layers in series");
+  m.def("series_damping", &series_damping, nb::arg("stiffness_a"), nb::arg("damping_a"),
+        nb::arg("stiffness_b"), nb::arg("damping_b"),
+        "a [s/m] of two layers in series, each with its own against a rigid body");
+  m.def("series_restitution", &series_restitution, nb::arg("stiffness_a"), nb::arg("restitution_a"),
+        nb::arg("stiffness_b"), nb::arg("restitution_b"),
+        "e [-] of two layers in series, each with its own against a rigid body");
 }
 
 }  // namespace
@@ -32,6 +63,7 @@ void bind_laws(nb::module_& m) {
   for_each_type(FrictionLaws{}, [&](auto tag) {
     bind_law<typename decltype(tag)::Type, Friction>(m, "Friction law");
   });
+  bind_layers(m);
 }
 
 }  // namespace volcontact::python

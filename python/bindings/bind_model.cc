@@ -16,33 +16,41 @@ namespace nb = nanobind;
 using NormalPtr = std::shared_ptr<const NormalForce>;
 using FrictionPtr = std::shared_ptr<const Friction>;
 
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 struct PyReport : ContactReport {
-  Eigen::VectorXd state;
+  Eigen::Index row_size = 0;
 
   VolumeMetrics metrics() const {
     VolumeMetrics sum;
     for (const SiteReport& site : sites) sum = sum + site.metrics;
     return sum;
   }
+  Rows state() const {
+    const Eigen::Index count =
+        row_size > 0 ? static_cast<Eigen::Index>(memory.size()) / row_size : 0;
+    return Eigen::Map<const Rows>(memory.data(), count, row_size);
+  }
 };
 
 PyReport evaluate(const ContactModel& model, const std::optional<Matrix4>& X_WA,
                   const std::optional<Matrix4>& X_WB, const std::optional<Vector6>& V_WA,
-                  const std::optional<Vector6>& V_WB, const std::optional<Eigen::VectorXd>& state,
+                  const std::optional<Vector6>& V_WB, const std::optional<Rows>& state,
                   double elapsed) {
-  const Eigen::Index size = model.state_size();
-  require(!state || state->size() == size, "evaluate: state has " +
-                                               std::to_string(state ? state->size() : 0) +
-                                               " numbers, the model needs " + std::to_string(size));
+  PyReport report;
+  report.row_size = model.row_size();
+  require(!state || state->cols() == report.row_size,
+          "evaluate: the rows of state have " + std::to_string(state ? state->cols() : 0) +
+              " numbers, those of the model have " + std::to_string(report.row_size));
   require(elapsed >= 0.0, "evaluate: elapsed must be >= 0 s");
   const BodyMotion motion{pose_from(X_WA, "X_WA"), pose_from(X_WB, "X_WB"),
                           twist_from(V_WA, "V_WA"), twist_from(V_WB, "V_WB")};
-  const Eigen::VectorXd committed = state ? *state : Eigen::VectorXd::Zero(size);
-  PyReport report;
-  report.state = committed;
+  SiteMemory memory;
+  if (state) memory = {state->data(), static_cast<int>(state->rows()), model.row_size(), 0.0};
+  memory.elapsed = elapsed;
   thread_local ContactModel::Workspace workspace;
   nb::gil_scoped_release release;
-  model.evaluate(motion, {committed.data(), report.state.data(), elapsed}, workspace, report);
+  model.evaluate(motion, memory, workspace, report);
   return report;
 }
 
@@ -84,7 +92,9 @@ void bind_report(nb::module_& m) {
       .def_ro("slip", &SiteReport::slip, nb::rv_policy::copy,
               "Tangential velocity of A against B at the centroid [m/s], shape (3,)")
       .def_ro("spin", &SiteReport::spin, "Of A against B about the normal [rad/s]")
-      .def_ro("elastic_energy", &SiteReport::elastic_energy, "[J]")
+      .def_ro("elastic_energy", &SiteReport::elastic_energy, "Of the volume and the bristles [J]")
+      .def_ro("bristle_energy", &SiteReport::bristle_energy, nb::rv_policy::copy,
+              "The part of it that sliding and spinning stored [J]")
       .def_ro("power", &SiteReport::power, nb::rv_policy::copy, "Dissipated [W]");
   nb::class_<PyReport>(m, "ContactReport", "What an evaluation of a contact model returns.")
       .def_prop_ro("metrics", &PyReport::metrics, "Sum over all sites, in the world frame")
@@ -104,8 +114,8 @@ void bind_report(nb::module_& m) {
       .def_prop_ro("touching", &PyReport::touching)
       .def_ro("elastic_energy", &PyReport::elastic_energy, "[J]")
       .def_ro("power", &PyReport::power, nb::rv_policy::copy, "Dissipated [W]")
-      .def_ro("state", &PyReport::state, nb::rv_policy::copy,
-              "Law states after `elapsed`, shape (state_size,)");
+      .def_prop_ro("state", &PyReport::state,
+                   "What the sites keep for the next evaluation, shape (sites, row_size)");
 }
 
 }  // namespace
@@ -138,7 +148,8 @@ void bind_model(nb::module_& m) {
           nb::kw_only(), nb::arg("pairs"), nb::arg("normal"), nb::arg("friction") = nb::none(),
           nb::arg("rolling") = true, nb::arg("tolerance") = 1e-3, nb::arg("engine") = "auto",
           nb::arg("threads") = 1)
-      .def_prop_ro("state_size", &ContactModel::state_size, "Doubles of law state")
+      .def_prop_ro("row_size", &ContactModel::row_size,
+                   "Numbers kept for each contact site; 0 when the laws keep nothing")
       .def("evaluate", &evaluate, nb::kw_only(), nb::arg("X_WA") = nb::none(),
            nb::arg("X_WB") = nb::none(), nb::arg("V_WA") = nb::none(), nb::arg("V_WB") = nb::none(),
            nb::arg("state") = nb::none(), nb::arg("elapsed") = 0.0,
@@ -148,11 +159,12 @@ Args:
     X_WA, X_WB: poses of the bodies in the world, shape (4, 4); identity when left out
     V_WA, V_WB: twists, angular [rad/s] then linear [m/s] of the frame origin, world frame,
         shape (6,); zero when left out
-    state: law states at the last accepted time, shape (state_size,); zeros when left out
+    state: `state` of the report of the last accepted time, shape (sites, row_size); left out, all
+        sites are new
     elapsed [s]: time since then
 
 Returns:
-    ContactReport: wrenches, sites, energy, dissipated power and the new law states
+    ContactReport: wrenches, sites, energy, dissipated power and the new state
 
 Raises:
     ValueError: a pose, twist or state is not what it should be)");

@@ -3,6 +3,7 @@
 
 from volcontact._volcontact import (
     Box,
+    Bristle,
     ByChannel,
     Capsule,
     ContactModel,
@@ -27,6 +28,10 @@ from volcontact._volcontact import (
     VolumeMetrics,
     VolumeSpring,
     interference,
+    layer_stiffness,
+    series_damping,
+    series_restitution,
+    series_stiffness,
 )
 from volcontact.scene import Contact, attach, load
 
@@ -34,6 +39,7 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Box",
+    "Bristle",
     "ByChannel",
     "Capsule",
     "Contact",
@@ -61,5 +67,9 @@ __all__ = [
     "__version__",
     "attach",
     "interference",
+    "layer_stiffness",
     "load",
+    "series_damping",
+    "series_restitution",
+    "series_stiffness",
 ]

@@ -55,6 +55,7 @@ class RawEnergy(ctypes.Structure):
         ("dissipated", ctypes.c_double * 4),
         ("power", ctypes.c_double * 4),
         ("dropped", ctypes.c_double),
+        ("forgotten", ctypes.c_double),
     )
 
 

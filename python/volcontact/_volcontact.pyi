@@ -808,9 +808,11 @@ class HuntCrossley(NormalForce):
     Args:
         stiffness [N/m^3]: k_v, force per interference volume; > 0
         damping [s/m]: a, relative rise of the force per approach speed; >= 0
+        restitution [-]: e, in place of damping: a from the speed at first touch; > 0 and <= 1
+        restitution_speed_floor [m/s]: slower impacts are damped as if they had this speed; > 0
     """
 
-    def __init__(self, *, stiffness: float = 10000000.0, damping: float = 0.0) -> None: ...
+    def __init__(self, *, stiffness: float = 10000000.0, damping: float = 0.0, restitution: float = 1.0, restitution_speed_floor: float = 0.01) -> None: ...
 
     @property
     def stiffness(self) -> float:
@@ -819,6 +821,14 @@ class HuntCrossley(NormalForce):
     @property
     def damping(self) -> float:
         """a, relative rise of the force per approach speed [s/m]"""
+
+    @property
+    def restitution(self) -> float:
+        """e, in place of damping: a from the speed at first touch [-]"""
+
+    @property
+    def restitution_speed_floor(self) -> float:
+        """slower impacts are damped as if they had this speed [m/s]"""
 
 class VolumeSpring(NormalForce):
     """
@@ -841,7 +851,7 @@ class RegularizedCoulomb(Friction):
     Args:
         friction [-]: mu, kinetic; >= 0
         slip_speed [m/s]: speed from which friction has its full strength; > 0
-        coupling: how sliding and spinning share the friction; one of 'ellipsoid' 'none'
+        coupling: how sliding and spinning share the friction; one of 'ellipsoid' 'quadrature' 'none'
     """
 
     def __init__(self, *, friction: float = 0.2, slip_speed: float = 0.001, coupling: str = 'ellipsoid') -> None: ...
@@ -857,6 +867,79 @@ class RegularizedCoulomb(Friction):
     @property
     def coupling(self) -> str:
         """how sliding and spinning share the friction"""
+
+class Bristle(Friction):
+    """
+    Friction law 'bristle'.
+
+    Args:
+        friction [-]: mu_C, kinetic; >= 0
+        static_friction [-]: mu_S, after a long rest; at least mu_C; >= 0
+        bristle_stiffness [N/m]: sigma_0, tangential stiffness of a contact site; > 0
+        bristle_damping [N s/m]: sigma_1, damping of the deflection; > 0
+        viscous_friction [N s/m]: sigma_2, of the slip itself; >= 0
+        stribeck_speed [m/s]: v_s, where sticking gives way to sliding; > 0
+        dwell_time [s]: tau_dw, in which friction at rest grows to mu_S; > 0
+        coupling: how sliding and spinning share the friction; one of 'ellipsoid' 'quadrature' 'none'
+    """
+
+    def __init__(self, *, friction: float = 0.2, static_friction: float = 0.2, bristle_stiffness: float = 100000.0, bristle_damping: float = 500.0, viscous_friction: float = 0.0, stribeck_speed: float = 0.01, dwell_time: float = 0.1, coupling: str = 'ellipsoid') -> None: ...
+
+    @property
+    def friction(self) -> float:
+        """mu_C, kinetic [-]"""
+
+    @property
+    def static_friction(self) -> float:
+        """mu_S, after a long rest; at least mu_C [-]"""
+
+    @property
+    def bristle_stiffness(self) -> float:
+        """sigma_0, tangential stiffness of a contact site [N/m]"""
+
+    @property
+    def bristle_damping(self) -> float:
+        """sigma_1, damping of the deflection [N s/m]"""
+
+    @property
+    def viscous_friction(self) -> float:
+        """sigma_2, of the slip itself [N s/m]"""
+
+    @property
+    def stribeck_speed(self) -> float:
+        """v_s, where sticking gives way to sliding [m/s]"""
+
+    @property
+    def dwell_time(self) -> float:
+        """tau_dw, in which friction at rest grows to mu_S [s]"""
+
+    @property
+    def coupling(self) -> str:
+        """how sliding and spinning share the friction"""
+
+def layer_stiffness(*, modulus: float, thickness: float, poisson_ratio: float | None = None) -> float:
+    """
+    Stiffness of an elastic layer on a rigid core.
+
+    Args:
+        modulus [Pa]: Young's modulus E
+        thickness [m]: H
+        poisson_ratio [-]: nu of a layer that cannot bulge sideways; left out, it can
+
+    Returns:
+        E / H, or (1 - nu) E / ((1 + nu) (1 - 2 nu) H) [N/m^3]
+    """
+
+def series_stiffness(stiffness_a: float, stiffness_b: float) -> float:
+    """k_v [N/m^3] of two layers in series"""
+
+def series_damping(stiffness_a: float, damping_a: float, stiffness_b: float, damping_b: float) -> float:
+    """
+    a [s/m] of two layers in series, each with its own against a rigid body
+    """
+
+def series_restitution(stiffness_a: float, restitution_a: float, stiffness_b: float, restitution_b: float) -> float:
+    """e [-] of two layers in series, each with its own against a rigid body"""
 
 class Pair:
     """A solid fixed on body A and a solid fixed on body B."""
@@ -923,7 +1006,11 @@ class SiteReport:
 
     @property
     def elastic_energy(self) -> float:
-        """[J]"""
+        """Of the volume and the bristles [J]"""
+
+    @property
+    def bristle_energy(self) -> ByChannel:
+        """The part of it that sliding and spinning stored [J]"""
 
     @property
     def power(self) -> ByChannel:
@@ -967,8 +1054,8 @@ class ContactReport:
         """Dissipated [W]"""
 
     @property
-    def state(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
-        """Law states after `elapsed`, shape (state_size,)"""
+    def state(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C')]:
+        """What the sites keep for the next evaluation, shape (sites, row_size)"""
 
 class ContactModel:
     """
@@ -978,10 +1065,10 @@ class ContactModel:
     def __init__(self, *, pairs: Sequence[Pair], normal: NormalForce, friction: Friction | None = None, rolling: bool = True, tolerance: float = 0.001, engine: str = 'auto', threads: int = 1) -> None: ...
 
     @property
-    def state_size(self) -> int:
-        """Doubles of law state"""
+    def row_size(self) -> int:
+        """Numbers kept for each contact site; 0 when the laws keep nothing"""
 
-    def evaluate(self, *, X_WA: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, X_WB: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, V_WA: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')] | None = None, V_WB: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')] | None = None, state: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')] | None = None, elapsed: float = 0.0) -> ContactReport:
+    def evaluate(self, *, X_WA: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, X_WB: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, V_WA: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')] | None = None, V_WB: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')] | None = None, state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C')] | None = None, elapsed: float = 0.0) -> ContactReport:
         """
         Wrenches on both bodies from their poses and twists.
 
@@ -989,11 +1076,12 @@ class ContactModel:
             X_WA, X_WB: poses of the bodies in the world, shape (4, 4); identity when left out
             V_WA, V_WB: twists, angular [rad/s] then linear [m/s] of the frame origin, world frame,
                 shape (6,); zero when left out
-            state: law states at the last accepted time, shape (state_size,); zeros when left out
+            state: `state` of the report of the last accepted time, shape (sites, row_size); left out, all
+                sites are new
             elapsed [s]: time since then
 
         Returns:
-            ContactReport: wrenches, sites, energy, dissipated power and the new law states
+            ContactReport: wrenches, sites, energy, dissipated power and the new state
 
         Raises:
             ValueError: a pose, twist or state is not what it should be

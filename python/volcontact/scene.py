@@ -191,6 +191,13 @@ class Contact:
         """How many evaluations had a force that was no finite number; such forces are left out."""
         return int(self._raw_energy(data).dropped)
 
+    def forgotten(self, data: mujoco.MjData) -> int:
+        """How many evaluations had more contact sites than userdata keeps.
+
+        The friction of the sites beyond that began anew, as at a first touch.
+        """
+        return int(self._raw_energy(data).forgotten)
+
     def release(self, data: mujoco.MjData) -> None:
         """Takes the contact forces out of `data.qfrc_applied` (or `xfrc_applied`).
 

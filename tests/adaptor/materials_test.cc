@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "adaptor/support/models.h"
 #include "volcontact/force/hunt_crossley.h"
 
@@ -117,6 +119,49 @@ TEST(Materials, CouplingReachesTheLaw) {
             "none");
   EXPECT_EQ(combine({"a", 1.0, nullptr}, {"b", 1.0, nullptr}, nullptr).choices.at("coupling"),
             "ellipsoid");
+}
+
+// Restitutions combine as the dampings A / v_i they stand for: (kB AA + kA AB) / (kA + kB). The
+// numbers A of e = 0.9 and 0.5 are those of docs/theory.md, "Restitution"; with kB = 3 kA the mean
+// is (3 * 0.16648 + 1.43275) / 4 = 0.48305, whose e solves ln((1+A)/(1-eA)) = A (1+e).
+TEST(Materials, RestitutionsCombineAsDampings) {
+  const KeyedValues a{"volcontact/material/a", {{"stiffness", {1e6}}, {"restitution", {0.9}}}, {}};
+  const KeyedValues b{"volcontact/material/b", {{"stiffness", {3e6}}, {"restitution", {0.5}}}, {}};
+  const double e = value(combine({"a", 1.0, &a}, {"b", 1.0, &b}, nullptr), "restitution");
+  const double A = 0.48305;
+  EXPECT_NEAR(std::log((1.0 + A) / (1.0 - e * A)), A * (1.0 + e), 2e-6);
+  // Two equal ones stay.
+  EXPECT_NEAR(value(combine({"a", 1.0, &a}, {"b", 1.0, &a}, nullptr), "restitution"), 0.9, 1e-12);
+}
+
+TEST(Materials, RestitutionOfOneSideHoldsForThePairInPlaceOfDamping) {
+  const KeyedValues a{"volcontact/material/a", {{"restitution", {0.7}}}, {}};
+  const PairLaws laws = combine({"a", 1.0, &a}, {"b", 1.0, nullptr}, nullptr);
+  EXPECT_NEAR(value(laws, "restitution"), 0.7, 1e-12);
+  EXPECT_EQ(value(laws, "damping"), 0.0);
+  // A pair may go back to damping.
+  const KeyedValues pair{"volcontact/pair/p", {{"damping", {0.3}}}, {}};
+  const PairLaws damped = combine({"a", 1.0, &a}, {"b", 1.0, nullptr}, &pair);
+  EXPECT_EQ(value(damped, "restitution"), 1.0);
+  EXPECT_EQ(value(damped, "damping"), 0.3);
+}
+
+TEST(Materials, DampingAgainstRestitutionNeedsThePairToChoose) {
+  const KeyedValues a{"volcontact/material/a", {{"restitution", {0.7}}}, {}};
+  EXPECT_TRUE(testing::contains(
+      testing::message_of([&] { combine({"peg", 1.0, &a}, {"hole", 1.0, &kSoft}, nullptr); }),
+      "geoms 'peg' and 'hole': one of their materials gives damping and one restitution"));
+}
+
+TEST(Materials, StaticFrictionIsNeverBelowTheKineticOne) {
+  KeyedValues sticky{
+      "volcontact/material/sticky", {{"friction", {0.3}}}, {{"friction_law", "bristle"}}};
+  const Side other{"b", 0.2, nullptr};
+  EXPECT_EQ(value(combine({"a", 1.0, &sticky}, other, nullptr), "static_friction"), 0.3);
+  sticky.values["static_friction"] = {0.45};
+  EXPECT_EQ(value(combine({"a", 1.0, &sticky}, other, nullptr), "static_friction"), 0.45);
+  const KeyedValues rough{"volcontact/pair/rough", {{"friction", {0.8}}}, {}};
+  EXPECT_EQ(value(combine({"a", 1.0, &sticky}, other, &rough), "static_friction"), 0.8);
 }
 
 }  // namespace

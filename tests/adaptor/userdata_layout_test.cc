@@ -44,7 +44,7 @@ TEST(UserdataLayout, BlockStaysInsideItsSize) {
   block.claim();
   for (int i = 0; i < 10; ++i) {
     open_slot(block, 0.1 * i, 0.1);
-    block.slot(0).set_energy({1.0, {1, 1, 1, 1}, {1, 1, 1, 1}});
+    block.slot(0).set_energy({1.0, {1, 1, 1, 1}, {1, 1, 1, 1}, {1, 1, 1, 1}, 1.0, 1.0});
     block.slot(0).states()[0] = 1.0;
     std::fill_n(block.base(), 3, 2.0);
     std::fill_n(block.left(), 3, 3.0);
@@ -52,6 +52,27 @@ TEST(UserdataLayout, BlockStaysInsideItsSize) {
   for (int i = 0; i < 5; ++i) EXPECT_EQ(numbers[static_cast<std::size_t>(i)], 7.0);
   EXPECT_EQ(block.count(), UserdataLayout::kSlots);
   EXPECT_TRUE(block.is_ours());
+}
+
+TEST(UserdataLayout, SlotGivesBackWhatItWasGiven) {
+  std::vector<double> numbers(static_cast<std::size_t>(Integrator::kLayout.size()), 0.0);
+  const UserdataBlock block(numbers.data() + numbers.size(), Integrator::kLayout);
+  block.claim();
+  open_slot(block, 0.1, 0.1);
+  const Slot slot = block.slot(0);
+  EXPECT_EQ(slot.stage(), Stage::kWhole);
+  slot.set_stage(Stage::kSecondMiddle);
+  slot.set_energy({1.0, {2, 3, 4, 5}, {6, 7, 8, 9}, {10, 11, 12, 13}, 14.0, 15.0});
+  slot.states()[0] = 16.0;
+  const EnergyAccount e = slot.energy();
+  EXPECT_EQ(slot.stage(), Stage::kSecondMiddle);
+  EXPECT_EQ(slot.time(), 0.1);
+  EXPECT_EQ(e.elastic, 1.0);
+  EXPECT_EQ(e.dissipated.spin, 5.0);
+  EXPECT_EQ(e.power.normal, 6.0);
+  EXPECT_EQ(e.taken.slide, 12.0);
+  EXPECT_EQ(e.slide_energy, 14.0);
+  EXPECT_EQ(e.spin_energy, 15.0);
 }
 
 TEST(UserdataLayout, ConstantRateIsIntegratedExactly) {
@@ -137,15 +158,6 @@ TEST(UserdataLayout, OtherNumberOfStatesKeepsTheLedger) {
   EXPECT_TRUE(after.ledger_is_valid());
   EXPECT_EQ(after.base()[2], 5.0);
   EXPECT_EQ(after.left()[2], 6.0);
-}
-
-TEST(EnergyAccount, PowerIsIntegratedByTheTrapezoidalRule) {
-  // Power 3 t from 1 s to 1.2 s: (1.44 - 1) 3/2, exact for a linear power.
-  const EnergyAccount before{0.5, {1.0, 0, 0, 0}, {3.0, 0, 0, 0}};
-  const EnergyAccount after = continued(before, 0.7, {3.6, 0, 0, 0}, 0.2);
-  EXPECT_DOUBLE_EQ(after.dissipated.normal, 1.66);
-  EXPECT_EQ(after.elastic, 0.7);
-  EXPECT_EQ(after.power.normal, 3.6);
 }
 
 }  // namespace

@@ -42,8 +42,8 @@ def test_sliding_friction_opposes_the_slip() -> None:
 
 
 def test_wrong_state_size_is_named() -> None:
-    with pytest.raises(ValueError, match="state has 3 numbers, the model needs 0"):
-        sphere_on_plane().evaluate(state=np.zeros(3))
+    with pytest.raises(ValueError, match="rows of state have 3 numbers, those of the model have 0"):
+        sphere_on_plane().evaluate(state=np.zeros((1, 3)))
 
 
 def test_forced_engine_must_serve() -> None:

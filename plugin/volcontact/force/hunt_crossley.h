@@ -6,37 +6,68 @@
 
 #include "volcontact/base/fields.h"
 #include "volcontact/force/normal_force.h"
+#include "volcontact/force/restitution.h"
 
 namespace volcontact {
 
-/// Volumetric spring with Hunt-Crossley damping: f = k V (1 + a v), never negative.
-/// docs/theory.md, "Normal force"; Gonthier et al. Throws std::invalid_argument on values out of
-/// range.
+/// Volumetric spring with Hunt-Crossley damping: f = k V (1 + a v), never negative. The damping is
+/// a constant, or such that an impact has the coefficient of restitution asked for: then a follows
+/// from the speed at first touch, which is kept until the site ends. docs/theory.md, "Normal force"
+/// and "Restitution"; Gonthier et al. Throws std::invalid_argument on values out of range and where
+/// both are given.
 class HuntCrossley final : public NormalForce {
  public:
   static constexpr const char* kName = "hunt_crossley";
   struct Params {
     double stiffness = 1e7;
     double damping = 0.0;
+    double restitution = 1.0;
+    double restitution_speed_floor = 1e-2;
   };
+  static constexpr Range kRestitution{0.0, 1.0, true, false, "> 0 and <= 1"};
   static constexpr std::array kFields{
       Field<Params>{"stiffness", "N/m^3", &Params::stiffness, kPositive,
                     "k_v, force per interference volume"},
       Field<Params>{"damping", "s/m", &Params::damping, kNonNegative,
-                    "a, relative rise of the force per approach speed"}};
+                    "a, relative rise of the force per approach speed"},
+      Field<Params>{"restitution", "-", &Params::restitution, kRestitution,
+                    "e, in place of damping: a from the speed at first touch"},
+      Field<Params>{"restitution_speed_floor", "m/s", &Params::restitution_speed_floor, kPositive,
+                    "slower impacts are damped as if they had this speed"}};
+  static constexpr std::array kStates{
+      StateField{"impact_speed", "m/s", Keeping::kValue, "v_n at first touch, 0 before"}};
 
-  explicit HuntCrossley(const Params& params) : p_(validated<HuntCrossley>(params)) {}
+  explicit HuntCrossley(const Params& params)
+      : p_(validated<HuntCrossley>(params)), damping_number_(damping_number_of(p_.restitution)) {
+    require(p_.damping == 0.0 || p_.restitution == 1.0,
+            "hunt_crossley: damping and restitution exclude each other");
+  }
   const Params& params() const { return p_; }
   const char* name() const noexcept override { return kName; }
+  std::span<const StateField> states() const noexcept override {
+    return latches() ? std::span<const StateField>(kStates) : std::span<const StateField>();
+  }
 
-  NormalOutput evaluate(const NormalInput& in, const LawState&) const noexcept override {
+  NormalOutput evaluate(const NormalInput& in, const LawState& state) const noexcept override {
+    const double damping = latches() ? latched_damping(in, state) : p_.damping;
     const double elastic = p_.stiffness * in.volume;
-    const double force = elastic * std::max(0.0, 1.0 + p_.damping * in.approach_speed);
-    return {force, elastic, p_.stiffness * in.depth_moment, p_.stiffness * p_.damping};
+    const double force = elastic * std::max(0.0, 1.0 + damping * in.approach_speed);
+    return {force, elastic, p_.stiffness * in.depth_moment, p_.stiffness * damping};
   }
 
  private:
+  bool latches() const { return damping_number_ > 0.0; }
+
+  double latched_damping(const NormalInput& in, const LawState& state) const {
+    const double known = state.committed[0];
+    const double speed =
+        known > 0.0 ? known : std::max(in.approach_speed, p_.restitution_speed_floor);
+    state.pending[0] = speed;
+    return damping_number_ / speed;
+  }
+
   Params p_;
+  double damping_number_;  // a v_i that gives the restitution
 };
 
 }  // namespace volcontact

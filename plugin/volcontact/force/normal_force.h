@@ -25,9 +25,11 @@ class NormalForce {
  public:
   virtual ~NormalForce() = default;
   virtual const char* name() const noexcept = 0;
-  /// Doubles of state per contact site.
-  virtual int state_size() const noexcept { return 0; }
+  /// What the law keeps for each contact site; a law that keeps nothing needs no override.
+  virtual std::span<const StateField> states() const noexcept { return {}; }
   virtual NormalOutput evaluate(const NormalInput& in, const LawState& state) const noexcept = 0;
+
+  int state_size() const noexcept { return size_of(states()); }
 };
 
 }  // namespace volcontact

@@ -25,10 +25,7 @@ class RegularizedCoulomb final : public Friction {
       Field<Params>{"slip_speed", "m/s", &Params::slip_speed, kPositive,
                     "speed from which friction has its full strength"}};
   static constexpr std::array kChoices{
-      Choice<Params, Coupling, 2>{"coupling",
-                                  &Params::coupling,
-                                  {"ellipsoid", "none"},
-                                  "how sliding and spinning share the friction"}};
+      Choice<Params, Coupling, 3>{"coupling", &Params::coupling, kCouplingWords, kCouplingMeaning}};
 
   explicit RegularizedCoulomb(const Params& params) : p_(validated<RegularizedCoulomb>(params)) {}
   const Params& params() const { return p_; }
@@ -36,7 +33,7 @@ class RegularizedCoulomb final : public Friction {
 
   FrictionOutput evaluate(const FrictionInput& in, const LawState&) const noexcept override {
     const GeneralizedSlip slip =
-        generalized_slip(p_.coupling, in.slip, in.spin, in.gyration_radius);
+        generalized_slip(p_.coupling, in.slip, in.spin, in.normal, in.patch);
     const double strength = p_.friction * in.normal_force * rounded(slip.speed / p_.slip_speed);
     FrictionOutput out;
     out.force = strength * slip.force_direction;

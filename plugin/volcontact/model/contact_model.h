@@ -7,17 +7,10 @@
 #include "volcontact/force/friction.h"
 #include "volcontact/force/normal_force.h"
 #include "volcontact/model/contact_report.h"
+#include "volcontact/model/site_memory.h"
 #include "volcontact/pair/geometric_pair.h"
 
 namespace volcontact {
-
-/// How bodies stand and move: poses and twists of the two body frames in the world.
-struct BodyMotion {
-  Pose X_WA;
-  Pose X_WB;
-  Twist V_WA;
-  Twist V_WB;
-};
 
 /// The laws of a contact and how it is integrated.
 struct ContactLaws {
@@ -26,19 +19,22 @@ struct ContactLaws {
   bool rolling = true;                       ///< rolling resistance, where the normal law damps
 };
 
-/// Forces of one contact site from its metrics (world frame) and the motion of the bodies.
-/// docs/theory.md, "From metrics to wrench".
+/// Forces of one contact site from its metrics (world frame), the motion of the bodies, and what
+/// was carried over. `state` has the numbers of both laws. docs/theory.md, "From metrics to
+/// wrench".
 SiteReport evaluate_site(const VolumeMetrics& metrics_W, const BodyMotion& motion,
-                         const ContactLaws& laws, const LawState& state) noexcept;
+                         const ContactLaws& laws, const CarriedSite& carried,
+                         const LawState& state) noexcept;
 
 /// The contact model container of the CSA paper: geometric pairs x normal law x friction law.
-/// Const once made; state is owned by the caller, an array of state_size() doubles.
+/// Const once made; what lasts from one evaluation to the next is in rows that the caller keeps.
 class ContactModel {
  public:
   /// Scratch memory; one per thread, reused from call to call.
   struct Workspace {
     InterferenceWorkspace engines;
     Interference interference;
+    SiteCarrier carrier;
   };
 
   /// Throws std::invalid_argument without pairs or normal law, or when a forced engine does not
@@ -50,19 +46,23 @@ class ContactModel {
   const ContactLaws& laws() const { return laws_; }
   const InterferenceOptions& options() const { return options_; }
 
-  /// Doubles of state: for every pair, its site's normal law first, then its friction law.
-  int state_size() const { return static_cast<int>(pairs_.size()) * site_state_size_; }
+  /// Numbers kept for each contact site; 0 when the laws keep nothing.
+  int row_size() const { return row_size_; }
 
-  /// Evaluates all pairs. `state` is as in LawState, with arrays of state_size(); a pair that is
-  /// apart has its pending state zeroed. Throws nothing, allocates nothing when warm.
-  void evaluate(const BodyMotion& motion, const LawState& state, Workspace& workspace,
+  /// Evaluates all pairs. `memory` has the rows that an earlier evaluation left in its report; none
+  /// for bodies that were apart. Throws nothing, allocates nothing when warm.
+  void evaluate(const BodyMotion& motion, const SiteMemory& memory, Workspace& workspace,
                 ContactReport& report) const noexcept;
 
  private:
+  double* new_row(int pair, const VolumeMetrics& metrics_W, const BodyMotion& motion,
+                  ContactReport& report) const;
+
   std::vector<GeometricPair> pairs_;
   ContactLaws laws_;
   InterferenceOptions options_;
-  int site_state_size_;
+  std::vector<StateField> states_;  // of the normal law, then of the friction law
+  int row_size_;
 };
 
 }  // namespace volcontact

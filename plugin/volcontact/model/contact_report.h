@@ -36,17 +36,23 @@ struct SiteReport {
   double approach_speed = 0.0;      ///< > 0 while approaching [m/s]
   Vec3 slip = Vec3::Zero();         ///< tangential velocity of A against B at the centroid [m/s]
   double spin = 0.0;                ///< of A against B about the normal [rad/s]
-  double elastic_energy = 0.0;      ///< [J]
+  double elastic_energy = 0.0;      ///< of the volume and of the bristles [J]
+  ByChannel bristle_energy;         ///< the part of it that sliding and spinning stored [J]
   ByChannel power;                  ///< dissipated [W]
+  ByChannel taken;  ///< power taken from the motion: dissipated, or put in bristles [W]
 };
 
 /// What an evaluation of a contact model returns.
 struct ContactReport {
   std::vector<SiteReport> sites;  ///< empty when apart
+  std::vector<double> memory;     ///< a row a site, for the next evaluation; none where the laws
+                                  ///< keep nothing
   Wrench wrench_on_A;             ///< world frame, about A's origin
   Wrench wrench_on_B;             ///< world frame, about B's origin
   double elastic_energy = 0.0;    ///< [J]
+  ByChannel bristle_energy;       ///< [J]
   ByChannel power;                ///< dissipated [W]
+  ByChannel taken;                ///< [W]
 
   bool touching() const { return !sites.empty(); }
 };

@@ -75,6 +75,61 @@ TEST(HuntCrossley, RealisesTheLambertRestitution) {
   }
 }
 
+// The same impact with the restitution asked for, its speed latched at the first touch.
+double realised(double restitution, double impact_speed) {
+  const double area = 1e-4, mass = 1.0, dt = 1e-6;
+  const HuntCrossley law({.stiffness = 1e9, .restitution = restitution});
+  double latched = 0.0, h = 0.0, v = impact_speed;
+  const auto acceleration = [&](double depth, double speed) {
+    double pending = -1.0;
+    const double volume = area * std::max(0.0, depth);
+    const NormalOutput out =
+        law.evaluate({.volume = volume, .approach_speed = speed}, {&latched, &pending, dt});
+    if (volume > 0.0) latched = pending;
+    return -out.magnitude / mass;
+  };
+  do {  // midpoint rule
+    const double vm = v + 0.5 * dt * acceleration(h, v), hm = h + 0.5 * dt * v;
+    v += dt * acceleration(hm, vm);
+    h += dt * vm;
+  } while (h > 0.0);
+  return -v / impact_speed;
+}
+
+TEST(HuntCrossley, RealisesTheRestitutionAskedForAtEverySpeed) {
+  for (const double speed : {0.1, 1.0, 3.0}) {
+    for (const double e : {0.9, 0.8, 0.5, 0.2}) EXPECT_NEAR(realised(e, speed), e, 1e-4);
+  }
+}
+
+TEST(HuntCrossley, ImpactsBelowTheFloorAreDampedAsAtTheFloor) {
+  const HuntCrossley law({.stiffness = 1e7, .restitution = 0.5, .restitution_speed_floor = 0.02});
+  double none = 0.0, latched = 0.0;
+  const NormalOutput out =
+      law.evaluate({.volume = 1e-6, .approach_speed = -0.3}, {&none, &latched, 0.0});
+  EXPECT_EQ(latched, 0.02);
+  EXPECT_NEAR(out.rolling_damping, 1e7 * 1.43275 / 0.02, 1e7 * 1e-5 / 0.02);  // table of the theory
+}
+
+TEST(HuntCrossley, KeepsTheSpeedOfTheFirstTouch) {
+  const HuntCrossley law({.restitution = 0.5});
+  double none = 0.0, first = 0.0, later = 0.0;
+  law.evaluate({.volume = 1e-9, .approach_speed = 0.7}, {&none, &first, 1e-3});
+  law.evaluate({.volume = 1e-6, .approach_speed = 0.1}, {&first, &later, 1e-3});
+  EXPECT_EQ(first, 0.7);
+  EXPECT_EQ(later, 0.7);
+}
+
+TEST(HuntCrossley, KeepsNothingUnderConstantDamping) {
+  EXPECT_EQ(HuntCrossley({.damping = 0.5}).state_size(), 0);
+  EXPECT_EQ(HuntCrossley({.restitution = 0.5}).state_size(), 1);
+}
+
+TEST(HuntCrossley, RefusesDampingBesideRestitution) {
+  EXPECT_THROW(HuntCrossley({.damping = 0.1, .restitution = 0.9}), std::invalid_argument);
+  EXPECT_THROW(HuntCrossley({.restitution = 0.0}), std::invalid_argument);
+}
+
 TEST(HuntCrossley, RejectsNegativeStiffnessByName) {
   try {
     HuntCrossley({.stiffness = -1.0});

@@ -13,7 +13,7 @@ FrictionInput patch(const Vec3& slip, double spin, double gyration_radius = 0.02
           .normal = Vec3::UnitZ(),
           .slip = slip,
           .spin = spin,
-          .gyration_radius = gyration_radius};
+          .patch = {.gyration_radius = gyration_radius}};
 }
 
 TEST(RegularizedCoulomb, IsCoulombBeyondTheSlipSpeed) {

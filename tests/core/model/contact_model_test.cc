@@ -130,8 +130,9 @@ TEST(ContactModel, RollingSphereFeelsTheSecondMomentOfItsCap) {
 // The law of a user with one state per site: an odometer of the elapsed time in contact.
 class ContactClock final : public NormalForce {
  public:
+  static constexpr std::array kStates{StateField{"age", "s", Keeping::kValue, "time in contact"}};
   const char* name() const noexcept override { return "contact_clock"; }
-  int state_size() const noexcept override { return 1; }
+  std::span<const StateField> states() const noexcept override { return kStates; }
   NormalOutput evaluate(const NormalInput& in, const LawState& state) const noexcept override {
     state.pending[0] = state.committed[0] + state.elapsed;
     const double force = in.volume * (1.0 + state.committed[0]);
@@ -139,21 +140,31 @@ class ContactClock final : public NormalForce {
   }
 };
 
-TEST(ContactModel, CarriesStateInTheCallersArrayAndClearsItApart) {
+TEST(ContactModel, CarriesTheStateOfASiteAndForgetsItApart) {
   const ContactModel model({{Sphere({.radius = 1.0}), HalfSpace(), {}, {}}},
                            {std::make_shared<ContactClock>(), nullptr, true});
-  ASSERT_EQ(model.state_size(), 1);
+  ASSERT_EQ(model.row_size(), kSiteHead + 1);
   ContactModel::Workspace workspace;
   ContactReport report;
-  double committed = 2.0, pending = -1.0;
-  model.evaluate({}, {&committed, &pending, 0.5}, workspace, report);
-  EXPECT_DOUBLE_EQ(pending, 2.5);
-  EXPECT_DOUBLE_EQ(report.wrench_on_A.force.z(), 3.0 * report.sites[0].metrics.volume);
+  std::vector<double> rows;
+  for (const double expected : {0.5, 1.0, 1.5}) {
+    const int count = rows.empty() ? 0 : 1;
+    model.evaluate({}, {rows.data(), count, model.row_size(), 0.5}, workspace, report);
+    rows = report.memory;
+    ASSERT_EQ(rows.size(), static_cast<std::size_t>(model.row_size()));
+    EXPECT_DOUBLE_EQ(rows.back(), expected);
+    EXPECT_DOUBLE_EQ(report.wrench_on_A.force.z(),
+                     (expected + 0.5) * report.sites[0].metrics.volume);
+  }
   BodyMotion apart;
   apart.X_WA.translation.z() = 5.0;
-  model.evaluate(apart, {&committed, &pending, 0.5}, workspace, report);
-  EXPECT_EQ(pending, 0.0);
+  model.evaluate(apart, {rows.data(), 1, model.row_size(), 0.5}, workspace, report);
+  EXPECT_TRUE(report.memory.empty());
   EXPECT_FALSE(report.touching());
+}
+
+TEST(ContactModel, LawsWithoutStatesKeepNothing) {
+  EXPECT_EQ(sphere_on_plane(1e7, 0.1).row_size(), 0);
 }
 
 // Sphere dropped obliquely with spin: kinetic + potential + elastic + dissipated stays put.

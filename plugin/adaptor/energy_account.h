@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+
+#include "adaptor/userdata_layout.h"
+
+// How dissipated energy is summed over a simulation: docs/theory.md, "Energy".
+
+namespace volcontact::adaptor {
+
+/// The account at the evaluation `now` (whose `dissipated` is not looked at), when the power
+/// `mean_taken` acted for `elapsed` seconds since `before`. What bristles stored meanwhile is not
+/// dissipated; what they gave back, or lost with their site, is.
+inline EnergyAccount accounted(const EnergyAccount& before, const ByChannel& mean_taken,
+                               double elapsed, EnergyAccount now) {
+  now.dissipated = before.dissipated;
+  now.dissipated.normal += elapsed * mean_taken.normal;
+  now.dissipated.roll += elapsed * mean_taken.roll;
+  now.dissipated.slide += elapsed * mean_taken.slide - (now.slide_energy - before.slide_energy);
+  now.dissipated.spin += elapsed * mean_taken.spin - (now.spin_energy - before.spin_energy);
+  return now;
+}
+
+/// (1 - weight) a + weight b
+inline ByChannel between(const ByChannel& a, const ByChannel& b, double weight) {
+  const auto mix = [weight](double x, double y) { return (1.0 - weight) * x + weight * y; };
+  return {mix(a.normal, b.normal), mix(a.roll, b.roll), mix(a.slide, b.slide), mix(a.spin, b.spin)};
+}
+
+/// Opens the slot of an evaluation and says how the account goes on from its predecessors.
+class AccountKeeper {
+ public:
+  AccountKeeper(const UserdataBlock& block, double time, double step, bool runge_kutta)
+      : block_(block) {
+    // Runge-Kutta evaluates the middle of a step twice, with errors that cancel in the mean.
+    const bool again = runge_kutta && block.count() > 0 && block.slot(0).time() == time &&
+                       block.slot(0).stage() == Stage::kMiddle;
+    if (again) first_middle_ = block.slot(0).energy().taken;
+    elapsed_ = open_slot(block, time, step);
+    const bool half = runge_kutta && continues() && std::abs(2.0 * elapsed_ / step - 1.0) < 1e-6;
+    if (!half) return;
+    if (block.slot(1).stage() == Stage::kWhole) {
+      block.slot(0).set_stage(again ? Stage::kSecondMiddle : Stage::kMiddle);
+    } else {
+      completes_ = block.count() > 2;
+    }
+  }
+
+  bool continues() const { return block_.count() > 1; }
+  double elapsed() const { return elapsed_; }
+
+  /// Writes the account of this evaluation: a whole Runge-Kutta step by its own rule, which is
+  /// Simpson's, all else by the trapezoidal rule.
+  void write(EnergyAccount now) const {
+    const Slot slot = block_.slot(0);
+    if (slot.stage() == Stage::kSecondMiddle) now.taken = between(first_middle_, now.taken, 0.5);
+    if (!continues()) {
+      now.dissipated = {};
+    } else if (completes_) {
+      const EnergyAccount start = block_.slot(2).energy(), middle = block_.slot(1).energy();
+      const ByChannel ends = between(start.taken, now.taken, 0.5);
+      now = accounted(start, between(ends, middle.taken, 2.0 / 3.0), 2.0 * elapsed_, now);
+    } else {
+      const EnergyAccount before = block_.slot(1).energy();
+      now = accounted(before, between(before.taken, now.taken, 0.5), elapsed_, now);
+    }
+    slot.set_energy(now);
+  }
+
+ private:
+  UserdataBlock block_;
+  double elapsed_ = 0.0;
+  bool completes_ = false;  // this evaluation ends a Runge-Kutta step
+  ByChannel first_middle_;
+};
+
+}  // namespace volcontact::adaptor
