@@ -58,5 +58,5 @@ def test_layers_convert_material_data() -> None:
 
 
 def test_bristle_refuses_static_below_kinetic_friction() -> None:
-    with pytest.raises(ValueError, match="static_friction = 0.1"):
+    with pytest.raises(ValueError, match=r"static_friction = 0\.1"):
         vc.Bristle(friction=0.2, static_friction=0.1)
