@@ -148,6 +148,16 @@ def test_performance_plots_are_made_of_the_results() -> None:
         )
 
 
+def test_assembly_page_and_its_plots_are_generated_from_the_results() -> None:
+    module = generator("make_assembly")
+    command = "run './run python docs/make_assembly.py'"
+    assert module.PAGE.read_text(encoding="utf-8") == module.render(), command
+    assert {path.stem for path in module.PLOTS.glob("*.svg")} == set(module.PLOT)
+    for name in module.PLOT:
+        plot = (module.PLOTS / f"{name}.svg").read_text(encoding="utf-8")
+        assert f"<dc:source>{module.digest()}</dc:source>" in plot, command
+
+
 def test_results_hold_no_path_and_no_name_of_a_machine() -> None:
     results = sorted((ROOT / "tests" / "benchmarks" / "results").glob("*.csv"))
     assert results
