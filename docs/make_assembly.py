@@ -153,10 +153,10 @@ def _jamming() -> str:
 ## Does the peg jam where it should?
 
 A peg that touches its hole at two points slides on under the forces F_x and F_z and the moment M,
-or it jams: the jamming diagram [Whitney1982]. Each point is a run with the exact solids, friction 0.4,
-6 mm deep: a circle for a peg that slides, a cross for one that is held. The line is the boundary of
-the diagram, M/(r F_z) = lambda + mu (1 + lambda) F_x/F_z. The nearest points are 0.02 lambda beyond
-it and 0.1 lambda on this side. Of {len(rows)} points {right} are on the right side.
+or it jams: the jamming diagram [Whitney1982]. Each point is a run with the exact solids, friction
+0.4, 6 mm deep: a circle for a peg that slides, a cross for one that is held. The line is the
+boundary of the diagram, M/(r F_z) = lambda + mu (1 + lambda) F_x/F_z. The nearest points are 0.02
+lambda beyond it and 0.1 lambda on this side. Of {len(rows)} points {right} are on the right side.
 
 ![Jamming diagram with the pegs that slide and those that jam](assembly/jamming.svg)
 
