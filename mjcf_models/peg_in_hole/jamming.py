@@ -76,24 +76,34 @@ def tilt(width: float) -> float:
     return math.asin(width / math.hypot(2 * RADIUS, DEPTH)) - math.atan2(2 * RADIUS, DEPTH)
 
 
-def place(data: mujoco.MjData, width: float) -> None:
-    """Puts the peg where it touches a hole of that width [m] at two points."""
+def place(data: mujoco.MjData, width: float, azimuth: float) -> None:
+    """Puts the peg where it touches a hole of that width [m] at two points.
+
+    It leans towards +x, turned by `azimuth` [rad] about the axis of the hole, itself included.
+    """
     angle = tilt(width)
     end = np.array([RADIUS * math.cos(angle) - width / 2, 0.0, UPPER_FACE - DEPTH])
     axis = np.array([math.sin(angle), 0.0, math.cos(angle)])
-    data.qpos[:3] = end + [0.0, 0.0, RADIUS * math.sin(angle)] + LENGTH / 2 * axis
-    data.qpos[3:7] = [math.cos(angle / 2), 0.0, math.sin(angle / 2), 0.0]
+    middle = end + [0.0, 0.0, RADIUS * math.sin(angle)] + LENGTH / 2 * axis
+    about_hole = np.array([math.cos(azimuth / 2), 0.0, 0.0, math.sin(azimuth / 2)])
+    leaning = np.array([math.cos(angle / 2), 0.0, math.sin(angle / 2), 0.0])
+    mujoco.mju_rotVecQuat(data.qpos[:3], middle, about_hole)
+    mujoco.mju_mulQuat(data.qpos[3:7], about_hole, leaning)
 
 
 def place_loaded(
-    model: mujoco.MjModel, data: mujoco.MjData, contact: vc.Contact, clearance: float
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    contact: vc.Contact,
+    clearance: float,
+    azimuth: float = 0.0,
 ) -> None:
     """Puts the peg so deep into the walls that the friction there can carry the load."""
     touching = 2 * RADIUS + clearance
     low, high = 0.0, 0.2 * clearance
     for _ in range(30):
         sink = 0.5 * (low + high)
-        place(data, touching + sink)
+        place(data, touching + sink, azimuth)
         mujoco.mj_forward(model, data)
         enough = FRICTION * contact.sites(data)["normal_force"].sum() > LOAD
         low, high = (low, sink) if enough else (sink, high)
@@ -114,7 +124,9 @@ def end_of(data: mujoco.MjData) -> np.ndarray:
     return peg.xpos - LENGTH / 2 * peg.xmat.reshape(3, 3)[:, 2]
 
 
-def press(scene: Path, clearance: float, across: float, moment: float) -> Pressed:
+def press(
+    scene: Path, clearance: float, across: float, moment: float, *, azimuth: float = 0.0
+) -> Pressed:
     """Presses the peg of a scene, free of gravity.
 
     Args:
@@ -122,14 +134,16 @@ def press(scene: Path, clearance: float, across: float, moment: float) -> Presse
         clearance: diameter of the hole less that of the peg [m].
         across: F_x / F_z [-].
         moment: M / (r F_z) [-].
+        azimuth: of x in all of this, about the axis of the hole [rad].
     """
     model = loaded_model(scene)
     data = mujoco.MjData(model)
     body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, "peg")
-    force = LOAD * np.array([across, 0.0, -1.0])
-    couple = LOAD * RADIUS * moment * np.array([0.0, 1.0, 0.0])
+    c, s = math.cos(azimuth), math.sin(azimuth)
+    force = LOAD * np.array([across * c, across * s, -1.0])
+    couple = LOAD * RADIUS * moment * np.array([-s, c, 0.0])
     with vc.attach(model) as contact:
-        place_loaded(model, data, contact, clearance)
+        place_loaded(model, data, contact, clearance, azimuth)
         start = end_of(data)
         for _ in range(round(DURATION / TIMESTEP)):
             arm = end_of(data) - data.xpos[body]
