@@ -183,13 +183,13 @@ def statics(scene: Path, clearance: float, across: float) -> float:
     return float(moment) / RADIUS
 
 
-def bisect(scene: Path, clearance: float, across: float) -> float:
-    """M / (r F_z) from which on the peg jams, to 0.4 % of lambda."""
+def bisect(scene: Path, clearance: float, across: float, *, azimuth: float = 0.0) -> float:
+    """M / (r F_z) from which on the peg jams, to 0.2 % of lambda; the rest as in `press`."""
     low, high = 0.8, 1.2  # in lambdas, about the boundary
     for _ in range(7):
         share = 0.5 * (low + high)
         moment = boundary(across) + (share - 1.0) * slenderness()
-        jammed = press(scene, clearance, across, moment).jammed
+        jammed = press(scene, clearance, across, moment, azimuth=azimuth).jammed
         low, high = (low, share) if jammed else (share, high)
     return boundary(across) + (0.5 * (low + high) - 1.0) * slenderness()
 

@@ -35,6 +35,7 @@ HOLES = {"8.2": ("scene", 0.2e-3, 10e-6), "8.02": ("scene_tight", 0.02e-3, 3e-6)
 DEPTH = 0.006  # of the peg in the hole [m]
 PLATE_HEIGHT = 0.0245  # of its middle [m]
 SPINS = np.arange(8) * 0.11 + 0.05  # of the peg about its axis [rad]
+ANY_DIRECTION = 0.37  # in which no corners of peg and hole meet [rad]
 Row = dict[str, Any]
 
 
@@ -197,6 +198,21 @@ def jamming_rows() -> Iterator[Row]:
                 }
 
 
+def boundary_rows() -> Iterator[Row]:
+    """Where pegs begin to jam with F_x = 0, exact and as meshes, beside the diagram."""
+    diagram = jamming.boundary(0.0)
+    for name, (scene, clearance, _) in HOLES.items():
+        found = jamming.bisect(PEG / f"{scene}.xml", clearance, 0.0)
+        yield {"hole": name, "chords": 0, "triangles": 0, "off": found / diagram - 1.0}
+        for chords, rings in ((64, 1), (128, 1), (256, 1), (160, 60)):
+            with tempfile.TemporaryDirectory(prefix="volcontact-") as folder:
+                copy = with_meshes(Path(folder) / "peg", chords, rings) / f"{scene}_mesh.xml"
+                found = jamming.bisect(copy, clearance, 0.0, azimuth=ANY_DIRECTION)
+            triangles = len(pegs.peg(chords, rings)[1])
+            off = found / diagram - 1.0
+            yield {"hole": name, "chords": chords, "triangles": triangles, "off": off}
+
+
 # ---- Gears ---------------------------------------------------------------------------------------
 
 
@@ -238,7 +254,7 @@ def pressed_time(scene: Path, clearance: float) -> float:
     model = jamming.loaded_model(scene)
     data = mujoco.MjData(model)
     with vc.attach(model) as contact:
-        jamming.place_loaded(model, data, contact, clearance, azimuth=0.37)
+        jamming.place_loaded(model, data, contact, clearance, ANY_DIRECTION)
         start = data.qpos.copy()
         times = []
         for _ in range(5):
@@ -273,7 +289,13 @@ def write(path: Path, rows: Iterable[Row]) -> None:
             writer.writerow({k: f"{v:.4g}" if isinstance(v, float) else v for k, v in row.items()})
 
 
-TABLES = {"peg": peg_rows, "jamming": jamming_rows, "gears": gear_rows, "steps": step_rows}
+TABLES = {
+    "peg": peg_rows,
+    "jamming": jamming_rows,
+    "boundary": boundary_rows,
+    "gears": gear_rows,
+    "steps": step_rows,
+}
 
 
 def main() -> None:
