@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import volcontact as vc
+from volcontact._mujoco_views import dense
 
 MODELS = Path(__file__).parents[2] / "mjcf_models"
 
@@ -36,6 +37,8 @@ class Run:
     model: mujoco.MjModel
     data: mujoco.MjData
     sites: np.ndarray
+    start: np.ndarray  # positions of the bodies [m]
+    unaccounted: float  # change of kinetic + potential + elastic + dissipated energy, relative
     peak_sites: int = 0
     warnings: list[str] = field(default_factory=list)
 
@@ -44,7 +47,11 @@ def run(scene: Path, duration: float, timestep: float) -> Run:
     model = vc.load(str(scene))
     model.opt.timestep = timestep
     data = mujoco.MjData(model)
+    if model.nkey:
+        mujoco.mj_resetDataKeyframe(model, data, 0)
     with vc.attach(model) as contact:
+        mujoco.mj_forward(model, data)
+        start, first = data.xpos.copy(), energies(data, contact)
         peak = 0
         for step in range(round(duration / timestep)):
             mujoco.mj_step(model, data)
@@ -52,11 +59,21 @@ def run(scene: Path, duration: float, timestep: float) -> Run:
                 peak = max(peak, len(contact.sites(data)))
         assert data.time == pytest.approx(duration)
         mujoco.mj_forward(model, data)
-        result = Run(model, data, contact.sites(data).copy(), peak)
+        last = energies(data, contact)
+        turned_over = first[1] + last[1] + abs(last[0] - first[0])
+        unaccounted = abs(sum(last) - sum(first)) / turned_over if turned_over > 0.0 else 0.0
+        result = Run(model, data, contact.sites(data).copy(), start, unaccounted, peak)
     for kind in range(len(data.warning)):
         if data.warning[kind].number:
             result.warnings.append(str(mujoco.mjtWarning(kind)))
     return result
+
+
+def energies(data: mujoco.MjData, contact: vc.Contact) -> tuple[float, float]:
+    """Potential energy, and the sum of all others [J]; zeros where the scene asks for none."""
+    potential, kinetic = dense(data.energy)
+    of_contacts = contact.energy(data)
+    return float(potential), float(kinetic) + of_contacts.elastic + of_contacts.dissipated
 
 
 def tilt_degrees(quaternion: np.ndarray, design: list[float]) -> float:
@@ -80,9 +97,23 @@ def test_scene_meets_its_numbers(scene: Path, expected: dict[str, Any], timestep
         assert depth == pytest.approx(expected["depth"], rel=expected["depth_relative_tolerance"])
     if "layer_heights" in expected:
         check_layers(result, expected)
+    if "displacement" in expected:
+        moved = result.data.body(expected["body"]).xpos - result.start[body_id(result, expected)]
+        distance = np.linalg.norm(moved - np.array(expected["displacement"]))
+        assert distance < expected["displacement_tolerance"]
+    if "tilt_degrees" in expected:
+        low, high = expected["tilt_degrees"]
+        upright = result.data.xmat[body_id(result, expected)][8]
+        assert low <= math.degrees(math.acos(np.clip(upright, -1.0, 1.0))) <= high
+    if "energy_tolerance" in expected:
+        assert result.unaccounted < expected["energy_tolerance"]
     for joint, speed in expected.get("joint_speeds", {}).items():
         found = result.data.joint(joint).qvel[0]
         assert found == pytest.approx(speed, rel=expected["joint_speed_relative_tolerance"])
+
+
+def body_id(result: Run, expected: dict[str, Any]) -> int:
+    return mujoco.mj_name2id(result.model, mujoco.mjtObj.mjOBJ_BODY, expected["body"])
 
 
 def check_design_pose(result: Run, expected: dict[str, Any]) -> None:

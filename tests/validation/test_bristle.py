@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bristle friction under ramps and vibration: breakaway, growth of stiction, drift."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import mujoco
+import numpy as np
+from case import GRAVITY, Case, Curve, Figure, Plot, Run, load, simulate
+
+MASS, KINETIC, STATIC, DWELL = 1.0, 0.3, 0.4, 0.5
+# A flat plate of 1 kg, its centre of mass in the plane of contact: a block on a line.
+SCENE = f"""
+<mujoco>
+  <option timestep="1e-4" gravity="0 0 -{GRAVITY}"/>
+  <worldbody>
+    <geom name="floor" type="plane" size="5 1 0.1" friction="{KINETIC} 0.005 0.0001"/>
+    <body pos="0 0 {0.01 - GRAVITY / (1e7 * 0.04)!r}"><freejoint/>
+      <inertial pos="0 0 -0.01" mass="{MASS}" diaginertia="0.01 0.01 0.01"/>
+      <geom name="plate" type="box" size="0.1 0.1 0.01" friction="{KINETIC} 0.005 0.0001"/>
+    </body>
+  </worldbody>
+  <custom>
+    <numeric name="volcontact/pair/plate/stiffness" data="1e7"/>
+    <numeric name="volcontact/pair/plate/damping" data="20"/>
+    <numeric name="volcontact/pair/plate/friction_law/bristle" data="1"/>
+    <numeric name="volcontact/pair/plate/friction" data="{KINETIC}"/>
+    <numeric name="volcontact/pair/plate/static_friction" data="{STATIC}"/>
+    <numeric name="volcontact/pair/plate/bristle_stiffness" data="1e5"/>
+    <numeric name="volcontact/pair/plate/bristle_damping" data="{2.0 * math.sqrt(1e5)!r}"/>
+    <numeric name="volcontact/pair/plate/stribeck_speed" data="1e-3"/>
+    <numeric name="volcontact/pair/plate/dwell_time" data="{DWELL}"/>
+    <tuple name="volcontact/pair/plate">
+      <element objtype="geom" objname="plate"/><element objtype="geom" objname="floor"/>
+    </tuple>
+  </custom>
+</mujoco>"""
+
+
+def pull(
+    load_at: Callable[[float], float], duration: float, *, native: bool = False, **numbers: float
+) -> Run:
+    """The plate under a force load_at(t) [N]; rows of place, speed and load."""
+    model = load(SCENE, **{f"pair__plate__{name}": value for name, value in numbers.items()})
+
+    def drive(_: mujoco.MjModel, data: mujoco.MjData) -> None:
+        data.qfrc_applied[0] = load_at(data.time)
+
+    # Every sample is one assignment of the load: it stays what the user assigned.
+    return simulate(
+        model,
+        duration,
+        lambda _, d: (d.qpos[0], d.qvel[0], load_at(d.time)),
+        every=1,
+        drive=drive,
+        native=native,
+    )
+
+
+def breakaway(rest: float, rate: float) -> float:
+    """Largest friction over weight under a ramp of the load after a rest [-].
+
+    Args:
+        rest: [s].
+        rate: of the load, weights per second.
+    """
+    run = pull(
+        lambda t: MASS * GRAVITY * rate * max(0.0, t - rest),
+        rest + 0.5 / rate,
+        stribeck_speed=1e-2 if rate > 1.0 else 1e-3,
+    )
+    acceleration = np.gradient(run.rows[:, 2], run.rows[:, 0])
+    return float((run.rows[:, 3] - MASS * acceleration).max() / (MASS * GRAVITY))
+
+
+def drift(speed: float, *, native: bool = False) -> float:
+    """Mean speed under 2 +- 1 N at 10 Hz, over whole periods [m/s]."""
+
+    def vibrate(t: float) -> float:
+        return min(1.0, t) * (2.0 + math.sin(2.0 * math.pi * 10.0 * t))
+
+    rows = pull(vibrate, 4.0, native=native, stribeck_speed=speed).rows
+    ends = np.interp((2.0, 4.0), rows[:, 0], rows[:, 1])
+    return float(ends[1] - ends[0]) / 2.0
+
+
+def measure() -> Case:
+    """Breakaway after long and short rests, and drift."""
+    case = Case(
+        "Bristles",
+        "A plate of 1 kg on bristles (1e5 N/m, critically damped, mu_C = 0.3, mu_S = 0.4, tau_dw "
+        "= 0.5 s). A slow ramp breaks it away at mu_S; after a short rest t a quick ramp does so "
+        "at mu_C + (mu_S - mu_C)(1 - exp(-t/tau_dw)). Under vibration it drifts as the equations "
+        "of the law do, integrated separately.",
+    )
+    case.figures.append(
+        Figure("slow ramp: friction over weight", "-", STATIC, 5e-3, breakaway(0.0, 0.02))
+    )
+    for rest in (0.1, 0.3, 1.0):
+        grown = KINETIC + (STATIC - KINETIC) * (1.0 - math.exp(-rest / DWELL))
+        name = f"quick ramp after {rest:g} s of rest"
+        case.figures.append(Figure(name, "-", grown, 2e-2, breakaway(rest, 20.0)))
+    case.figures += [
+        Figure("drift, v_s = 1 mm/s", "m/s", 6.758e-5, 2e-2, drift(1e-3), drift(1e-3, native=True)),
+        Figure("drift, v_s = 10 mm/s", "m/s", 5.31e-6, 2e-2, drift(1e-2)),
+    ]
+    ramp = pull(lambda t: 0.2 * MASS * GRAVITY * t, 2.2)
+    native = pull(lambda t: 0.2 * MASS * GRAVITY * t, 2.2, native=True)
+    case.plots.append(
+        Plot(
+            "ramp",
+            "load over weight [-]",
+            "way [mm]",
+            tuple(
+                Curve(
+                    label,
+                    run.rows[run.rows[:, 1] < 1e-3, 3] / GRAVITY,
+                    1e3 * run.rows[run.rows[:, 1] < 1e-3, 1],
+                    style,
+                )
+                for label, run, style in (("volumetric", ramp, "-"), ("native", native, "--"))
+            ),
+        )
+    )
+    return case
+
+
+def test_bristle() -> None:
+    measure().check()

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A box on a slope: it sticks up to mu_S without creep, slides at mu_C; a ball rolls or slips."""
+
+from __future__ import annotations
+
+import math
+
+import mujoco
+import numpy as np
+from case import GRAVITY, Bounds, Case, Curve, Figure, Plot, Run, depth_of_ball, load, simulate
+
+KINETIC, STATIC = 0.3, 0.4
+
+
+def lean(tangent: float, *, ramp: float, duration: float, native: bool = False) -> Run:
+    """The scene's box on a slope that leans to `tangent` in `ramp` seconds; rows of x and v."""
+    model = load("incline/scene.xml")
+
+    def drive(m: mujoco.MjModel, data: mujoco.MjData) -> None:
+        m.opt.gravity[0] = GRAVITY * tangent * min(1.0, data.time / ramp)
+
+    model.opt.gravity[0] = 0.0
+    return simulate(
+        model,
+        duration,
+        lambda _, d: (d.qpos[0], d.qvel[0]),
+        every=10,
+        drive=drive,
+        native=native,
+    )
+
+
+def creep(run: Run, since: float) -> float:
+    """How far the box moves from then on [m]."""
+    late = run.rows[run.rows[:, 0] >= since, 1]
+    return float(np.abs(late - late[0]).max())
+
+
+def slide(*, native: bool = False) -> Run:
+    """The box let go on a slope of 30 degrees, where it slides from the start."""
+    # Stiff bristles: they give by a quarter of a micrometre before friction is whole.
+    model = load(
+        "incline/scene.xml",
+        pair__box__static_friction=KINETIC,
+        pair__box__bristle_stiffness=1e7,
+        pair__box__bristle_damping=1e3,
+    )
+    angle = math.radians(30.0)
+    model.opt.gravity[:] = GRAVITY * np.array([math.sin(angle), 0.0, -math.cos(angle)])
+    model.opt.timestep = 2e-5
+    return simulate(model, 1.0, lambda _, d: (d.qpos[0], d.qvel[0]), every=50, native=native)
+
+
+BALL = """
+<mujoco>
+  <option timestep="1e-4" integrator="RK4"/>
+  <worldbody>
+    <geom name="floor" type="plane" size="5 1 0.1" friction="0.3 0 0"/>
+    <body pos="0 0 {height!r}"><freejoint/>
+      <geom name="ball" size="0.05" mass="1" friction="0.3 0 0"/></body>
+  </worldbody>
+  <custom>
+    <numeric name="volcontact/pair/ball/stiffness" data="1e12"/>
+    <numeric name="volcontact/pair/ball/damping" data="0"/>
+    <numeric name="volcontact/pair/ball/friction_law/bristle" data="1"/>
+    <numeric name="volcontact/pair/ball/friction" data="0.3"/>
+    <numeric name="volcontact/pair/ball/bristle_stiffness" data="1e6"/>
+    <numeric name="volcontact/pair/ball/bristle_damping" data="500"/>
+    <tuple name="volcontact/pair/ball">
+      <element objtype="geom" objname="ball"/><element objtype="geom" objname="floor"/>
+    </tuple>
+  </custom>
+</mujoco>"""
+
+
+def slip_of_ball(degrees: float) -> float:
+    """Rate of slip of a ball over its acceleration, in the second quarter of a second [-]."""
+    angle = math.radians(degrees)
+    depth = depth_of_ball(GRAVITY * math.cos(angle), 0.05, 1e12)
+    model = load(BALL.format(height=0.05 - depth))
+    model.opt.gravity[:] = GRAVITY * np.array([math.sin(angle), 0.0, -math.cos(angle)])
+    run = simulate(model, 0.5, lambda _, d: (d.qvel[0], d.qvel[4]), every=100)
+    gained = run.rows[-1] - run.rows[len(run.rows) // 2]
+    return float(1.0 - 0.05 * gained[2] / gained[1])
+
+
+def measure() -> Case:
+    """Creep, the angles at which sliding and slipping begin, and the slide itself."""
+    case = Case(
+        "Slope",
+        "A box on a slope. Below the tangent mu_S it stands with no creep at all, above it "
+        "slides; once it slides mu_C counts. A ball rolls up to the tangent 7/2 mu.",
+    )
+    held = lean(0.9 * KINETIC, ramp=2.0, duration=70.0)
+    native = lean(0.9 * KINETIC, ramp=2.0, duration=70.0, native=True)
+    case.figures.append(
+        Figure(
+            "creep in 60 s at 0.9 of the cone", "m", 0.0, 1e-15, creep(held, 10), creep(native, 10)
+        )
+    )
+    edge = lean(0.999 * STATIC, ramp=20.0, duration=90.0)
+    case.figures.append(
+        Figure("creep in 60 s at tan = 0.999 mu_S", "m", 0.0, 1e-15, creep(edge, 30))
+    )
+    over = lean(1.001 * STATIC, ramp=20.0, duration=25.0)
+    ramp = lean(1.1 * STATIC, ramp=22.0, duration=22.0)
+    begins = STATIC * 1.1 / 22.0 * ramp.rows[int(np.argmax(ramp.rows[:, 2] > 1e-4)), 0]
+    case.figures += [
+        Bounds("speed at tan = 1.001 mu_S, 5 s later", "m/s", 1.0, 10.0, over.rows[-1, 2]),
+        Figure("tangent at which it begins to slide", "-", STATIC, 3e-3, begins),
+    ]
+    run, other = slide(), slide(native=True)
+    metre = [float(np.interp(1.0, r.rows[:, 1], r.rows[:, 0])) for r in (run, other)]
+    last = [float(np.polyfit(r.rows[50:, 0], r.rows[50:, 2], 1)[0]) for r in (run, other)]
+    case.figures += [
+        Figure("acceleration at 30 degrees", "m/s^2", 2.35629, 1e-3, *last),
+        Figure("time for 1 m", "s", 0.92130, 1e-3, *metre),
+        Figure(
+            "slip of a ball over its acceleration, 46.3 degrees", "-", 0.0, 1e-3, slip_of_ball(46.3)
+        ),
+        # a = g (sin - mu cos), r w' = 5/2 mu g cos: slip over speed = 1 - 5/2 mu cos/(sin - mu cos)
+        Figure("the same, 50 degrees", "-", slip_ratio(50.0), 1e-3, slip_of_ball(50.0)),
+    ]
+    curves = [Curve("volumetric", held.rows[:, 0], held.rows[:, 1] * 1e3)]
+    curves.append(Curve("native", native.rows[:, 0], native.rows[:, 1] * 1e3, "--"))
+    case.plots.append(Plot("creep", "time [s]", "way at 0.9 of the cone [mm]", tuple(curves)))
+    return case
+
+
+def slip_ratio(degrees: float) -> float:
+    """Closed form of `slip_of_ball` beyond 46.397 degrees."""
+    angle = math.radians(degrees)
+    spun = 2.5 * KINETIC * math.cos(angle)
+    return 1.0 - spun / (math.sin(angle) - KINETIC * math.cos(angle))
+
+
+def test_incline() -> None:
+    measure().check()
