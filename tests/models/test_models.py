@@ -47,8 +47,9 @@ def run(scene: Path, duration: float, timestep: float) -> Run:
     model = vc.load(str(scene))
     model.opt.timestep = timestep
     data = mujoco.MjData(model)
-    if model.nkey:
-        mujoco.mj_resetDataKeyframe(model, data, 0)
+    start_key = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_KEY, "start")
+    if start_key >= 0:
+        mujoco.mj_resetDataKeyframe(model, data, start_key)
     with vc.attach(model) as contact:
         mujoco.mj_forward(model, data)
         start, first = data.xpos.copy(), energies(data, contact)

@@ -155,10 +155,11 @@ def load(scene: str, **numbers: float) -> mujoco.MjModel:
 
 
 def start(model: mujoco.MjModel) -> mujoco.MjData:
-    """Data at the scene's first keyframe, where it has one."""
+    """Data at the scene's keyframe `start`, where it has one."""
     data = mujoco.MjData(model)
-    if model.nkey:
-        mujoco.mj_resetDataKeyframe(model, data, 0)
+    key = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_KEY, "start")
+    if key >= 0:
+        mujoco.mj_resetDataKeyframe(model, data, key)
     return data
 
 
