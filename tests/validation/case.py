@@ -86,12 +86,13 @@ class Curve:
 
 @dataclass(frozen=True)
 class Plot:
-    """A plot of the page."""
+    """A plot of the page; `marks` are named places on the x axis."""
 
     name: str
     x_label: str
     y_label: str
     curves: tuple[Curve, ...]
+    marks: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass

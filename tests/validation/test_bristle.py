@@ -86,22 +86,29 @@ def drift(speed: float, *, native: bool = False) -> float:
     return float(ends[1] - ends[0]) / 2.0
 
 
+def stiction(rest: float) -> float:
+    """Static friction after a rest [-]."""
+    return KINETIC + (STATIC - KINETIC) * (1.0 - math.exp(-rest / DWELL))
+
+
 def measure() -> Case:
     """Breakaway after long and short rests, and drift."""
     case = Case(
         "Bristles",
         "A plate of 1 kg on bristles (1e5 N/m, critically damped, mu_C = 0.3, mu_S = 0.4, tau_dw "
         "= 0.5 s). A slow ramp breaks it away at mu_S; after a short rest t a quick ramp does so "
-        "at mu_C + (mu_S - mu_C)(1 - exp(-t/tau_dw)). Under vibration it drifts as the equations "
-        "of the law do, integrated separately.",
+        "at mu_C + (mu_S - mu_C)(1 - exp(-t/tau_dw)), t with the ramp itself. Under vibration it "
+        "drifts as the equations of the law do, integrated separately.",
     )
     case.figures.append(
         Figure("slow ramp: friction over weight", "-", STATIC, 5e-3, breakaway(0.0, 0.02))
     )
     for rest in (0.1, 0.3, 1.0):
-        grown = KINETIC + (STATIC - KINETIC) * (1.0 - math.exp(-rest / DWELL))
+        grown = KINETIC
+        for _ in range(5):  # it grows on while the ramp rises
+            grown = stiction(rest + grown / 20.0)
         name = f"quick ramp after {rest:g} s of rest"
-        case.figures.append(Figure(name, "-", grown, 2e-2, breakaway(rest, 20.0)))
+        case.figures.append(Figure(name, "-", grown, 1e-2, breakaway(rest, 20.0)))
     case.figures += [
         Figure("drift, v_s = 1 mm/s", "m/s", 6.758e-5, 2e-2, drift(1e-3), drift(1e-3, native=True)),
         Figure("drift, v_s = 10 mm/s", "m/s", 5.31e-6, 2e-2, drift(1e-2)),
