@@ -110,7 +110,8 @@ def _tippe_top_table(module: ModuleType) -> str:
     paper = (0.15, 1.7, 4.0)
     rows = [
         "### Stiffness and friction against the paper's events\n",
-        "The paper has 0.15 s, 1.7 s and about 4 s. The runs have friction integrated over the patch.\n",
+        "The paper has 0.15 s, 1.7 s and about 4 s. The runs have friction integrated over the "
+        "patch.\n",
         "| k_v [N/m^3] | mu | upright [s] | stem touches [s] | beyond 150 degrees [s] | falls [s] |",
         "| --- " * 6 + "|",
     ]

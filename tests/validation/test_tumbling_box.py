@@ -22,8 +22,8 @@ def measure() -> Case:
         "Tumbling box",
         "A box falls on its corners for 3 s without friction or damping. The force k_v V at the "
         "centroid of the volume is conservative against a plane, so what is lost or gained is the "
-        "error of the integrator, here of Runge-Kutta's fourth order. On MuJoCo 2.2.2 that method is "
-        "of second order for a body that turns, with any force.",
+        "error of the integrator, here of Runge-Kutta's fourth order. On MuJoCo 2.2.2 that method "
+        "is of second order for a body that turns, with any force.",
     )
     errors, curves = [], []
     for step in (2e-4, 1e-4, 5e-5):
