@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "adaptor/scene_contact.h"
+#include "adaptor/support/count_allocations.h"
 #include "adaptor/support/models.h"
 
 namespace volcontact::adaptor {
@@ -93,6 +95,55 @@ TEST_P(SceneStates, RepeatedForwardChangesNothing) {
 
 INSTANTIATE_TEST_SUITE_P(Integrators, SceneStates, ::testing::Values("Euler", "RK4", "implicit"),
                          [](const auto& name) { return std::string(name.param); });
+
+// How the callback is watched: what it allocates, once warm.
+long allocations_inside = 0;
+void watched_callback(const mjModel* m, mjData* d) {
+  const long before = testing::AllocationCounter::total();
+  {
+    const testing::AllocationCounter counter;
+    volcontact_passive(m, d);
+  }
+  allocations_inside += testing::AllocationCounter::total() - before;
+}
+
+TEST(SceneStates, WarmStepAllocatesNothing) {
+  const auto m = testing::load(stack("RK4"));
+  const auto d = testing::make_data(m);
+  const testing::Attached attached(m);
+  run(m, d, 200);
+  mjcb_passive = watched_callback;
+  allocations_inside = 0;
+  run(m, d, 200);
+  mjcb_passive = volcontact_passive;
+  EXPECT_EQ(allocations_inside, 0);
+}
+
+// Twenty spheres in a row as one solid on a floor: more contact sites than a pair has rows.
+TEST(SceneStates, SitesBeyondTheRowsAreCounted) {
+  std::ostringstream geoms, parts;
+  for (int i = 0; i < 20; ++i) {
+    geoms << "<geom name='s" << i << "' size='.02' pos='" << 0.1 * i << " 0 0'/>";
+    parts << "<element objtype='geom' objname='s" << i << "' prm='1'/>";
+  }
+  std::ostringstream scene;
+  scene << "<mujoco><worldbody><geom name='floor' type='box' size='5 5 1' pos='0 0 -1'/>"
+        << "<body pos='0 0 .0199'><freejoint/>" << geoms.str() << "</body></worldbody><custom>"
+        << "<numeric name='volcontact/option/tolerance' data='1e-2'/>"
+        << "<numeric name='volcontact/pair/p/friction_law/bristle' data='1'/>"
+        << "<tuple name='volcontact/pair/p'><element objtype='geom' objname='s0'/>"
+        << "<element objtype='geom' objname='floor'/></tuple>"
+        << "<tuple name='volcontact/solid/row'>" << parts.str() << "</tuple></custom></mujoco>";
+  const auto m = testing::load(scene.str());
+  const auto d = testing::make_data(m);
+  const testing::Attached attached(m);
+  mj_forward(m.get(), d.get());
+  ASSERT_EQ(volcontact_sites(m.get(), d.get(), nullptr, 0), 20);
+  volcontact_energy energy;
+  ASSERT_EQ(volcontact_get_energy(m.get(), d.get(), &energy), 0);
+  EXPECT_EQ(energy.forgotten, 1.0);
+  EXPECT_EQ(energy.dropped, 0.0);
+}
 
 TEST(SceneStates, ASceneWithoutMemoryKeepsNoRows) {
   const auto m = testing::compile(

@@ -118,6 +118,63 @@ TEST(Bristle, SlidesWithKineticAndViscousFriction) {
   EXPECT_NEAR(out.slide_energy, 0.5 * 15.0 * 15.0 / 1e5, 1e-12);
 }
 
+// Steady slip at v: the deflection settles where (1 - s)(mu_C f - sigma_0 z) / sigma_1 = -s v, and
+// the limit is mu_C + (mu_S - mu_C) s, s = exp(-v^2 / v_s^2): the Stribeck curve.
+TEST(Bristle, SteadySlipFollowsTheStribeckCurve) {
+  const Bristle::Params params = reference(1e-2);
+  const Bristle law(params);
+  const double f = 9.81;
+  for (const double v : {0.3e-2, 0.6e-2, 1e-2, 1.5e-2, 2.5e-2, 6e-2}) {
+    std::array<double, 5> committed{}, pending{};
+    FrictionOutput out;
+    for (int i = 0; i < 20000; ++i) {
+      out = law.evaluate({.normal_force = f,
+                          .slip = {v, 0.0, 0.0},
+                          .travel = {v * 1e-3, 0.0, 0.0},
+                          .patch = {.gyration_radius = 0.02}},
+                         {committed.data(), pending.data(), 1e-3});
+      committed = pending;
+    }
+    const double s = std::exp(-v * v / 1e-4);
+    const double free = 0.3 * f + params.bristle_damping * s * v / (1.0 - s);
+    const double most = (0.3 + 0.1 * s) * f;
+    EXPECT_NEAR(-out.force.x(), std::min(free, most), 1e-9 * f) << v;
+  }
+}
+
+// A uniform disc resists spin with its mean radius 2/3 R, sticking as well as sliding.
+TEST(Bristle, IntegratedPatchLimitsTheSpinTorqueByItsMeanRadius) {
+  Bristle::Params params = reference(1e-2);
+  params.coupling = Coupling::kQuadrature;
+  params.static_friction = params.friction;
+  const Bristle law(params);
+  const double R = 0.05, volume = 1e-7, f = 50.0;
+  FrictionInput in{.normal_force = f,
+                   .patch = {.gyration_radius = R / std::sqrt(2.0),
+                             .volume = volume,
+                             .area = kPi * R * R,
+                             .second_moment = volume * R * R / 4.0 *
+                                              Vec3(1.0, 1.0, 0.0).asDiagonal().toDenseMatrix()}};
+  const double torque = 0.3 * f * 2.0 / 3.0 * R;
+  std::array<double, 5> committed{}, pending{};
+  FrictionOutput out;
+  in.turn = 1e-6;  // turned slowly far beyond the limit: the spin speed is next to nothing
+  in.spin = 1e-6;
+  for (int i = 0; i < 50000; ++i) {
+    out = law.evaluate(in, {committed.data(), pending.data(), 1.0});
+    committed = pending;
+    ASSERT_LE(std::abs(out.torque), torque * (1.0 + 1e-9));
+  }
+  EXPECT_NEAR(out.torque, -torque, 1e-9 * torque);
+  in.spin = 40.0;
+  in.turn = 0.04;
+  for (int i = 0; i < 1000; ++i) {
+    out = law.evaluate(in, {committed.data(), pending.data(), 1e-3});
+    committed = pending;
+  }
+  EXPECT_NEAR(out.torque, -torque, 1e-9 * torque);
+}
+
 TEST(Bristle, SlidingAndSpinningShareTheEllipsoid) {
   const Bristle law(reference());
   std::array<double, 5> committed{}, pending{};
