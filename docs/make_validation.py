@@ -28,9 +28,11 @@ sys.path.insert(0, str(CASES))
 from case import Bounds, Case, Figure, Plot  # noqa: E402 (the path comes first)
 
 ORDER = (
+    "static_and_impact",
     "restitution",
     "bouncing_ball",
     "flat_patch",
+    "closed_loop",
     "tumbling_box",
     "rolling",
     "slide_to_roll",

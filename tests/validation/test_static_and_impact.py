@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Balls, cylinders and boxes at rest, in small vibration, and in head-on impacts."""
+
+from __future__ import annotations
+
+import math
+
+import mujoco
+from case import GRAVITY, Case, Figure, crossings, load, simulate
+
+SCENE = """
+<mujoco>
+  <option timestep="{step!r}" integrator="RK4" gravity="0 0 {gravity!r}"/>
+  <worldbody>
+    <geom name="floor" type="plane" size="1 1 0.1"/>
+    <body pos="0 0 {height!r}"><freejoint/>
+      <geom name="body" type="{shape}" size="{size}" mass="1"/></body>
+  </worldbody>
+  <custom>
+    <numeric name="volcontact/pair/body/stiffness" data="{stiffness!r}"/>
+    <numeric name="volcontact/pair/body/damping" data="{damping!r}"/>
+    <tuple name="volcontact/pair/body">
+      <element objtype="geom" objname="body"/><element objtype="geom" objname="floor"/>
+    </tuple>
+  </custom>
+</mujoco>"""
+SHAPES = {"sphere": "0.05", "cylinder": "0.05 0.05", "box": "0.05 0.05 0.05"}
+
+
+def depth_at_rest(shape: str, stiffness: float) -> float:
+    """How deep a body of 1 kg sinks [m]."""
+    scene = SCENE.format(
+        step=2e-4,
+        gravity=-GRAVITY,
+        height=0.05,
+        shape=shape,
+        size=SHAPES[shape],
+        stiffness=stiffness,
+        damping=20.0,
+    )
+    run = simulate(load(scene), 1.5, lambda _, d: (d.qpos[2],), every=100)
+    return 0.05 - float(run.rows[-1, 1])
+
+
+def bounce_frequency(case: Case) -> float:
+    """Of a ball that sinks by 0.79 mm, in a vibration of a micrometre [Hz]."""
+    depth = 0.7923638796e-3
+    scene = SCENE.format(
+        step=1e-4,
+        gravity=-GRAVITY,
+        height=0.05 - depth + 1e-6,
+        shape="sphere",
+        size=SHAPES["sphere"],
+        stiffness=1e8,
+        damping=0.0,
+    )
+    run = simulate(load(scene), 1.0, lambda _, d: (d.qpos[2] - 0.05 + depth,))
+    case.closures.append(run.closure)
+    zeros = crossings(run.rows[:, 0], run.rows[:, 1])
+    return 0.5 * (len(zeros) - 1) / float(zeros[-1] - zeros[0])
+
+
+def impact_constant(shape: str, case: Case) -> float:
+    """Time in contact times speed over greatest depth, without gravity or damping [-]."""
+    step, speed = 1e-6, 0.2
+    scene = SCENE.format(
+        step=step,
+        gravity=0.0,
+        height=0.05 + 1e-9,
+        shape=shape,
+        size=SHAPES[shape],
+        stiffness=1e9,
+        damping=0.0,
+    )
+
+    def throw(_: mujoco.MjModel, data: mujoco.MjData) -> None:
+        data.qvel[2] = -speed
+
+    run = simulate(load(scene), 0.02, lambda _, d: (d.qpos[2] - 0.05,), every=10, setup=throw)
+    case.closures.append(run.closure)
+    touch, leave = crossings(run.rows[:, 0], run.rows[:, 1])[:2]
+    return float(leave - touch) * speed / -float(run.rows[:, 1].min())
+
+
+def measure() -> Case:
+    """Depths, frequency, impact times."""
+    case = Case(
+        "Rest and impact",
+        "A body of 1 kg sinks until k_v V is its weight. With k_v = E/R, the layer as thick as "
+        "the radius, a ball has F = pi E x^2 and a cylinder on its face pi E R x, the table of "
+        "Drake's documentation (E = 1e7 Pa). An impact lasts c h/v, h the greatest depth: c = pi "
+        "for a flat face, whose force is linear, and 2.80436 for the force of a shallow cap, "
+        "quadratic in depth.",
+    )
+    soft = 1e7 / 0.05  # E/R
+    case.figures += [
+        Figure("ball, k_v = 1e8 N/m^3", "m", 0.7923638796e-3, 1e-6, depth_at_rest("sphere", 1e8)),
+        Figure("the same: bounce frequency", "Hz", 25.011, 1e-4, bounce_frequency(case)),
+        Figure("ball, E = 1e7 Pa", "m", 0.559e-3, 3e-3, depth_at_rest("sphere", soft)),
+        Figure("cylinder, E = 1e7 Pa", "m", 6.2e-6, 1e-2, depth_at_rest("cylinder", soft)),
+        Figure("impact of a flat face: c", "-", math.pi, 1e-4, impact_constant("box", case)),
+        Figure("impact of a ball: c", "-", 2.80436, 2e-3, impact_constant("sphere", case)),
+    ]
+    return case
+
+
+def test_static_and_impact() -> None:
+    measure().check()
