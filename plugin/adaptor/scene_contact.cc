@@ -71,7 +71,7 @@ std::vector<GeomPair> pairs_of(const mjModel* m, const SceneKeys& keys) {
 // Rows for the contact sites: as many as a crowded scene has, not as many as there could be, since
 // every copy of mjData takes them along.
 int rows_for(const std::vector<GeomPair>& pairs) {
-  constexpr std::size_t kPerPair = 16, kPerGeom = 12, kBase = 48;
+  constexpr std::size_t kPerPair = 16, kPerGeom = 6, kBase = 32;
   std::set<int> geoms;
   for (const GeomPair& pair : pairs) geoms.insert({pair.a, pair.b});
   return static_cast<int>(std::min(kPerPair * pairs.size(), kBase + kPerGeom * geoms.size()));

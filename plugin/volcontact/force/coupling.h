@@ -28,7 +28,7 @@ struct GeneralizedSlip {
 
 /// Coulomb friction of unit strength integrated over the patch: an ellipse with the second moments
 /// of the volume, whose pressure is a mixture of the uniform one and the paraboloid that has the
-/// patch's area. Exact for a disc under uniform pressure and for the cap of a ball on a plane.
+/// patch's area. Exact for a disc under uniform pressure and for the shallow cap of a ball.
 GeneralizedSlip integrated_slip(const Vec3& slip, double spin, const Vec3& normal,
                                 const Patch& patch) noexcept;
 
