@@ -11,7 +11,7 @@ enum class Engine : int {
   kClosedForm = 1,  ///< formulas: half-space with every round shape, sphere-sphere
   kClip = 2,        ///< exact clipping of half-space, box and convex polytope
   kLines = 3,       ///< quadrature of exact columns: convex solids of plane and round faces
-  kColumns = 5,     ///< signed columns over pairs of triangles: meshes with one another
+  kColumns = 5,     ///< signed columns from the triangles of meshes
   kOctree = 4,      ///< recursive cells with certified bounds; serves every pair
 };
 

@@ -14,6 +14,7 @@
 #include "volcontact/pair/composed_lines.h"
 #include "volcontact/pair/octree.h"
 #include "volcontact/pair/ring_lines.h"
+#include "volcontact/pair/round_columns.h"
 
 namespace volcontact {
 
@@ -23,6 +24,7 @@ struct InterferenceWorkspace::Scratch {
   ComposedScratch composed;
   RingScratch ring;
   ColumnsScratch columns;
+  RoundColumnsScratch round_columns;
   OctreeScratch octree;
 };
 
@@ -54,8 +56,9 @@ constexpr bool has_composed_lines =
 template <typename S>
 constexpr bool is_mesh = std::is_same_v<S, Mesh>;
 template <typename A, typename B>
-constexpr bool has_columns = (is_mesh<A> && (HasTriangles<B> || std::is_same_v<B, HalfSpace>)) ||
-                             (is_mesh<B> && HasTriangles<A>);
+constexpr bool has_columns =
+    (is_mesh<A> && (HasTriangles<B> || std::is_same_v<B, HalfSpace> || HasRoundFaces<B>)) ||
+    (is_mesh<B> && HasTriangles<A>);
 template <typename A, typename B>
 constexpr bool both_unbounded = std::is_same_v<A, HalfSpace> && std::is_same_v<B, HalfSpace>;
 
@@ -152,19 +155,25 @@ bool lines(const A& a, const B& b, const Pose& X_AB, const InterferenceOptions& 
   return is_finite(out.total);
 }
 
+// False when the pose is beyond the engine.
 template <typename A, typename B>
-void columns(const A& a, const B& b, const Pose& X_AB, const InterferenceOptions& options,
-             ColumnsScratch& scratch, Interference& out) {
+bool columns(const A& a, const B& b, const Pose& X_AB, const InterferenceOptions& options,
+             InterferenceWorkspace::Scratch& scratch, Interference& out) {
   if constexpr (has_columns<A, B>) {
-    const SurfaceView surface_a = surface_of(a, scratch.box[0]);
+    const SurfaceView surface_a = surface_of(a, scratch.columns.box[0]);
     if constexpr (HasTriangles<B>) {
-      columns_interference(surface_a, surface_of(b, scratch.box[1]), X_AB, options, scratch, out);
+      columns_interference(surface_a, surface_of(b, scratch.columns.box[1]), X_AB, options,
+                           scratch.columns, out);
+    } else if constexpr (HasRoundFaces<B>) {
+      return round_columns(surface_a, ConvexView(b), X_AB, options, scratch.round_columns, out);
     } else {
-      columns_interference(surface_a, b, X_AB, options, scratch, out);
+      columns_interference(surface_a, b, X_AB, options, scratch.columns, out);
     }
+    return true;
   } else {
-    columns(b, a, X_AB.inverse(), options, scratch, out);
+    if (!columns(b, a, X_AB.inverse(), options, scratch, out)) return false;
     mirror_sites(X_AB, out);
+    return true;
   }
 }
 
@@ -225,9 +234,11 @@ void interference(const Shape& a, const Shape& b, const Pose& X_AB,
     }
     if constexpr (serves_pair<A, B>(Engine::kColumns)) {
       if (out.engine == Engine::kColumns) {
-        columns(solid_a, solid_b, X_AB, options, workspace.scratch().columns, out);
-        if (is_finite(out.total)) return;
-        return set_status(Status::kInvalid, out);
+        if (columns(solid_a, solid_b, X_AB, options, workspace.scratch(), out)) {
+          if (is_finite(out.total)) return;
+          return set_status(Status::kInvalid, out);
+        }
+        out.engine = Engine::kOctree;
       }
     }
     octree_interference(a, b, X_AB, options, workspace.scratch().octree, out);

@@ -19,8 +19,8 @@ struct InterferenceOptions {
   double tolerance = 1e-3;        ///< relative error asked of V [-]
   Engine engine = Engine::kAuto;  ///< kAuto picks per pair
   int threads = 1;                ///< for one pair; 0 = decide by work; never changes a bit
-  /// Of the octree. When they end before the tolerance is met, the status is kApproximate and
-  /// volume_error the bound that was reached.
+  /// Of the octree, or of columns. When they end before the tolerance is met, the status is
+  /// kApproximate and volume_error the bound that was reached.
   int most_cells = kMostCells;
 };
 

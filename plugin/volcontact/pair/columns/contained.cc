@@ -11,7 +11,9 @@ namespace {
 const Vec3 kRays[] = {Vec3(0.2873, 0.5172, 0.8062), Vec3(-0.6731, 0.3418, 0.6558),
                       Vec3(0.4187, -0.8233, 0.3829), Vec3(0.7641, 0.1409, -0.6295)};
 
-int winding_around(const SurfaceView& solid, const Vec3& p, CellScratch& scratch) {
+}  // namespace
+
+int winding_around(const SurfaceView& solid, const Vec3& p, CellScratch& scratch) noexcept {
   int number = 0;
   for (const Vec3& ray : kRays) {
     const Mat3 R_CM = basis_with_z(ray.normalized()).transpose();
@@ -19,6 +21,8 @@ int winding_around(const SurfaceView& solid, const Vec3& p, CellScratch& scratch
   }
   return number;
 }
+
+namespace {
 
 bool holds(const Aabb& bounds, const Vec3& p) {
   return (p.array() >= bounds.min.array()).all() && (p.array() <= bounds.max.array()).all();

@@ -9,6 +9,9 @@
 
 namespace volcontact {
 
+/// How often the surface winds around p, in its frame: 0 outside.
+int winding_around(const SurfaceView& solid, const Vec3& p, CellScratch& scratch) noexcept;
+
 /// What the overlap owes to those parts of the surfaces that cross nothing of the other solid: each
 /// of them lies wholly inside of it, and bounds the overlap there, or wholly outside. `crossing_a`
 /// and `crossing_b` list the parts that do cross, sorted. In A's frame; the volume is negative

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/columns/round_pieces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#define VOLCONTACT_SIMD_KERNEL "volcontact/pair/columns/round_search_kernel.inc"
+#include "volcontact/base/simd_paths.inc"
+#undef VOLCONTACT_SIMD_KERNEL
+
+namespace volcontact {
+namespace {
+
+constexpr double kSag = 0.3;           // of an arc over its chord; a triangle with more is divided
+constexpr int kMostHalvings = 4;       // of an arc
+constexpr double kSliverShare = 0.01;  // of the area of the polygon within the arcs
+constexpr int kMostDivisions = 24;     // of a triangle in four
+constexpr double kTinySag = 1e-9;      // of the solid's size
+
+// Corners of a plane convex polygon, at most those of a triangle cut by two planes.
+struct Outline {
+  Vec3 corner[8];
+  int count = 0;
+  void add(const Vec3& p) { corner[count++] = p; }
+};
+
+// Cuts one triangle of A by the faces of B.
+class FaceCut {
+ public:
+  FaceCut(const RoundSolid& solid, double size, int face, RoundPieces& pieces)
+      : s_(solid), size_(size), face_(face), pieces_(pieces) {}
+
+  // Cuts by the plane faces, then each part by the round one.
+  void cut(const Vec3 (&corner)[3]) {
+    normal_ = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+    if (normal_.isZero(0.0)) return;
+    Outline outline;
+    for (const Vec3& p : corner) outline.add(p);
+    for (int k = 0; k < s_.plane_count; ++k) cut_by_plane(k, outline);
+    for (int i = 2; i < outline.count; ++i) {
+      cut_by_round(outline.corner[0], outline.corner[i - 1], outline.corner[i], 0);
+    }
+  }
+
+ private:
+  double level(const Vec3& x, Vec3& gradient) const { return round_level(s_, x, gradient); }
+
+  void cut_by_plane(int k, Outline& outline) const {
+    const Vec3 n(s_.normal[k][0], s_.normal[k][1], s_.normal[k][2]);
+    Outline kept;
+    for (int i = 0; i < outline.count; ++i) {
+      const Vec3 &p = outline.corner[i], &q = outline.corner[i + 1 == outline.count ? 0 : i + 1];
+      const double h = n.dot(p) - s_.offset[k], next = n.dot(q) - s_.offset[k];
+      if (h <= 0.0) kept.add(p);
+      if ((h <= 0.0) != (next <= 0.0)) kept.add(p + h / (h - next) * (q - p));
+    }
+    outline = kept;
+    if (outline.count < 3) outline.count = 0;
+  }
+
+  void divide(const Vec3& a, const Vec3& b, const Vec3& c, int level) {
+    const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+    cut_by_round(a, ab, ca, level + 1);
+    cut_by_round(ab, b, bc, level + 1);
+    cut_by_round(ca, bc, c, level + 1);
+    cut_by_round(ab, bc, ca, level + 1);
+  }
+
+  void cut_by_round(const Vec3& a, const Vec3& b, const Vec3& c, int divisions) {
+    const Vec3 corner[3] = {a, b, c};
+    Vec3 gradient;
+    bool inside[3];
+    int count_inside = 0;
+    for (int i = 0; i < 3; ++i) {
+      inside[i] = level(corner[i], gradient) <= 0.0;
+      count_inside += inside[i] ? 1 : 0;
+    }
+    if (count_inside == 3) return add_triangle(a, b, c);
+    if (count_inside == 0) {
+      const Vec3 middle = (a + b + c) / 3.0;
+      const double f = level(middle, gradient);
+      double least = kInfinity;
+      for (const Vec3& p : corner) least = std::min(least, gradient.dot(p - middle));
+      if (f + least > 0.0) return;
+    }
+    // The outline inside: parts of the edges, and arcs from where it leaves to where it enters.
+    Vec3 outline[6];
+    bool arc_after[6];
+    int count = 0;
+    for (int i = 0; i < 3; ++i) {
+      const int j = i == 2 ? 0 : i + 1;
+      const Vec3 &p = corner[i], d = corner[j] - corner[i];
+      RayInterval in{0.0, 1.0};
+      if (!inside[i] || !inside[j]) {
+        const RayInterval ray = round_interval(s_, p, d);
+        if (inside[i]) {
+          in.leave = std::clamp(ray.leave, 0.0, 1.0);
+        } else if (inside[j]) {
+          in.enter = std::clamp(ray.enter, 0.0, 1.0);
+        } else {
+          in = {std::max(ray.enter, 0.0), std::min(ray.leave, 1.0)};
+          if (ray.empty() || in.empty()) continue;
+        }
+      }
+      outline[count] = inside[i] ? p : Vec3(p + in.enter * d);
+      arc_after[count++] = false;
+      if (inside[j]) continue;
+      outline[count] = p + in.leave * d;
+      arc_after[count++] = true;
+    }
+    if (count == 0) {
+      if (divisions < kMostDivisions && reaches_in(a, b, c)) divide(a, b, c, divisions);
+      return;
+    }
+    for (int i = 0; i < count; ++i) {
+      if (!arc_after[i]) continue;
+      const Vec3 &p = outline[i], &q = outline[i + 1 == count ? 0 : i + 1];
+      Vec3 tip;
+      const double sag = find_tip(p, q, tip);
+      if (sag > kSag * (q - p).norm() && sag > kTinySag * size_ && divisions < kMostDivisions) {
+        return divide(a, b, c, divisions);
+      }
+    }
+    add_outline(outline, arc_after, count);
+  }
+
+  // Whether a triangle without corners and edges in the solid may hold all of its section.
+  bool reaches_in(const Vec3& a, const Vec3& b, const Vec3& c) const {
+    // From the middle downhill along the plane: where the level is least, it is not negative for
+    // long unless the section is there.
+    Vec3 x = (a + b + c) / 3.0, gradient;
+    const Vec3 n = normal_.normalized();
+    for (int step = 0; step < 4; ++step) {
+      const double f = level(x, gradient);
+      if (f <= 0.0) return true;
+      const Vec3 slope = gradient - gradient.dot(n) * n;
+      const double steepness = slope.squaredNorm();
+      double least = kInfinity;
+      for (const Vec3& p : {a, b, c}) least = std::min(least, slope.dot(p - x));
+      if (f + least > 0.0) return false;
+      x -= f / steepness * slope;
+    }
+    return true;
+  }
+
+  // The point of the arc farthest from its chord, nearly; returns how far.
+  double find_tip(const Vec3& p, const Vec3& q, Vec3& tip) const {
+    const Vec3 middle = 0.5 * (p + q), outward = (q - p).cross(normal_);
+    const double length = outward.norm();
+    tip = middle;
+    if (!(length > 0.0)) return 0.0;
+    const RayInterval ray = round_interval(s_, middle, outward / length);
+    const double sag = ray.empty() || !std::isfinite(ray.leave) ? 0.0 : std::max(0.0, ray.leave);
+    tip = middle + sag / length * outward;
+    return sag;
+  }
+
+  void add_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+    pieces_.triangles.push_back({{a, b, c}, face_});
+  }
+
+  // Appends the points of the arc after p, before q, and the slivers that they leave.
+  void add_arc(const Vec3& p, const Vec3& q, int halvings) {
+    Vec3 tip;
+    const double sag = find_tip(p, q, tip);
+    if (halvings > 0) {
+      add_arc(p, tip, halvings - 1);
+      corner_[corners_++] = tip;
+      add_arc(tip, q, halvings - 1);
+    } else if (sag > 0.0) {
+      const double area = 2.0 / 3.0 * (q - p).norm() * sag;
+      sliver_area_ += area;
+      pieces_.slivers.push_back({0.5 * (p + q), area * unit_, tip, face_});
+    }
+  }
+
+  // Halves the arcs until the slivers are small beside the polygon within them.
+  void add_outline(const Vec3* outline, const bool* arc_after, int count) {
+    const std::size_t before = pieces_.slivers.size();
+    unit_ = normal_.normalized();
+    for (int halvings = 0; halvings <= kMostHalvings; ++halvings) {
+      pieces_.slivers.resize(before);
+      corners_ = 0;
+      sliver_area_ = 0.0;
+      for (int i = 0; i < count; ++i) {
+        corner_[corners_++] = outline[i];
+        if (arc_after[i]) add_arc(outline[i], outline[i + 1 == count ? 0 : i + 1], halvings);
+      }
+      double area = 0.0;
+      for (int i = 2; i < corners_; ++i) {
+        area += 0.5 * unit_.dot((corner_[i - 1] - corner_[0]).cross(corner_[i] - corner_[0]));
+      }
+      if (sliver_area_ <= kSliverShare * area) break;
+    }
+    for (int i = 2; i < corners_; ++i) add_triangle(corner_[0], corner_[i - 1], corner_[i]);
+  }
+
+  const RoundSolid& s_;
+  const double size_;
+  const int face_;
+  RoundPieces& pieces_;
+  Vec3 normal_, unit_;
+  Vec3 corner_[6 + 3 * ((1 << kMostHalvings) - 1)];
+  int corners_ = 0;
+  double sliver_area_ = 0.0;
+};
+
+// Whether some part of an edge lies in the solid.
+bool edge_inside(const RoundSolid& s, const Vec3& p, const Vec3& q) {
+  RayInterval in = round_interval(s, p, q - p);
+  if (in.empty()) return false;
+  in = {std::max(0.0, in.enter), std::min(1.0, in.leave)};
+  for (int k = 0; k < s.plane_count; ++k) {
+    const Vec3 n(s.normal[k][0], s.normal[k][1], s.normal[k][2]);
+    const double h = n.dot(p) - s.offset[k], slope = n.dot(q - p);
+    if (slope > 0.0) {
+      in.leave = std::min(in.leave, -h / slope);
+    } else if (slope < 0.0) {
+      in.enter = std::max(in.enter, -h / slope);
+    } else if (h > 0.0) {
+      return false;
+    }
+  }
+  return !in.empty();
+}
+
+std::size_t triangle_count(const ObbTree& tree) {
+  std::size_t count = 0;
+  for (const ObbTree::Leaf& leaf : tree.leaves) count += static_cast<std::size_t>(leaf.count);
+  return count;
+}
+
+Vec3 corner_of(const ObbTree& tree, const Vec3& origin, int slot, int i) {
+  const ObbTree::Leaf& leaf = tree.leaves[slot / kLanes];
+  const int lane = slot % kLanes;
+  return Vec3(leaf.corner[i][0][lane], leaf.corner[i][1][lane], leaf.corner[i][2][lane]) - origin;
+}
+
+int root_of(std::vector<int>& parent, int i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+// Faces that share an edge inside of the solid belong to one patch.
+void find_patches(const ObbTree& tree, const Vec3& origin, const RoundSolid& solid,
+                  RoundSearchScratch& scratch, RoundPieces& pieces) {
+  const int count = static_cast<int>(pieces.slot_of_face.size());
+  std::vector<int>& of_slot = scratch.face_of_slot;
+  if (of_slot.size() < tree.triangle_of_slot.size())
+    of_slot.resize(tree.triangle_of_slot.size(), -1);
+  for (int i = 0; i < count; ++i) of_slot[pieces.slot_of_face[i]] = i;
+  scratch.parent.resize(count);
+  std::iota(scratch.parent.begin(), scratch.parent.end(), 0);
+  for (int i = 0; i < count; ++i) {
+    const int slot = pieces.slot_of_face[i];
+    for (int e = 0; e < 3; ++e) {
+      const int twin = tree.twins[3 * slot + e] / 3, other = of_slot[twin];
+      if (other < 0 || other > i) continue;
+      const int one = root_of(scratch.parent, i), two = root_of(scratch.parent, other);
+      if (one == two) continue;
+      if (!edge_inside(solid, corner_of(tree, origin, slot, e),
+                       corner_of(tree, origin, slot, (e + 1) % 3))) {
+        continue;
+      }
+      scratch.parent[std::max(one, two)] = std::min(one, two);
+    }
+  }
+  pieces.patch_of_face.resize(count);
+  pieces.patch_count = 0;
+  for (int i = 0; i < count; ++i) {
+    const int root = root_of(scratch.parent, i);
+    pieces.patch_of_face[i] = root == i ? pieces.patch_count++ : pieces.patch_of_face[root];
+  }
+  for (int i = 0; i < count; ++i) of_slot[pieces.slot_of_face[i]] = -1;
+}
+
+}  // namespace
+
+bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid& solid, int most,
+                       RoundSearchScratch& scratch, RoundPieces& pieces) noexcept {
+  VOLCONTACT_SIMD_CALL(scratch.path, find_triangles_near, tree, origin, solid, scratch);
+  pieces.triangles.clear();
+  pieces.slivers.clear();
+  pieces.slot_of_face.clear();
+  pieces.patch_count = 0;
+  double size = 0.0;
+  for (const auto& row : solid.map) {
+    for (const double x : row) size = std::max(size, std::abs(x));
+  }
+  size = 1.0 / size;
+  bool uncut = !scratch.found.empty();
+  for (const auto& [slot, inside] : scratch.found) {
+    const int face = static_cast<int>(pieces.slot_of_face.size());
+    const std::size_t before = pieces.triangles.size();
+    const Vec3 corner[3] = {corner_of(tree, origin, slot, 0), corner_of(tree, origin, slot, 1),
+                            corner_of(tree, origin, slot, 2)};
+    if (inside) {
+      pieces.triangles.push_back({{corner[0], corner[1], corner[2]}, face});
+    } else {
+      FaceCut(solid, size, face, pieces).cut(corner);
+    }
+    uncut &= inside;
+    if (pieces.triangles.size() > before) pieces.slot_of_face.push_back(slot);
+    if (static_cast<int>(pieces.triangles.size()) > most) return false;
+  }
+  pieces.whole = uncut && scratch.found.size() == triangle_count(tree);
+  if (!pieces.whole) find_patches(tree, origin, solid, scratch, pieces);
+  return true;
+}
+
+}  // namespace volcontact

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "volcontact/base/simd.h"
+#include "volcontact/pair/columns/round_solid.h"
+#include "volcontact/shape/obb_tree.h"
+
+namespace volcontact {
+
+/// The part of a surface inside of a round solid, in pieces. Positions in Q.
+struct RoundPieces {
+  /// A triangle inside, counterclockwise seen from outside of A.
+  struct Triangle {
+    Vec3 corner[3];
+    int face;  ///< number of the triangle of A it is part of
+  };
+  /// What lies between a chord and the arc in which the face leaves the solid. The columns there
+  /// get evenly shorter, or longer, from the `middle` of the chord to the arc.
+  struct Sliver {
+    Vec3 middle;
+    Vec3 area_vector;  ///< of A
+    Vec3 tip;          ///< on the arc
+    int face;
+  };
+  std::vector<Triangle> triangles;
+  std::vector<Sliver> slivers;
+  std::vector<int> slot_of_face;
+  std::vector<int> patch_of_face;  ///< connected part of the surface inside
+  int patch_count = 0;
+  bool whole = false;  ///< the surface lies inside, uncut
+};
+
+/// Memory of find_round_pieces().
+struct RoundSearchScratch {
+  struct Found {
+    int slot;
+    bool inside;
+  };
+  SimdPath path = best_simd_path();
+  std::vector<int> stack;
+  std::vector<Found> found;
+  std::vector<int> face_of_slot;  ///< -1 between uses
+  std::vector<int> parent;
+};
+
+/// Cuts the triangles of a tree, whose frame is that of Q but for an origin at -`origin`, by a
+/// round solid. False when there are more than `most` pieces.
+bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid& solid, int most,
+                       RoundSearchScratch& scratch, RoundPieces& pieces) noexcept;
+
+}  // namespace volcontact

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/columns/round_rims.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace volcontact {
+namespace {
+
+using Piece = RoundPieces::Triangle;
+
+constexpr double kLeastSlope = 1e-6;   // of a plane that lines meet
+constexpr double kSag = 0.3;           // of the rim's image over its chord; more is divided
+constexpr double kSliverShare = 0.01;  // between image and chords, of twice the triangle's area
+constexpr int kMostDivisions = 5, kMostHalvings = 4;
+
+// The image of a rim: the lines from x end on the plane face where level(x) < 0, convex.
+class RimImage {
+ public:
+  RimImage(const RoundSolid& s, int k, const Vec3& up)
+      : up_(up),
+        n_(s.normal[k][0], s.normal[k][1], s.normal[k][2]),
+        center_(s.rim_center[k][0], s.rim_center[k][1], s.rim_center[k][2]),
+        square_(s.rim_radius[k] * s.rim_radius[k]),
+        speed_(-n_.dot(up)) {}
+
+  bool present() const { return speed_ > kLeastSlope && square_ > 0.0; }
+  double level(const Vec3& x) const { return foot(x).squaredNorm() - square_; }
+
+  void split(const Piece& t, int divisions, std::vector<Piece>& parts) const {
+    double f[3];
+    int inside = 0;
+    for (int i = 0; i < 3; ++i) {
+      f[i] = level(t.corner[i]);
+      inside += f[i] < 0.0 ? 1 : 0;
+    }
+    if (inside == 3 || (inside == 0 && beside(t))) return parts.push_back(t);
+    if (inside == 0) {
+      if (divisions == kMostDivisions) return parts.push_back(t);
+      return divide(t, divisions, parts);
+    }
+    // The corner alone on its side, and the other two.
+    int alone = 0;
+    for (int i = 0; i < 3; ++i) {
+      if ((f[i] < 0.0) == (inside == 1)) alone = i;
+    }
+    const Vec3 &a = t.corner[alone], &b = t.corner[(alone + 1) % 3], &c = t.corner[(alone + 2) % 3];
+    const Vec3 p = crossing(a, b, f[alone]), q = crossing(a, c, f[alone]);
+    const Vec3 normal = (b - a).cross(c - a);
+    const double chord = (q - p).norm(), sag = (onto_rim(p, q, normal) - 0.5 * (p + q)).norm();
+    if (sag > kSag * chord && divisions < kMostDivisions) return divide(t, divisions, parts);
+    int halvings = 0;
+    for (double sliver = sag * chord; sliver > kSliverShare * normal.norm(); sliver *= 0.25) {
+      if (halvings++ == kMostHalvings) break;
+    }
+    // Fans from the corner alone and from the middle of the side across.
+    const Vec3 across = 0.5 * (b + c);
+    Vec3 last = p;
+    const auto visit = [&](const Vec3& next) {
+      parts.push_back({{a, last, next}, t.face});
+      parts.push_back({{across, next, last}, t.face});
+      last = next;
+    };
+    walk(p, q, normal, halvings, visit);
+    visit(q);
+    parts.push_back({{across, p, b}, t.face});
+    parts.push_back({{across, c, q}, t.face});
+  }
+
+ private:
+  // Along the line to the plane, from the middle of the rim.
+  Vec3 foot(const Vec3& x) const {
+    const Vec3 d = x - center_;
+    return d + n_.dot(d) / speed_ * up_;
+  }
+
+  // The point of the rim's image over the middle of a chord.
+  Vec3 onto_rim(const Vec3& p, const Vec3& q, const Vec3& normal) const {
+    const Vec3 middle = 0.5 * (p + q), outward = (q - p).cross(normal).stableNormalized();
+    const Vec3 from = foot(middle), way = foot(middle + outward) - from;
+    const double square = way.squaredNorm(), half = from.dot(way);
+    const double f = from.squaredNorm() - square_;
+    const double root = half * half - square * f;
+    if (!(root >= 0.0) || !(square > 0.0)) return middle;
+    // The root next to the chord.
+    const double t = -f / (half + std::copysign(std::sqrt(root), half));
+    return std::isfinite(t) ? Vec3(middle + t * outward) : middle;
+  }
+
+  template <typename Visit>
+  void walk(const Vec3& p, const Vec3& q, const Vec3& normal, int halvings, Visit& visit) const {
+    if (halvings == 0) return;
+    const Vec3 tip = onto_rim(p, q, normal);
+    walk(p, tip, normal, halvings - 1, visit);
+    visit(tip);
+    walk(tip, q, normal, halvings - 1, visit);
+  }
+
+  // Convex: its tangent in the middle is a bound.
+  bool beside(const Piece& t) const {
+    const Vec3 middle = foot((t.corner[0] + t.corner[1] + t.corner[2]) / 3.0);
+    double least = kInfinity;
+    for (const Vec3& p : t.corner) least = std::min(least, middle.dot(foot(p) - middle));
+    return middle.squaredNorm() - square_ + 2.0 * least > 0.0;
+  }
+
+  // Between a and b, on different sides; f is the level at a.
+  Vec3 crossing(const Vec3& a, const Vec3& b, double f) const {
+    const Vec3 from = foot(a), way = foot(b) - from;
+    const double square = way.squaredNorm(), half = from.dot(way);
+    const double root = std::sqrt(std::max(0.0, half * half - square * f));
+    // From outside the near root, from inside the far one.
+    const double q = f < 0.0 ? -half + root : -half - root;
+    const double t = square > 0.0 ? q / square : 0.5;
+    return a + std::clamp(t, 0.0, 1.0) * (b - a);
+  }
+
+  void divide(const Piece& t, int divisions, std::vector<Piece>& parts) const {
+    const Vec3 &a = t.corner[0], &b = t.corner[1], &c = t.corner[2];
+    const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+    split({{a, ab, ca}, t.face}, divisions + 1, parts);
+    split({{ab, b, bc}, t.face}, divisions + 1, parts);
+    split({{ca, bc, c}, t.face}, divisions + 1, parts);
+    split({{ab, bc, ca}, t.face}, divisions + 1, parts);
+  }
+
+  const Vec3& up_;
+  const Vec3 n_, center_;
+  const double square_, speed_;
+};
+
+}  // namespace
+
+void split_at_rim(const RoundSolid& solid, int k, const Vec3& up,
+                  const std::vector<Piece>& triangles, std::vector<Piece>& parts) {
+  parts.clear();
+  const RimImage rim(solid, k, up);
+  if (!rim.present()) {
+    parts = triangles;
+    return;
+  }
+  for (const Piece& t : triangles) rim.split(t, 0, parts);
+}
+
+}  // namespace volcontact

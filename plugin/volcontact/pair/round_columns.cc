@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/round_columns.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volcontact/pair/columns/contained.h"
+#include "volcontact/pair/columns/round_rims.h"
+
+namespace volcontact {
+namespace {
+
+using Patch = RoundColumnsScratch::Patch;
+using Triangle = RoundPieces::Triangle;
+using Sliver = RoundPieces::Sliver;
+
+constexpr double kTipDepth = 1e-4;     // of the depth of a patch: B looks down at its outline
+constexpr double kDoubtShare = 0.03;   // of the tolerance, left to the rule on the triangles
+constexpr double kSliverError = 0.05;  // of their volume; as measured
+constexpr double kRestError = 1e-7;    // of V; as measured
+constexpr double kSeamError = 1e-4;    // the same where faces of B meet
+constexpr double kLooksUp = 1e-9;      // of a plane face: the sine of its slope
+constexpr int kMostRounds = 6;         // of divisions of triangles
+constexpr double kAlmostAxis = 0.97, kAlmostAcross = 0.3;
+
+std::size_t padded(std::size_t count) { return (count + kLanes - 1) / kLanes * kLanes; }
+
+// Surface integrals over the triangles and slivers of one patch, in Q.
+struct PatchSurface {
+  Vec3 area_vector = Vec3::Zero(), area_moment = Vec3::Zero();
+  double area = 0.0;
+
+  void add(const Vec3& n_dA, const Vec3& middle) {
+    area_vector += n_dA;
+    area_moment += middle.cross(n_dA);
+    area += n_dA.norm();
+  }
+};
+
+class RoundColumns {
+ public:
+  RoundColumns(const SurfaceView& a, const ConvexView& b, const Pose& X_AB,
+               const InterferenceOptions& options, RoundColumnsScratch& scratch, Interference& out)
+      : a_(a),
+        b_(b),
+        X_AB_(X_AB),
+        options_(options),
+        s_(scratch),
+        out_(out),
+        origin_(b.middle(X_AB)) {
+    out.total = VolumeMetrics{};
+    out.sites.clear();
+  }
+
+  bool run() {
+    if (bounds_apart()) return true;
+    const VolumeMetrics own_b = b_.own_metrics();
+    if (!(own_b.volume > 0.0)) return true;
+    const Pose X_QB{X_AB_.rotation, X_AB_.translation - origin_};
+    if (!round_solid_of(b_, X_QB, s_.faces, solid_)) return false;
+    if (holds_all_of_a()) return add_contained(a_.own, a_.surface_area, 0.0);
+    if (!find_round_pieces(*a_.tree, origin_, solid_, options_.most_cells, s_.search, s_.pieces)) {
+      return false;
+    }
+    if (s_.pieces.whole) return add_contained(a_.own, a_.surface_area, 0.0);
+    if (s_.pieces.triangles.empty()) {
+      if (winding_around(a_, origin_, s_.cells) <= 0) return true;
+      return add_contained(transformed(own_b, X_AB_), 0.0, 0.0);
+    }
+    sort_by_patch();
+    for (Patch& patch : s_.patches) {
+      if (!measure(patch)) return false;
+    }
+    add_sites(transformed(own_b, X_AB_));
+    return is_finite(out_.total);
+  }
+
+ private:
+  bool bounds_apart() const {
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 e = Vec3::Unit(i);
+      if (b_.support_height(X_AB_, e) <= a_.bounds.min[i] ||
+          -b_.support_height(X_AB_, -e) >= a_.bounds.max[i]) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // B is convex: the corners of A's bounds tell.
+  bool holds_all_of_a() const {
+    for (int corner = 0; corner < 8; ++corner) {
+      Vec3 p, gradient;
+      for (int i = 0; i < 3; ++i) p[i] = (corner >> i & 1 ? a_.bounds.max : a_.bounds.min)[i];
+      p -= origin_;
+      if (round_level(solid_, p, gradient) > 0.0) return false;
+      for (int k = 0; k < solid_.plane_count; ++k) {
+        const double* n = solid_.normal[k];
+        if (n[0] * p[0] + n[1] * p[1] + n[2] * p[2] > solid_.offset[k]) return false;
+      }
+    }
+    return true;
+  }
+
+  bool add_contained(VolumeMetrics own, double area, double counter_area) {
+    own.area = area;
+    own.counter_area = counter_area;
+    own.status = Status::kContained;
+    out_.sites.push_back(own);
+    out_.total = own;
+    return true;
+  }
+
+  // Patch after patch, each in the order in which its pieces were found.
+  void sort_by_patch() {
+    const RoundPieces& pieces = s_.pieces;
+    s_.patches.assign(static_cast<std::size_t>(pieces.patch_count), Patch{});
+    const auto sort = [&](const auto& items, std::vector<int>& order, auto first, auto last) {
+      s_.starts.assign(s_.patches.size() + 1, 0);
+      for (const auto& item : items) ++s_.starts[pieces.patch_of_face[item.face] + 1];
+      for (std::size_t i = 0; i < s_.patches.size(); ++i) {
+        s_.starts[i + 1] += s_.starts[i];
+        s_.patches[i].*first = s_.starts[i];
+        s_.patches[i].*last = s_.starts[i + 1];
+      }
+      order.resize(items.size());
+      int index = 0;
+      for (const auto& item : items) order[s_.starts[pieces.patch_of_face[item.face]]++] = index++;
+    };
+    sort(pieces.triangles, s_.triangle_order, &Patch::first_triangle, &Patch::last_triangle);
+    sort(pieces.slivers, s_.sliver_order, &Patch::first_sliver, &Patch::last_sliver);
+  }
+
+  // The metrics of what lies below the patch, down to B's surface. Their volume is negative where
+  // the patch is the surface of a cavity, or looks down on all of B.
+  bool measure(Patch& patch) {
+    PatchSurface surface;
+    s_.pieces_of_patch.clear();
+    for (int k = patch.first_triangle; k < patch.last_triangle; ++k) {
+      const Triangle& t = s_.pieces.triangles[s_.triangle_order[k]];
+      s_.pieces_of_patch.push_back(t);
+      surface.add(0.5 * (t.corner[1] - t.corner[0]).cross(t.corner[2] - t.corner[0]),
+                  (t.corner[0] + t.corner[1] + t.corner[2]) / 3.0);
+    }
+    const std::size_t slivers = static_cast<std::size_t>(patch.last_sliver - patch.first_sliver);
+    s_.points.resize(padded(slivers));
+    for (std::size_t i = 0; i < slivers; ++i) {
+      const Sliver& sliver =
+          s_.pieces.slivers[s_.sliver_order[static_cast<std::size_t>(patch.first_sliver) + i]];
+      surface.add(sliver.area_vector, sliver.middle);
+      for (int k = 0; k < 3; ++k) {
+        s_.points.middle[k][i] = sliver.middle[k];
+        s_.points.tip[k][i] = sliver.tip[k];
+        s_.points.area_vector[k][i] = sliver.area_vector[k];
+      }
+    }
+    find_active_planes();
+    Vec3 up = Vec3::UnitZ();
+    const double length = surface.area_vector.norm();
+    if (length > 1e-12 * surface.area) up = surface.area_vector / length;
+    const auto works = [&](const Vec3& direction) {
+      return try_direction(direction.normalized(), slivers, surface, patch);
+    };
+    if (works(up)) return true;
+    if (solid_.has_axis) {
+      const Vec3& axis = solid_.axis_direction;
+      const double along = up.dot(axis);
+      if (std::abs(along) < kAlmostAcross && works(up - along * axis)) return true;
+      if (std::abs(along) > kAlmostAxis && works(std::copysign(1.0, along) * axis)) return true;
+    }
+    const Vec3 against = against_outline(slivers);
+    if (up.dot(against) > 0.0 && works(against)) return true;
+    return works(-up);
+  }
+
+  // Which plane faces of B the outline of the patch may run along.
+  void find_active_planes() {
+    for (int k = 0; k < solid_.plane_count; ++k) {
+      const Vec3 n(solid_.normal[k][0], solid_.normal[k][1], solid_.normal[k][2]);
+      double highest = -kInfinity, lowest = kInfinity;
+      for (const Triangle& t : s_.pieces_of_patch) {
+        for (const Vec3& p : t.corner) {
+          const double h = n.dot(p) - solid_.offset[k];
+          highest = std::max(highest, h);
+          lowest = std::min(lowest, h);
+        }
+      }
+      active_[k] = highest > -1e-12 * (std::abs(solid_.offset[k]) - lowest);
+    }
+  }
+
+  // Down along the mean normals of the faces of B that the outline runs along.
+  Vec3 against_outline(std::size_t slivers) const {
+    Vec3 round = Vec3::Zero(), gradient;
+    for (std::size_t i = 0; i < slivers; ++i) {
+      const Vec3 tip(s_.points.tip[0][i], s_.points.tip[1][i], s_.points.tip[2][i]);
+      round_level(solid_, tip, gradient);
+      round += gradient.normalized();
+    }
+    Vec3 sum = -round.stableNormalized();
+    for (int k = 0; k < solid_.plane_count; ++k) {
+      if (active_[k]) sum -= Vec3(solid_.normal[k][0], solid_.normal[k][1], solid_.normal[k][2]);
+    }
+    return sum.isZero(1e-9) ? Vec3::UnitZ() : Vec3(sum.normalized());
+  }
+
+  // False when the solid looks upwards somewhere on the outline of the patch.
+  bool try_direction(const Vec3& up, std::size_t slivers, const PatchSurface& surface,
+                     Patch& patch) {
+    for (int k = 0; k < solid_.plane_count; ++k) {
+      const Vec3 n(solid_.normal[k][0], solid_.normal[k][1], solid_.normal[k][2]);
+      if (active_[k] && n.dot(up) > kLooksUp) return false;
+    }
+    s_.parts = s_.pieces_of_patch;
+    for (int k = 0; k < solid_.plane_count; ++k) {
+      split_at_rim(solid_, k, up, s_.parts, s_.divided);
+      std::swap(s_.parts, s_.divided);
+    }
+    RoundSum sum = sum_parts(up);
+    const double depth = height_over(sum.low, up);
+    for (std::size_t i = 0; i < slivers; ++i) {
+      if (s_.points.tip_depth[i] > kTipDepth * depth) return false;
+    }
+    for (int round = 0; round < kMostRounds && !precise(sum); ++round) {
+      divide_doubtful(sum);
+      sum = sum_parts(up);
+    }
+    const Vec3 n = surface.area_vector.stableNormalized();
+    RoundSum along_n = sum;  // what the depth is about
+    if (!n.isZero(0.0) && up.dot(n) < 1.0 - 1e-9 && up.dot(n) > 0.0) along_n = sum_parts(n);
+    MomentSum moments;
+    moments.volume = sum.volume;
+    moments.first = sum.first;
+    moments.second = sum.second;
+    moments.area_vector = surface.area_vector;
+    moments.area_moment = surface.area_moment;
+    moments.area = surface.area;
+    moments.counter_area = std::abs(sum.counter_area);
+    // A negative volume is to be taken away from a positive one, with all its moments.
+    VolumeMetrics& m = patch.metrics;
+    m = moments.volume > 0.0 ? moments.metrics() : negative_metrics(moments);
+    m.depth_moment = along_n.energy;
+    m.depth = height_over(along_n.low, n.isZero(0.0) ? up : n);
+    m.volume_error = error_of(sum);
+    m = transformed(m, Pose{Mat3::Identity(), origin_});
+    return true;
+  }
+
+  // How far the patch reaches along `up` over a height.
+  double height_over(double low, const Vec3& up) const {
+    double high = low;
+    for (const Triangle& t : s_.parts) {
+      for (const Vec3& p : t.corner) high = std::max(high, up.dot(p));
+    }
+    return high - low;
+  }
+
+  static VolumeMetrics negative_metrics(const MomentSum& moments) {
+    VolumeMetrics m;
+    m.volume = moments.volume;
+    if (m.volume == 0.0) return m;
+    m.centroid = moments.first / m.volume;
+    const Mat3 second = moments.second - m.centroid * moments.first.transpose();
+    m.inertia = second.trace() * Mat3::Identity() - second;
+    m.area_vector = moments.area_vector;
+    m.area_moment = moments.area_moment;
+    m.area = moments.area;
+    m.counter_area = moments.counter_area;
+    return m;
+  }
+
+  double error_of(const RoundSum& sum) const {
+    const double volume = std::abs(sum.volume);
+    const double rest = solid_.has_axis ? kSeamError : kRestError;
+    return sum.doubt + kSliverError * sum.slivers + rest * volume;
+  }
+  bool precise(const RoundSum& sum) const {
+    const double volume = std::abs(sum.volume);
+    return sum.doubt <= kDoubtShare * options_.tolerance * volume;
+  }
+
+  RoundSum sum_parts(const Vec3& up) {
+    s_.triangles.resize(padded(s_.parts.size()));
+    std::size_t i = 0;
+    for (const Triangle& t : s_.parts) s_.triangles.set(i++, t.corner[0], t.corner[1], t.corner[2]);
+    return sum_round_columns(solid_, up, s_.triangles, s_.points, s_.search.path);
+  }
+
+  // In four, those that hold most of the doubt.
+  void divide_doubtful(const RoundSum& sum) {
+    const double least = 0.3 * sum.doubt / static_cast<double>(s_.parts.size());
+    s_.divided.clear();
+    for (std::size_t i = 0; i < s_.parts.size(); ++i) {
+      const Triangle& t = s_.parts[i];
+      if (s_.triangles.doubt[i] < least) {
+        s_.divided.push_back(t);
+        continue;
+      }
+      const Vec3 &a = t.corner[0], &b = t.corner[1], &c = t.corner[2];
+      const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+      s_.divided.push_back({{a, ab, ca}, t.face});
+      s_.divided.push_back({{ab, b, bc}, t.face});
+      s_.divided.push_back({{ca, bc, c}, t.face});
+      s_.divided.push_back({{ab, bc, ca}, t.face});
+    }
+    std::swap(s_.parts, s_.divided);
+  }
+
+  // Each patch splits B in two; inside of A is what lies below all of them, where below a patch
+  // with a negative volume means: but for that volume. What is common to all cancels in whole
+  // copies of B, of which there are as many as make the volume possible.
+  void add_sites(const VolumeMetrics& own_b) {
+    double volume = 0.0;
+    int copies = 0;
+    for (const Patch& patch : s_.patches) {
+      volume += patch.metrics.volume;
+      if (patch.metrics.volume < 0.0) ++copies;
+    }
+    volume += copies * own_b.volume;
+    copies -= static_cast<int>(std::floor(volume / own_b.volume));
+    const bool apart =
+        copies == 0 && std::all_of(s_.patches.begin(), s_.patches.end(),
+                                   [](const Patch& p) { return p.metrics.volume > 0.0; });
+    if (apart) {
+      for (const Patch& patch : s_.patches) {
+        out_.sites.push_back(patch.metrics);
+        out_.total = out_.total + patch.metrics;
+      }
+      return;
+    }
+    VolumeMetrics all;
+    Vec3 moment = copies * own_b.volume * own_b.centroid;
+    all.volume = copies * own_b.volume;
+    for (const Patch& patch : s_.patches) {
+      all.volume += patch.metrics.volume;
+      moment += patch.metrics.volume * patch.metrics.centroid;
+      all.area_vector += patch.metrics.area_vector;
+      all.area_moment += patch.metrics.area_moment;
+      all.area += patch.metrics.area;
+      all.counter_area += patch.metrics.counter_area;
+      all.depth_moment += std::abs(patch.metrics.depth_moment);
+      all.depth = std::max(all.depth, patch.metrics.depth);
+      all.volume_error += patch.metrics.volume_error;
+    }
+    if (!(all.volume > 0.0)) return;
+    all.centroid = moment / all.volume;
+    const auto shifted = [&](const VolumeMetrics& m) -> Mat3 {
+      const Vec3 d = m.centroid - all.centroid;
+      return m.inertia + m.volume * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
+    };
+    all.inertia = copies * shifted(own_b);
+    for (const Patch& patch : s_.patches) all.inertia += shifted(patch.metrics);
+    out_.sites.push_back(all);
+    out_.total = all;
+  }
+
+  const SurfaceView& a_;
+  const ConvexView& b_;
+  const Pose& X_AB_;
+  const InterferenceOptions& options_;
+  RoundColumnsScratch& s_;
+  Interference& out_;
+  const Vec3 origin_;
+  RoundSolid solid_;
+  bool active_[2] = {false, false};
+};
+
+}  // namespace
+
+bool round_columns(const SurfaceView& a, const ConvexView& b, const Pose& X_AB,
+                   const InterferenceOptions& options, RoundColumnsScratch& scratch,
+                   Interference& out) noexcept {
+  return RoundColumns(a, b, X_AB, options, scratch, out).run();
+}
+
+}  // namespace volcontact

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "volcontact/pair/columns/cells.h"
+#include "volcontact/pair/columns/round_pieces.h"
+#include "volcontact/pair/columns/round_sums.h"
+#include "volcontact/pair/columns/surface_view.h"
+#include "volcontact/pair/interference.h"
+
+namespace volcontact {
+
+/// Memory of the columns over round solids, reused from call to call; no value depends on it.
+struct RoundColumnsScratch {
+  FaceSet faces;
+  RoundSearchScratch search;
+  RoundPieces pieces;
+  struct Patch {
+    VolumeMetrics metrics;
+    int first_triangle, last_triangle, first_sliver, last_sliver;
+  };
+  std::vector<Patch> patches;
+  std::vector<int> triangle_order, sliver_order, starts;
+  std::vector<RoundPieces::Triangle> pieces_of_patch, parts, divided;
+  RoundTriangles triangles;
+  RoundPoints points;
+  CellScratch cells;
+};
+
+/// Interference of a closed triangle mesh and a convex solid with a round face, by columns from the
+/// triangles inside of B down to B's exact surface: metrics in A's frame about A's origin. False
+/// when the pose is beyond the method: a patch that no direction sees whole, or more triangles than
+/// the budget. docs/theory.md, "Columns over round solids".
+bool round_columns(const SurfaceView& a, const ConvexView& b, const Pose& X_AB,
+                   const InterferenceOptions& options, RoundColumnsScratch& scratch,
+                   Interference& out) noexcept;
+
+}  // namespace volcontact

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/round_columns.h"
+
+#include <gtest/gtest.h>
+
+#include "core/support/evaluated.h"
+#include "core/support/gradient.h"
+#include "core/support/matchers.h"
+#include "core/support/meshes.h"
+
+namespace volcontact {
+namespace {
+
+using test::box_soup;
+using test::evaluated;
+using test::Random;
+using test::Soup;
+
+Mesh mesh_of(const Soup& soup) { return {soup.vertices, soup.triangles}; }
+Pose shifted(double x, double y, double z) { return {Mat3::Identity(), Vec3(x, y, z)}; }
+
+std::vector<Shape> round_solids() {
+  return {Sphere({.radius = 0.3}),
+          Ellipsoid({.semi_axes = Vec3(0.2, 0.3, 0.4)}),
+          Cylinder({.radius = 0.2, .half_length = 0.3}),
+          Capsule({.radius = 0.15, .half_length = 0.25}),
+          Frustum({.bottom_radius = 0.3, .top_radius = 0.1, .half_length = 0.25}),
+          Frustum({.bottom_radius = 0.3, .top_radius = 0.0, .half_length = 0.25})};
+}
+
+// B moved along a direction until it overlaps the box by `depth`.
+Pose overlapping(const Box& box, const Shape& b, Random& random, double depth) {
+  Pose X_AB = random.pose(1.0);
+  const Vec3 direction = X_AB.translation.normalized();
+  double together = 0.0, apart = 1.5;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (together + apart);
+    X_AB.translation = middle * direction;
+    (evaluated(box, b, X_AB).total.touching() ? together : apart) = middle;
+  }
+  X_AB.translation = (together - depth) * direction;
+  return X_AB;
+}
+
+// Lines through the box itself are the oracle.
+TEST(RoundColumns, AMeshOfABoxMeetsRoundSolidsAsTheBox) {
+  const Vec3 half(0.5, 0.4, 0.3);
+  const Box box({.half_sizes = half});
+  Random random(1);
+  for (const Shape& b : round_solids()) {
+    int compared = 0;
+    double worst = 0.0;
+    std::vector<double> errors;
+    for (int i = 0; i < 60; ++i) {
+      const Mesh mesh = mesh_of(box_soup(half, 1 + 5 * (i % 3)));
+      const Pose X_AB = overlapping(box, b, random, std::pow(10.0, random.uniform(-4.0, -1.0)));
+      const VolumeMetrics expected = evaluated(box, b, X_AB, Engine::kLines, 1e-6).total;
+      const Interference out = evaluated(mesh, b, X_AB);
+      if (out.engine != Engine::kColumns) continue;
+      ++compared;
+      const VolumeMetrics& m = out.total;
+      const double error = std::abs(m.volume - expected.volume) / expected.volume;
+      errors.push_back(error);
+      worst = std::max(worst, error);
+      EXPECT_LE(error, 5e-3);
+      EXPECT_LE((m.centroid - expected.centroid).norm(), 0.05 * std::cbrt(expected.volume));
+      EXPECT_LE((m.area_vector - expected.area_vector).norm(), 2e-3 * expected.area);
+      EXPECT_LE((m.area_moment - expected.area_moment).norm(), 2e-3 * expected.area);
+      EXPECT_NEAR(m.area, expected.area, 1e-3 * expected.area);
+      EXPECT_LE((m.inertia - expected.inertia).norm(), 0.03 * expected.inertia.norm());
+    }
+    std::sort(errors.begin(), errors.end());
+    EXPECT_GE(compared, 54);
+    EXPECT_LE(errors[errors.size() / 2], 5e-5);
+    EXPECT_LE(errors[errors.size() * 9 / 10], 1e-3);
+  }
+}
+
+TEST(RoundColumns, ABallOnAFaceIsACap) {
+  const double r = 0.3;
+  for (int n : {1, 3, 20}) {
+    const Mesh mesh = mesh_of(box_soup(Vec3(0.5, 0.4, 0.3), n));
+    for (double depth : {1e-5, 1e-3, 1e-2}) {
+      const VolumeMetrics m =
+          evaluated(mesh, Sphere({.radius = r}), shifted(0.07, 0.03, 0.3 + r - depth)).total;
+      const double volume = kPi * depth * depth * (r - depth / 3.0);
+      EXPECT_NEAR(m.volume, volume, 1e-5 * volume);
+      EXPECT_LE(std::abs(m.volume - volume), m.volume_error);
+      EXPECT_NEAR(m.area_vector.z(), kPi * depth * (2.0 * r - depth), 2e-5 * m.area);
+      EXPECT_NEAR(m.counter_area, 2.0 * kPi * r * depth, 1e-4 * m.counter_area);
+      // int L^2/2 dA over the cap, by its heights h: L = sqrt(r^2 - s^2) - (r - depth).
+      const double a = r - depth;
+      const double moment =
+          kPi * (std::pow(r, 4) / 4.0 - std::pow(a, 4) / 4.0 -
+                 2.0 * a * (r * r * r - a * a * a) / 3.0 + a * a * (r * r - a * a) / 2.0);
+      EXPECT_NEAR(m.depth_moment, moment, 1e-3 * moment + 1e-12 * std::pow(r, 4));
+      EXPECT_NEAR(m.depth, depth, 0.05 * depth);
+      EXPECT_NEAR(m.normal().z(), -1.0, 1e-6);
+    }
+  }
+}
+
+TEST(RoundColumns, APegStandsOnItsCap) {
+  const Mesh mesh = mesh_of(box_soup(Vec3(0.5, 0.5, 0.2), 7));
+  const double r = 0.2, depth = 1e-3;
+  const Interference out = evaluated(mesh, Cylinder({.radius = r, .half_length = 0.3}),
+                                     shifted(0.01, 0.02, 0.5 - depth));
+  EXPECT_EQ(out.engine, Engine::kColumns);
+  EXPECT_NEAR(out.total.volume, kPi * r * r * depth, 1e-5 * out.total.volume);
+  EXPECT_NEAR(out.total.depth_moment, 0.5 * kPi * r * r * depth * depth,
+              1e-4 * out.total.depth_moment);
+}
+
+TEST(RoundColumns, APlateThatIsPiercedTakesASlice) {
+  const double r = 0.5, half = 0.05, z = 0.1;
+  const Mesh plate = mesh_of(box_soup(Vec3(1.0, 1.0, half), 6));
+  const Interference out = evaluated(plate, Sphere({.radius = r}), shifted(0.1, 0.05, z));
+  const auto below = [&](double h) { return kPi * (r * r * h - h * h * h / 3.0); };
+  const double volume = below(half - z) - below(-half - z);
+  EXPECT_EQ(out.engine, Engine::kColumns);
+  ASSERT_EQ(out.sites.size(), 1u);
+  EXPECT_NEAR(out.total.volume, volume, 1e-3 * volume);
+  EXPECT_NEAR(out.total.centroid.x(), 0.1, 1e-3);
+  EXPECT_LE(std::abs(out.total.centroid.z()), 2e-2 * half);
+}
+
+TEST(RoundColumns, ABodyInsideOfAnotherIsContained) {
+  const Mesh mesh = mesh_of(test::bumpy_soup(3, 1));
+  const Sphere small({.radius = 0.2}), large({.radius = 2.0});
+  const Interference inner = evaluated(mesh, small, shifted(0.1, 0.2, 0.3));
+  EXPECT_EQ(inner.total.status, Status::kContained);
+  EXPECT_NEAR(inner.total.volume, small.own_metrics().volume, 1e-15);
+  EXPECT_LE((inner.total.centroid - Vec3(0.1, 0.2, 0.3)).norm(), 1e-15);
+  const Interference outer = evaluated(mesh, large, shifted(0.1, 0.2, 0.3));
+  EXPECT_EQ(outer.total.status, Status::kContained);
+  EXPECT_NEAR(outer.total.volume, mesh.own_metrics().volume, 1e-14);
+  EXPECT_EQ(evaluated(mesh, small, shifted(2.0, 0.0, 0.0)).total.volume, 0.0);
+}
+
+TEST(RoundColumns, CavitiesHoldNothing) {
+  const double inside = 0.6;
+  const Soup core = test::ball_soup(3).moved({inside * Mat3::Identity(), Vec3::Zero()});
+  const Mesh hollow = mesh_of(test::ball_soup(3).with(core.inside_out()));
+  EXPECT_EQ(evaluated(hollow, Sphere({.radius = 0.3}), shifted(0.1, 0.0, 0.0)).total.volume, 0.0);
+  // In the cavity, and a little into its wall.
+  const Interference wall =
+      evaluated(hollow, Sphere({.radius = 0.3}), shifted(0.0, 0.0, inside - 0.3 + 0.01));
+  EXPECT_GT(wall.total.volume, 0.0);
+  EXPECT_LT(wall.total.volume, kPi * 0.01 * 0.02 * 0.3 * 2.0);
+  EXPECT_LT(wall.total.area_vector.z(), 0.0);
+  // Over all of the cavity: what the full ball has there, less the cavity.
+  const Pose X_AB = shifted(0.0, 0.0, 0.2);
+  const Sphere large({.radius = 0.9});
+  const double full = evaluated(mesh_of(test::ball_soup(3)), large, X_AB).total.volume;
+  EXPECT_NEAR(evaluated(hollow, large, X_AB).total.volume,
+              full - mesh_of(core).own_metrics().volume, 1e-3 * full);
+}
+
+TEST(RoundColumns, EachTouchedWallIsASite) {
+  // A ball wedged in a channel between two walls.
+  const Mesh walls =
+      mesh_of(box_soup(Vec3(0.1, 1.0, 1.0), 5)
+                  .moved(shifted(0.4, 0.0, 0.0))
+                  .with(box_soup(Vec3(0.1, 1.0, 1.0), 5).moved(shifted(-0.4, 0.0, 0.0))));
+  const double r = 0.302;
+  const Interference out = evaluated(walls, Sphere({.radius = r}), Pose{});
+  ASSERT_EQ(out.sites.size(), 2u);
+  for (const VolumeMetrics& site : out.sites) {
+    EXPECT_NEAR(site.volume, kPi * 4e-6 * (r - 0.002 / 3.0), 1e-5 * site.volume);
+    EXPECT_NEAR(std::abs(site.normal().x()), 1.0, 1e-6);
+  }
+  EXPECT_LE(out.total.area_vector.norm(), 1e-4 * out.total.area);
+}
+
+// An inscribed ball of triangles has less volume by a share that falls fourfold with each level.
+TEST(RoundColumns, ABumpyMeshMeetsABallAsItsLimitOfTriangles) {
+  const Mesh mesh = mesh_of(test::bumpy_soup(4, 1));
+  const Pose X_AB{test::turn(Vec3(1.0, 2.0, 3.0), 0.7), Vec3(0.3, -0.5, 0.8).normalized() * 1.3};
+  const double r = 0.4;
+  double volume[2], s[2];
+  for (int i = 0; i < 2; ++i) {
+    const Mesh ball = mesh_of(test::ball_soup(4 + i).moved({r * Mat3::Identity(), Vec3::Zero()}));
+    const VolumeMetrics m = evaluated(mesh, ball, X_AB).total;
+    volume[i] = m.volume;
+    s[i] = m.area_vector.norm();
+  }
+  const VolumeMetrics m = evaluated(mesh, Sphere({.radius = r}), X_AB).total;
+  ASSERT_GT(m.volume, 1e-3);
+  EXPECT_NEAR(m.volume, volume[1] + (volume[1] - volume[0]) / 3.0, 2e-4 * m.volume);
+  EXPECT_NEAR(m.area_vector.norm(), s[1] + (s[1] - s[0]) / 3.0, 2e-4 * m.area);
+}
+
+TEST(RoundColumns, AreaVectorAndMomentAreTheGradientOfTheVolume) {
+  const Mesh mesh = mesh_of(test::bumpy_soup(3, 2));
+  for (const Shape& b : round_solids()) {
+    const Pose X_AB{test::turn(Vec3(1.0, -2.0, 0.5), 0.9), Vec3(0.25, 0.3, 1.1)};
+    const VolumeMetrics m = evaluated(mesh, b, X_AB).total;
+    ASSERT_GT(m.volume, 1e-5);
+    const test::Gradient g = test::gradient_of_A(
+        [&](const Pose& X) { return evaluated(mesh, b, X).total.volume; }, X_AB, 1e-3);
+    EXPECT_LE((g.shift - m.area_vector).norm(), 3e-3 * m.area);
+    EXPECT_LE((g.turn - m.area_moment).norm(), 3e-3 * m.area);
+  }
+}
+
+TEST(RoundColumns, BothOrdersAgree) {
+  const Mesh mesh = mesh_of(test::bumpy_soup(3, 2));
+  for (const Shape& b : round_solids()) {
+    const Pose X_AB{test::turn(Vec3(1.0, -2.0, 0.5), 0.9), Vec3(0.25, 0.3, 1.1)};
+    const Interference one = evaluated(mesh, b, X_AB), other = evaluated(b, mesh, X_AB.inverse());
+    EXPECT_TRUE(test::same(transformed(reversed(other.total), X_AB), one.total, {1e-6, 1.0}));
+  }
+}
+
+TEST(RoundColumns, EveryInstructionSetMakesTheSameBits) {
+  const Mesh mesh = mesh_of(test::bumpy_soup(3, 2));
+  ObbTree unused;
+  for (const Shape& b : round_solids()) {
+    std::vector<VolumeMetrics> results;
+    for (SimdPath path : {SimdPath::kPortable, SimdPath::kAvx2, SimdPath::kAvx512}) {
+      if (!can_run(path)) continue;
+      RoundColumnsScratch scratch;
+      scratch.search.path = path;
+      scratch.cells.path = path;
+      Interference out;
+      std::visit(
+          [&](const auto& solid) {
+            if constexpr (HasRoundFaces<std::decay_t<decltype(solid)>>) {
+              round_columns(surface_of(mesh, unused), ConvexView(solid),
+                            {test::turn(Vec3(1.0, -2.0, 0.5), 0.9), Vec3(0.25, 0.3, 1.1)}, {},
+                            scratch, out);
+            }
+          },
+          b);
+      results.push_back(out.total);
+    }
+    ASSERT_GT(results[0].volume, 0.0);
+    for (const VolumeMetrics& m : results) EXPECT_TRUE(test::same(m, results[0], {0.0, 0.0}));
+  }
+}
+
+}  // namespace
+}  // namespace volcontact
