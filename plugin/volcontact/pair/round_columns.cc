@@ -14,6 +14,7 @@ using Patch = RoundColumnsScratch::Patch;
 using Triangle = RoundPieces::Triangle;
 using Sliver = RoundPieces::Sliver;
 
+constexpr double kAlmostWhole = 1e-4;  // of B's volume
 constexpr double kTipDepth = 1e-4;     // of the depth of a patch: B looks down at its outline
 constexpr double kDoubtShare = 0.03;   // of the tolerance, left to the rule on the triangles
 constexpr double kSliverError = 0.05;  // of their volume; as measured
@@ -317,7 +318,13 @@ class RoundColumns {
       if (patch.metrics.volume < 0.0) ++copies;
     }
     volume += copies * own_b.volume;
-    copies -= static_cast<int>(std::floor(volume / own_b.volume));
+    const double share = volume / own_b.volume;
+    copies -= static_cast<int>(std::floor(share));
+    // Next to a whole number rounding has decided; then a point in the middle of B does.
+    if (std::abs(share - std::round(share)) < kAlmostWhole) {
+      const bool filled = winding_around(a_, origin_, s_.cells) > 0;
+      copies += static_cast<int>(std::floor(share) - std::round(share)) + (filled ? 1 : 0);
+    }
     const bool apart =
         copies == 0 && std::all_of(s_.patches.begin(), s_.patches.end(),
                                    [](const Patch& p) { return p.metrics.volume > 0.0; });

@@ -13,7 +13,8 @@ namespace volcontact {
 namespace {
 
 constexpr double kSag = 0.3;           // of an arc over its chord; a triangle with more is divided
-constexpr int kMostHalvings = 4;       // of an arc
+constexpr int kMostHalvings = 10;      // of an arc
+constexpr int kMostPasses = 6;         // over the arcs of a polygon
 constexpr double kSliverShare = 0.01;  // of the area of the polygon within the arcs
 constexpr int kMostDivisions = 24;     // of a triangle in four
 constexpr double kTinySag = 1e-9;      // of the solid's size
@@ -28,8 +29,9 @@ struct Outline {
 // Cuts one triangle of A by the faces of B.
 class FaceCut {
  public:
-  FaceCut(const RoundSolid& solid, double size, int face, RoundPieces& pieces)
-      : s_(solid), size_(size), face_(face), pieces_(pieces) {}
+  FaceCut(const RoundSolid& solid, double size, int face, RoundPieces& pieces,
+          std::vector<Vec3>& corners)
+      : s_(solid), size_(size), face_(face), pieces_(pieces), corner_(corners) {}
 
   // Cuts by the plane faces, then each part by the round one.
   void cut(const Vec3 (&corner)[3]) {
@@ -69,6 +71,7 @@ class FaceCut {
 
   void cut_by_round(const Vec3& a, const Vec3& b, const Vec3& c, int divisions) {
     const Vec3 corner[3] = {a, b, c};
+    std::copy(corner, corner + 3, part_);
     Vec3 gradient;
     bool inside[3];
     int count_inside = 0;
@@ -95,9 +98,9 @@ class FaceCut {
       if (!inside[i] || !inside[j]) {
         const RayInterval ray = round_interval(s_, p, d);
         if (inside[i]) {
-          in.leave = std::clamp(ray.leave, 0.0, 1.0);
+          in.leave = ray.empty() ? 0.0 : std::clamp(ray.leave, 0.0, 1.0);
         } else if (inside[j]) {
-          in.enter = std::clamp(ray.enter, 0.0, 1.0);
+          in.enter = ray.empty() ? 1.0 : std::clamp(ray.enter, 0.0, 1.0);
         } else {
           in = {std::max(ray.enter, 0.0), std::min(ray.leave, 1.0)};
           if (ray.empty() || in.empty()) continue;
@@ -144,7 +147,18 @@ class FaceCut {
     return true;
   }
 
-  // The point of the arc farthest from its chord, nearly; returns how far.
+  bool in_triangle(const Vec3& x) const {
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 edge = part_[i == 2 ? 0 : i + 1] - part_[i];
+      if (normal_.dot(edge.cross(x - part_[i])) < -1e-9 * normal_.norm() * edge.squaredNorm()) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  // The point of the arc farthest from its chord, nearly; returns how far. An arc does not leave
+  // the triangle: what is found beyond is the far side of a section that is touched in a point.
   double find_tip(const Vec3& p, const Vec3& q, Vec3& tip) const {
     const Vec3 middle = 0.5 * (p + q), outward = (q - p).cross(normal_);
     const double length = outward.norm();
@@ -153,47 +167,56 @@ class FaceCut {
     const RayInterval ray = round_interval(s_, middle, outward / length);
     const double sag = ray.empty() || !std::isfinite(ray.leave) ? 0.0 : std::max(0.0, ray.leave);
     tip = middle + sag / length * outward;
-    return sag;
+    if (in_triangle(tip)) return sag;
+    tip = middle;
+    return 0.0;
   }
 
   void add_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
     pieces_.triangles.push_back({{a, b, c}, face_});
   }
 
-  // Appends the points of the arc after p, before q, and the slivers that they leave.
-  void add_arc(const Vec3& p, const Vec3& q, int halvings) {
+  // Appends the points of the arc after p, before q, and the slivers that they leave, none of them
+  // larger than `most` where halving can help it.
+  void add_arc(const Vec3& p, const Vec3& q, double most, int halvings) {
     Vec3 tip;
     const double sag = find_tip(p, q, tip);
-    if (halvings > 0) {
-      add_arc(p, tip, halvings - 1);
-      corner_[corners_++] = tip;
-      add_arc(tip, q, halvings - 1);
-    } else if (sag > 0.0) {
-      const double area = 2.0 / 3.0 * (q - p).norm() * sag;
-      sliver_area_ += area;
-      pieces_.slivers.push_back({0.5 * (p + q), area * unit_, tip, face_});
+    if (!(sag > 0.0)) return;
+    const double area = 2.0 / 3.0 * (q - p).norm() * sag;
+    if (area > most && halvings < kMostHalvings) {
+      add_arc(p, tip, most, halvings + 1);
+      corner_.push_back(tip);
+      add_arc(tip, q, most, halvings + 1);
+      return;
     }
+    pieces_.slivers.push_back({0.5 * (p + q), area * unit_, tip, face_});
   }
 
-  // Halves the arcs until the slivers are small beside the polygon within them.
+  // With as many points on the arcs as make the slivers small beside the polygon within them.
   void add_outline(const Vec3* outline, const bool* arc_after, int count) {
     const std::size_t before = pieces_.slivers.size();
     unit_ = normal_.normalized();
-    for (int halvings = 0; halvings <= kMostHalvings; ++halvings) {
+    double most = kInfinity;
+    for (int pass = 0; pass < kMostPasses; ++pass) {
       pieces_.slivers.resize(before);
-      corners_ = 0;
-      sliver_area_ = 0.0;
+      corner_.clear();
       for (int i = 0; i < count; ++i) {
-        corner_[corners_++] = outline[i];
-        if (arc_after[i]) add_arc(outline[i], outline[i + 1 == count ? 0 : i + 1], halvings);
+        corner_.push_back(outline[i]);
+        if (arc_after[i]) add_arc(outline[i], outline[i + 1 == count ? 0 : i + 1], most, 0);
       }
-      double area = 0.0;
-      for (int i = 2; i < corners_; ++i) {
+      double area = 0.0, slivers = 0.0;
+      for (std::size_t i = 2; i < corner_.size(); ++i) {
         area += 0.5 * unit_.dot((corner_[i - 1] - corner_[0]).cross(corner_[i] - corner_[0]));
       }
-      if (sliver_area_ <= kSliverShare * area) break;
+      for (std::size_t i = before; i < pieces_.slivers.size(); ++i) {
+        slivers += pieces_.slivers[i].area_vector.norm();
+      }
+      if (slivers <= kSliverShare * area) break;
+      most = kSliverShare * (area + slivers) / 8.0;
     }
-    for (int i = 2; i < corners_; ++i) add_triangle(corner_[0], corner_[i - 1], corner_[i]);
+    for (std::size_t i = 2; i < corner_.size(); ++i) {
+      add_triangle(corner_[0], corner_[i - 1], corner_[i]);
+    }
   }
 
   const RoundSolid& s_;
@@ -201,9 +224,8 @@ class FaceCut {
   const int face_;
   RoundPieces& pieces_;
   Vec3 normal_, unit_;
-  Vec3 corner_[6 + 3 * ((1 << kMostHalvings) - 1)];
-  int corners_ = 0;
-  double sliver_area_ = 0.0;
+  Vec3 part_[3];  // of the triangle, that is cut by the round face now
+  std::vector<Vec3>& corner_;
 };
 
 // Whether some part of an edge lies in the solid.
@@ -298,7 +320,7 @@ bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid
     if (inside) {
       pieces.triangles.push_back({{corner[0], corner[1], corner[2]}, face});
     } else {
-      FaceCut(solid, size, face, pieces).cut(corner);
+      FaceCut(solid, size, face, pieces, scratch.corners).cut(corner);
     }
     uncut &= inside;
     if (pieces.triangles.size() > before) pieces.slot_of_face.push_back(slot);

@@ -43,6 +43,7 @@ struct RoundSearchScratch {
   std::vector<Found> found;
   std::vector<int> face_of_slot;  ///< -1 between uses
   std::vector<int> parent;
+  std::vector<Vec3> corners;  ///< of the polygon at hand
 };
 
 /// Cuts the triangles of a tree, whose frame is that of Q but for an origin at -`origin`, by a
