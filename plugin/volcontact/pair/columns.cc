@@ -15,6 +15,7 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kReach = 1e-13;      // of the size: where rounding decides whether faces touch
 constexpr int kMostContacts = 20000;  // of one query
 constexpr double kFlux = 1e-8;        // of the square of the length of a curve
+constexpr double kNoArea = 1e-8;      // of the largest cell: rounding has made it
 constexpr int kCellsOfLeafPair = 2;   // about
 
 double size_of(const Aabb& bounds) {
@@ -155,26 +156,71 @@ class Columns {
       }
       make_cells(*a_.tree, X_CA, *b_->tree, X_CB, window, scratch_.cells);
       keep_crossing_parts(patch);
-      if (!is_whole(window)) continue;
-      const Vec3 area_vector = R_BC * add_regions(X_CA, X_CB, X_AB_ * X_BC, b_->tree);
+      if (!ends_outwards()) continue;
+      const bool shared = !is_within(window, nullptr);
+      // One curve bounds one region, and without upright faces no wall of it is out of sight.
+      const bool simple =
+          !shared && patch.one_curve && !scratch_.cells.upright && !is_layered(cells());
+      if (simple) {
+        scratch_.regions.region_of.assign(cells().size(), CellRegion{0, 0, -1, -1});
+        scratch_.own_regions.assign(1, 1);
+      }
+      if (shared && (is_layered(cells()) || !find_own_regions(patch, window))) continue;
+      const Vec3 area_vector =
+          R_BC * add_regions(X_CA, X_CB, X_AB_ * X_BC, b_->tree, shared || simple);
       const double doubt = kFlux * patch.flux.length * patch.flux.length;
       return (area_vector - patch.flux.area_vector).norm() <= doubt;
     }
     return false;
   }
 
-  // Whether the cells in a window are all that the columns through it hold: they end within its
-  // sides, and where several faces lie above each other the lowest of A and the highest of B look
-  // outwards.
-  bool is_whole(const ColumnWindow& window) {
-    const ColumnCell* largest = nullptr;
-    for (const ColumnCell& cell : cells()) {
+  // Whether the cells end within the sides of a window; of all regions, or of those listed.
+  bool is_within(const ColumnWindow& window, const std::vector<char>* regions) {
+    double least = 0.0;
+    for (const ColumnCell& cell : cells()) least = std::max(least, cell.area);
+    least *= kNoArea;
+    for (std::size_t k = 0; k < cells().size(); ++k) {
+      const ColumnCell& cell = cells()[k];
+      if (!(cell.area > least)) continue;
+      if (regions != nullptr && !(*regions)[scratch_.regions.region_of[k].of_f]) continue;
       for (int i = 0; i < cell.count; ++i) {
         if (cell.x[i] < window.low.x() || cell.x[i] > window.high.x() ||
             cell.y[i] < window.low.y() || cell.y[i] > window.high.y()) {
           return false;
         }
       }
+    }
+    return true;
+  }
+
+  // Marks the regions that the contacts of a patch belong to. A window on it may hold cells of its
+  // neighbours too, not all of them. False when its own are not whole either. Not for layered
+  // cells.
+  bool find_own_regions(const ContactPatch& patch, const ColumnWindow& window) {
+    std::vector<std::pair<int, int>>& pairs = scratch_.own_pairs;
+    pairs.clear();
+    for (int k = patch.first; k < patch.last; ++k) {
+      const TriangleContact& contact = scratch_.crossing.contacts[scratch_.patches.order[k]];
+      pairs.emplace_back(contact.f, contact.g);
+    }
+    std::sort(pairs.begin(), pairs.end());
+    const int regions = find_regions(*a_.tree, b_->tree, cells(), scratch_.regions);
+    std::vector<char>& own = scratch_.own_regions;
+    own.assign(static_cast<std::size_t>(regions), 0);
+    for (std::size_t k = 0; k < cells().size(); ++k) {
+      const ColumnCell& cell = cells()[k];
+      if ((cell.labels & 1u << kCrossing) == 0) continue;
+      if (!std::binary_search(pairs.begin(), pairs.end(), std::pair(cell.f, cell.g))) continue;
+      own[scratch_.regions.region_of[k].of_f] = 1;
+    }
+    return is_within(window, &own);
+  }
+
+  // Whether, where several faces lie above each other, the lowest of A and the highest of B look
+  // outwards.
+  bool ends_outwards() {
+    const ColumnCell* largest = nullptr;
+    for (const ColumnCell& cell : cells()) {
       if (largest == nullptr || cell.area > largest->area) largest = &cell;
     }
     if (largest == nullptr || !is_layered(cells())) return true;
@@ -236,17 +282,22 @@ class Columns {
       return;
     }
     const VolumeMetrics m = sampled_columns(a_, X_CA, *b_, X_CB, scratch_.cells, scratch_.sampled);
+    sampled_ = m;
     if (m.touching()) out_.sites.push_back(transformed(m, X_AB_ * X_BC));
   }
 
   // Returns the area vector of A's surface in them, in C.
-  Vec3 add_regions(const Pose& X_CA, const Pose& X_CB, const Pose& X_AC, const ObbTree* tree_b) {
-    const int regions = find_regions(*a_.tree, tree_b, cells(), scratch_.regions);
+  // `own`: only the regions that are marked.
+  Vec3 add_regions(const Pose& X_CA, const Pose& X_CB, const Pose& X_AC, const ObbTree* tree_b,
+                   bool own = false) {
+    const int regions = own ? static_cast<int>(scratch_.own_regions.size())
+                            : find_regions(*a_.tree, tree_b, cells(), scratch_.regions);
     const ColumnSurface a{a_.tree, &X_CA}, b{tree_b, &X_CB};
     std::vector<CellSum>& sums = scratch_.sums;
     sums.clear();
     Vec3 area_vector = Vec3::Zero();
     for (int region = 0; region < regions; ++region) {
+      if (own && !scratch_.own_regions[static_cast<std::size_t>(region)]) continue;
       sums.push_back(
           sum_region(region, cells(), scratch_.regions.region_of, a, b, scratch_.cells.path));
       area_vector += sums.back().moments.area_vector;
@@ -283,6 +334,9 @@ class Columns {
   void finish() {
     out_.total = VolumeMetrics{};
     for (const VolumeMetrics& site : out_.sites) out_.total = out_.total + site;
+    // Samples may miss what is there.
+    out_.total.status = std::max(out_.total.status, sampled_.status);
+    out_.total.volume_error = std::max(out_.total.volume_error, sampled_.volume_error);
   }
 
   const SurfaceView& a_;
@@ -292,6 +346,7 @@ class Columns {
   Interference& out_;
   double rounding_;
   int most_leaf_pairs_ = 0;
+  VolumeMetrics sampled_;  // where the budget did not allow more
 };
 
 }  // namespace

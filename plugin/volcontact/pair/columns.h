@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <utility>
+
 #include "volcontact/pair/columns/cell_sums.h"
 #include "volcontact/pair/columns/patches.h"
 #include "volcontact/pair/columns/sampled.h"
@@ -20,6 +22,8 @@ struct ColumnsScratch {
   ObbTree box[2];                      ///< surfaces of A and B where they are boxes
   std::vector<int> crossing_parts[2];  ///< of A and of B, of the whole pair
   std::vector<int> crossing_here[2];   ///< of one patch
+  std::vector<std::pair<int, int>> own_pairs;
+  std::vector<char> own_regions;
 };
 
 /// Interference of two solids bounded by closed triangle meshes, exact to rounding: metrics in A's

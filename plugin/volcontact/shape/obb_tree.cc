@@ -175,10 +175,15 @@ class Builder {
       const bool used = lane < static_cast<int>(lanes.size());
       const Obb& box = branches_[lanes[used ? lane : 0]].box;
       ObbTree::Node& node = tree_.nodes[number];
+      int thinnest;
+      box.half.minCoeff(&thinnest);
       for (int k = 0; k < 3; ++k) {
+        const int from = k == ObbTree::kFlatAxis ? thinnest
+                         : k == thinnest         ? ObbTree::kFlatAxis
+                                                 : k;
         node.center[k][lane] = box.center[k];
-        node.half[k][lane] = box.half[k];
-        for (int j = 0; j < 3; ++j) node.axis[k][j][lane] = box.axes(k, j);
+        node.half[k][lane] = box.half[from];
+        for (int j = 0; j < 3; ++j) node.axis[k][j][lane] = box.axes(from, j);
       }
       node.child[lane] = -1;
     }

@@ -16,6 +16,9 @@ namespace volcontact {
 /// The triangles are renumbered: slot 8 l + i is lane i of leaf l. An unused lane repeats a corner
 /// of lane 0 three times.
 struct ObbTree {
+  /// A box is thinnest along this axis.
+  static constexpr int kFlatAxis = 2;
+
   struct alignas(64) Node {
     double center[3][kLanes];   ///< in the frame of the mesh
     double axis[3][3][kLanes];  ///< axis[k] is the unit vector of half size k

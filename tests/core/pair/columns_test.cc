@@ -231,6 +231,32 @@ TEST(Columns, ATiltedPegTouchesItsHoleAtTwoSites) {
   EXPECT_LE(out.total.area_vector.norm(), 1e-12);
 }
 
+// A polygon with few sides has several patches side by side on one wall: each is summed through a
+// window that holds cells of its neighbours.
+TEST(Columns, PatchesSideBySideNeedNoMoreColumns) {
+  const Mesh sleeve = mesh_of(test::ring_soup(1.0, 2.0, 1.0, 96));
+  const Mesh peg = mesh_of(test::ring_soup(0.5, 0.998, 2.0, 32));
+  const Pose X_AB{test::turn(Vec3::UnitZ(), 0.37) * test::turn(Vec3::UnitX(), 0.002),
+                  Vec3(0.0015, 0.0005, 0.0)};
+  const Interference all = evaluated(sleeve, peg, X_AB, {.most_cells = 10000000});
+  ASSERT_GT(all.sites.size(), 4u);
+  const Interference few = evaluated(sleeve, peg, X_AB, {.most_cells = 1500});
+  EXPECT_EQ(few.total.status, Status::kOk);
+  EXPECT_NEAR(few.total.volume, all.total.volume, 1e-12 * all.total.volume);
+}
+
+TEST(Columns, SamplesThatSeeNothingAreNoProof) {
+  // A thin overlap of two surfaces in nearly the same place, beyond any budget.
+  const Mesh outer = mesh_of(test::ball_soup(3)),
+             inner = mesh_of(test::ball_soup(3).inside_out().with(
+                 test::ball_soup(2).moved({1.2 * Mat3::Identity(), Vec3::Zero()})));
+  const Interference out =
+      evaluated(outer, inner, {test::turn(Vec3(1.0, 2.0, 3.0), 1e-6), Vec3::Constant(1e-9)},
+                {.most_cells = 20});
+  EXPECT_EQ(out.total.status, Status::kApproximate);
+  EXPECT_GT(out.total.volume_error, 0.0);
+}
+
 TEST(Columns, BeyondItsBudgetItSamplesAndSaysSo) {
   const Mesh mesh = mesh_of(test::ball_soup(4));
   const Pose X_AB{test::turn(Vec3(1.0, 2.0, 3.0), 0.4), Vec3(1e-3, 2e-3, 1e-3)};

@@ -12,6 +12,9 @@ namespace {
 // bounds no column.
 constexpr double kLeastArea = 1e-13;
 
+// By so much, in sizes of the side squared, rounding may misplace a point beside it.
+constexpr double kSideSlack = 1e-12;
+
 // A triangle in C, its corners counterclockwise seen from above.
 struct ColumnFace {
   double x[3], y[3];

@@ -64,6 +64,7 @@ struct CellScratch {
   std::vector<Entry> stack;
   std::vector<int> leaf_pairs;  ///< leaf of A, leaf of B, ...
   std::vector<ColumnCell> cells;
+  bool upright = false;  ///< some triangle in the window has no projection
 };
 
 /// Lists the pairs of leaves that may hold cells; false when there are more than `most`.

@@ -127,6 +127,7 @@ bool find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& sc
   scratch.parent.resize(contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i) scratch.parent[i] = static_cast<int>(i);
   join_neighbors(contacts, scratch);
+  bool one_curve = true;
   // Until no two patches are near to each other.
   for (;;) {
     measure(contacts, scratch, sort_by_patch(scratch));
@@ -143,8 +144,10 @@ bool find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& sc
       }
     }
     if (!joined) break;
+    one_curve = false;
   }
   for (ContactPatch& patch : scratch.patches) {
+    patch.one_curve = one_curve;
     patch.flux =
         flux_of(contacts, scratch.order.data() + patch.first, scratch.order.data() + patch.last);
   }

@@ -23,6 +23,7 @@ struct ContactPatch {
   CurveFlux flux;
   Vec3 low, high;   ///< bounds of the curve in B's frame [m]
   int first, last;  ///< its contacts, in PatchScratch::order
+  bool one_curve;   ///< certainly
 };
 
 /// Memory of the search for patches.

@@ -84,11 +84,12 @@ VolumeMetrics sampled_columns(const SurfaceView& a, const Pose& X_CA, const Surf
     }
   }
   VolumeMetrics m = sums.moments.metrics();
+  m.status = Status::kApproximate;
+  m.volume_error = dx * dy * (high.z() - low.z());  // of one column
   if (!m.touching()) return m;
   m.depth_moment = sums.energy;
   m.depth = sums.high - sums.low;
   m.volume_error = 2.0 * std::abs(halves[0] - halves[1]) + 0.01 * m.volume;
-  m.status = Status::kApproximate;
   return m;
 }
 
