@@ -280,7 +280,7 @@ std::string many_bodies(int bodies_count, const std::string& options) {
               "\"/></body>";
   }
   return "<mujoco><option timestep=\"1e-3\"/><default><geom contype=\"1\" conaffinity=\"2\"/>"
-         "</default><worldbody><geom type=\"box\" size=\"20 20 .1\" pos=\"0 0 -.1\" "
+         "</default><worldbody><geom name=\"floor\" type=\"box\" size=\"20 20 .1\" pos=\"0 0 -.1\" "
          "contype=\"2\" conaffinity=\"1\"/>" +
          bodies + "</worldbody>" + testing::numeric("volcontact/option/tolerance", "0.02") +
          options + "</mujoco>";
@@ -303,6 +303,14 @@ std::vector<std::vector<double>> by_threads(int bodies, const std::string& optio
 
 TEST(SceneContact, NumberOfThreadsChangesNoBit) {
   const auto states = by_threads(230, "", 5);
+  for (const std::vector<double>& state : states) EXPECT_EQ(state, states[0]);
+}
+
+TEST(SceneContact, NumberOfThreadsChangesNoBitOfWhatSitesKeep) {
+  const std::string bristles = testing::material(
+      "m", {{"friction_law/bristle", "1"}, {"bristle_damping", "20"}, {"restitution", "0.5"}},
+      {"floor"});
+  const auto states = by_threads(230, bristles, 5);
   for (const std::vector<double>& state : states) EXPECT_EQ(state, states[0]);
 }
 

@@ -53,7 +53,19 @@ def test_engines_agree() -> None:
     measure().check()
 
 
-@pytest.mark.parametrize("scene", ["ball_in_cylinder", "tumbling_box", "tippe_top"])
+SCENES = (
+    "ball_in_cylinder",
+    "bouncing_ball",
+    "euler_disc",
+    "incline",
+    "painleve_rod",
+    "spinning_disc",
+    "tippe_top",
+    "tumbling_box",
+)
+
+
+@pytest.mark.parametrize("scene", SCENES)
 def test_number_of_threads_changes_no_bit(scene: str) -> None:
     one = final_state(f"{scene}/scene.xml", 2500, threads=1)
     assert (one == final_state(f"{scene}/scene.xml", 2500, threads=2)).all()
