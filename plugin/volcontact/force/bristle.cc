@@ -36,16 +36,24 @@ Generalized resisted(Coupling coupling, const Generalized& u, const FrictionInpu
   return {-slip.force_direction, r > 0.0 ? -slip.torque_arm / r : 0.0};
 }
 
-// Shortens `load` to what friction of the strength `most` can hold; whether it had to. On the
-// integrated limit surface the direction of the load stands for that of the slip it would cause.
+// How far the limit surface of unit strength reaches in the direction of the unit vector `load`. No
+// slip does more work than its support, so each slip `u` gives a bound, here one near to the slip
+// that this load would cause: never too little, too much by 0.6 % at most for a disc.
+double reach(Coupling coupling, const Generalized& load, const FrictionInput& in) {
+  const Generalized first = resisted(coupling, load, in);
+  const Generalized u = load + (load - (1.0 / first.norm()) * first);
+  return resisted(coupling, u, in).dot(u) / load.dot(u);
+}
+
+// Shortens `load` to what friction of the strength `most` can hold; whether it had to.
 bool limit(Coupling coupling, double most, const FrictionInput& in, Generalized& load) {
   constexpr double kLeastReach = 0.5;  // the integrated surface is nowhere nearer than that
   const double size = load.norm();
-  const bool integrated = coupling == Coupling::kQuadrature;
+  const bool integrated = coupling == Coupling::kQuadrature && in.patch.volume > 0.0;
   if (!(size > (integrated ? kLeastReach * most : most))) return false;
-  const double reach = integrated ? resisted(coupling, load, in).norm() : 1.0;
-  if (!(size > most * reach)) return false;
-  load = (most * reach / size) * load;
+  const double farthest = integrated ? most * reach(coupling, (1.0 / size) * load, in) : most;
+  if (!(size > farthest)) return false;
+  load = (farthest / size) * load;
   return true;
 }
 

@@ -175,6 +175,46 @@ TEST(Bristle, IntegratedPatchLimitsTheSpinTorqueByItsMeanRadius) {
   EXPECT_NEAR(out.torque, -torque, 1e-9 * torque);
 }
 
+// Friction of unit strength and its torque over R, of a uniform disc that slides with eps = v/(R
+// w): complete elliptic integrals, as in coupling_test.cc.
+double disc_force(double e) {
+  const double k = e < 1.0 ? e : 1.0 / e, c = 4.0 / (3.0 * kPi);
+  const double K = std::comp_ellint_1(k), E = std::comp_ellint_2(k);
+  return e < 1.0 ? c * ((e * e + 1.0) * E + (e * e - 1.0) * K) / e
+                 : c * ((e * e + 1.0) * E - (e * e - 1.0) * K);
+}
+double disc_torque(double e) {
+  const double k = e < 1.0 ? e : 1.0 / e, c = 4.0 / (9.0 * kPi);
+  const double K = std::comp_ellint_1(k), E = std::comp_ellint_2(k);
+  return e < 1.0 ? c * ((4.0 - 2.0 * e * e) * E + (e * e - 1.0) * K)
+                 : c * e * ((4.0 - 2.0 * e * e) * E + (2.0 * e * e - 5.0 + 3.0 / (e * e)) * K);
+}
+
+// Loaded sideways and about its normal at once, a sticking disc gives way on its limit surface.
+TEST(Bristle, IntegratedPatchGivesWayOnItsLimitSurface) {
+  Bristle::Params params = reference(1e-2);
+  params.coupling = Coupling::kQuadrature;
+  params.static_friction = params.friction;
+  const Bristle law(params);
+  const double R = 0.05, r = R / std::sqrt(2.0), volume = 1e-7, f = 50.0;
+  for (const double e : {0.05, 0.3, 0.65, 0.95, 1.3, 3.0, 20.0}) {
+    const Vec3 limit(disc_force(e), 0.0, disc_torque(e) * R / r);  // in units of mu f
+    FrictionInput in{.normal_force = f,
+                     .patch = {.gyration_radius = r,
+                               .volume = volume,
+                               .area = kPi * R * R,
+                               .second_moment = volume * R * R / 4.0 *
+                                                Vec3(1.0, 1.0, 0.0).asDiagonal().toDenseMatrix()}};
+    in.travel.x() = 1e-3 * limit.x();  // pushed far beyond the limit, at next to no speed
+    in.turn = 1e-3 * limit.z() / r;
+    std::array<double, 5> committed{}, pending{};
+    const FrictionOutput out = law.evaluate(in, {committed.data(), pending.data(), 1e-3});
+    const double found = std::hypot(out.force.x(), out.torque / r) / (0.3 * f);
+    EXPECT_GE(found, limit.norm() * (1.0 - 1e-6)) << e;
+    EXPECT_LE(found, limit.norm() * 1.007) << e;
+  }
+}
+
 TEST(Bristle, SlidingAndSpinningShareTheEllipsoid) {
   const Bristle law(reference());
   std::array<double, 5> committed{}, pending{};
