@@ -139,7 +139,9 @@ template <typename A, typename B>
 bool lines(const A& a, const B& b, const Pose& X_AB, const InterferenceOptions& options,
            InterferenceWorkspace::Scratch& scratch, Interference& out) {
   if constexpr (has_lines<A, B>) {
-    lines_interference(ConvexView(a), ConvexView(b), X_AB, options, scratch.lines, out);
+    if (!lines_interference(ConvexView(a), ConvexView(b), X_AB, options, scratch.lines, out)) {
+      return false;
+    }
   } else if constexpr (has_ring<A, B>) {
     ring_interference(a, ConvexView(b), X_AB, options, scratch.ring, scratch.composed.regions, out);
   } else if constexpr (has_ring<B, A>) {

@@ -21,7 +21,8 @@ constexpr double kRoundRim = 2.0;     // longest by shortest way to the rim; the
 constexpr double kMostTurn = 0.5;  // of the columns towards the normal of the rim; more: no normal
 constexpr double kAligned = 0.1;   // a turn after which the next one would be too small to matter
 constexpr double kWhole = 0.999;   // share of a solid in the overlap, that is all of it
-constexpr int kLeastArcs = 4;      // where no corners are known
+constexpr double kLeastSeen = 1e-9;   // of the smaller solid: an overlap not to be missed
+constexpr int kLeastArcs = 4;         // where no corners are known
 constexpr double kWidestAngle = 2.3;  // of an arc between corners [rad]
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -51,6 +52,12 @@ class LinesRun {
     const bool smooth = s_.breaks.complete && s_.breaks.directions.empty();
     if (!smooth || !integrate_smooth()) integrate_arcs();
     return metrics();
+  }
+
+  // Nothing where the window saw something: the fan stands on a place from where it does not see.
+  bool lost(const VolumeMetrics& metrics, double least_volume) const {
+    return window_.kind == LinesWindow::Kind::kOverlap && !metrics.touching() &&
+           window_.volume > kLeastSeen * least_volume;
   }
 
   void add_patches(std::vector<LinesRegion::PlanePatch>& patches) const {
@@ -306,23 +313,26 @@ class LinesRun {
 
 }  // namespace
 
-void lines_interference(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
+bool lines_interference(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
                         const InterferenceOptions& options, LinesScratch& scratch,
                         Interference& out) noexcept {
   out.sites.clear();
   out.total = VolumeMetrics{};
   if (!X_AB.is_finite()) {
     out.total.status = Status::kInvalid;
-    return;
+    return true;
   }
   const double volume_a = a.own_metrics().volume, volume_b = b.own_metrics().volume;
   if (std::isinf(volume_a) && std::isinf(volume_b)) {
     out.total.status = Status::kUnbounded;
-    return;
+    return true;
   }
-  if (!(volume_a > 0.0) || !(volume_b > 0.0)) return;
-  out.total = LinesRun(a, b, X_AB, options, scratch).run(false);
+  if (!(volume_a > 0.0) || !(volume_b > 0.0)) return true;
+  LinesRun run(a, b, X_AB, options, scratch);
+  out.total = run.run(false);
+  if (run.lost(out.total, std::min(volume_a, volume_b))) return false;
   if (out.total.touching()) out.sites.push_back(out.total);
+  return true;
 }
 
 void add_lines_region(const ConvexView& a, const ConvexView& b, const Pose& X_AB,

@@ -29,8 +29,8 @@ struct LinesScratch {
 
 /// Interference of two convex solids of which at least one is round, by columns along the contact
 /// normal: metrics in A's frame and about A's origin, one site. `volume_error` is an estimate.
-/// docs/theory.md, "Lines".
-void lines_interference(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
+/// False in a degenerate pose that it cannot make out. docs/theory.md, "Lines".
+bool lines_interference(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
                         const InterferenceOptions& options, LinesScratch& scratch,
                         Interference& out) noexcept;
 

@@ -290,6 +290,10 @@ class WindowSearch {
       if (plane.normal.dot(x) - plane.offset > -distance) faces_.near.push_back(plane.normal);
     }
     for (const RoundFace& round : faces_.active.rounds) {
+      if (round.cone && (x - round.center).norm() <= distance) {  // the apex
+        faces_.near.push_back(-round.map.row(2).transpose().normalized());
+        continue;
+      }
       const Vec3 g = round.half_gradient(x);
       if (value_at(round, x) > -2.0 * distance * g.norm()) faces_.near.push_back(g.normalized());
     }

@@ -5,6 +5,7 @@
 
 #include <cstring>
 
+#include "core/support/evaluated.h"
 #include "core/support/gradient.h"
 #include "core/support/matchers.h"
 #include "core/support/random_shapes.h"
@@ -257,6 +258,18 @@ TEST(Lines, ASolidInsideAnotherIsContained) {
   EXPECT_NEAR(m.volume, kPi * 0.01 * 0.2, 1e-15);
   EXPECT_TRUE(m.centroid.isApprox(X.translation));
   EXPECT_EQ(m.area_vector.norm(), 0.0);
+}
+
+// The first common point that is found is the apex.
+TEST(Lines, AConeWithItsAxisInAFaceAndItsRimOnAnotherIsCutInHalf) {
+  const Vec3 half(1.0, 1.2, 0.6);
+  const Frustum cone({.bottom_radius = 0.02, .top_radius = 0.0, .half_length = 0.18});
+  for (const double z : {0.0, 7e-11, 0.3}) {
+    const Pose X_AB{Vec3(-1.0, 1.0, -1.0).asDiagonal(), Vec3(half.x(), half.y() - 0.02, z)};
+    const VolumeMetrics m = test::evaluated(Box({.half_sizes = half}), cone, X_AB).total;
+    const double expected = 0.5 * cone.own_metrics().volume;
+    EXPECT_NEAR(m.volume, expected, 1e-4 * expected);
+  }
 }
 
 }  // namespace
