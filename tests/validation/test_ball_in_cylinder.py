@@ -89,7 +89,13 @@ def measure() -> Case:
             ),
         ),
         Plot(
-            "height",
+            "from_above",
+            "x [m]",
+            "y, along the bore [m]",
+            (Curve("volumetric", rest.rows[:, 1], rest.rows[:, 2]),),
+        ),
+        Plot(
+            "swing",
             "time [s]",
             "x and y [m]",
             (Curve("x", time, rest.rows[:, 1]), Curve("y", time, rest.rows[:, 2])),

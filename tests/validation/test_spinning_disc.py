@@ -75,6 +75,11 @@ def measure() -> Case:
                 native.rows[-1, 3] if of_native else None,
             ),
         ]
+        if of_native:  # m v^2 / 2 and I w^2 / 2 of the start, each through its own channel
+            case.figures += [
+                Figure("dissipated by sliding", "J", 0.5, 1e-6, float(run.dissipated[2])),
+                Figure("dissipated by spinning", "J", 0.25, 1e-6, float(run.dissipated[3])),
+            ]
         curves.append(Curve(coupling, run.rows[:, 0], run.rows[:, 1]))
     fast = slide("quadrature", 40.0)
     case.closures.append(fast.closure)
