@@ -13,6 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import matplotlib
+from performance_meshes import meshes
 from performance_plots import PLOT, STYLE
 from performance_results import (
     ASKED,
@@ -46,7 +47,7 @@ GIVES = """\
 
 def render() -> str:
     """The whole page as Markdown text."""
-    page = "\n".join([_introduction(), _pairs(), _threads(), _peers(), _steps()])
+    page = "\n".join([_introduction(), _pairs(), _threads(), _peers(), meshes(table), _steps()])
     parts = (_wrapped(part) for part in re.split(r"\n\n+", page.strip()))
     return "\n\n".join(parts) + "\n"
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from matplotlib.figure import Figure
-from performance_results import ASKED, by_scene, in_cpp, read, span, times_of
+from performance_results import ASKED, by_scene, in_cpp, is_ours, read, span, times_of
 
 from volcontact.report.palette import NATIVE, UNEXPLAINED, VOLUMETRIC
 
@@ -65,12 +65,38 @@ _LOOKS = {
 
 def _plot_peers() -> Figure:
     rows = read("peers")
-    cases = list(dict.fromkeys(row["case"] for row in rows))
-    figure = Figure(figsize=(8.0, 5.6), layout="constrained")
+    ours = {row["case"]: float(in_cpp(row["case"])["time_us"]) for row in rows}
+    return _ratios(rows, ours, _LOOKS)
+
+
+_MESH_LOOKS = {
+    "manifold3d, boolean": ("manifold3d (overlap, volume)", "#1aa179", "o"),
+    "CGAL, corefinement": ("CGAL (overlap, all moments)", "#c0392b", "o"),
+    "manifold3d, boolean, 64 segments": (None, "#1aa179", "o"),
+    "Drake, hydroelastic": ("Drake hydroelastic (surface)", "#8a4fff", "D"),
+    "MuJoCo, native": ("MuJoCo native (points of hulls)", NATIVE, "x"),
+    "MuJoCo, SDF": ("MuJoCo SDF (points)", "#f2b134", "x"),
+}
+
+
+def _plot_meshes() -> Figure:
+    rows = read("mesh_pairs")
+    ours = {row["case"]: float(row["time_us"]) for row in rows if is_ours(row)}
+    return _ratios(rows, ours, _MESH_LOOKS)
+
+
+def _ratios(
+    rows: list[dict[str, str]],
+    ours: dict[str, float],
+    looks: dict[str, tuple[str | None, str, str]],
+) -> Figure:
+    """Times by ours, a line for each pair."""
+    cases = list(ours)
+    figure = Figure(figsize=(8.0, 1.2 + 0.26 * len(cases)), layout="constrained")
     axes = figure.subplots()
-    for name, (label, color, marker) in _LOOKS.items():
+    for name, (label, color, marker) in looks.items():
         mine = [row for row in rows if f"{row['library']}, {row['variant']}" == name]
-        ratios = [float(row["time_us"]) / float(in_cpp(row["case"])["time_us"]) for row in mine]
+        ratios = [float(row["time_us"]) / ours[row["case"]] for row in mine]
         places = [cases.index(row["case"]) for row in mine]
         if mine:
             axes.plot(ratios, places, marker, ms=6, color=color, label=label, alpha=0.85)
@@ -79,10 +105,10 @@ def _plot_peers() -> Figure:
     axes.invert_yaxis()
     axes.set_xscale("log")
     axes.minorticks_off()
-    ticks = [0.01, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 1e6]
+    ticks = [1e-4, 0.01, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 1e6]
     low, high = axes.get_xlim()
     ticks = [tick for tick in ticks if low <= tick <= high]
-    axes.set_xticks(ticks, [f"{tick:,g}" if tick < 1e5 else f"{tick:,.0f}" for tick in ticks])
+    axes.set_xticks(ticks, [f"{tick:,.0f}" if tick >= 1 else f"{tick:g}" for tick in ticks])
     axes.grid()
     axes.set_xlabel("time by that of volcontact in C++ (left of 1: faster than ours)")
     figure.legend(loc="outside upper right", ncols=3, fontsize=8.5)
@@ -120,5 +146,6 @@ def _names(ticks: list[float]) -> list[str]:
 PLOT: dict[str, Callable[[], Figure]] = {
     "pairs": _plot_pairs,
     "peers": _plot_peers,
+    "meshes": _plot_meshes,
     "steps": _plot_steps,
 }

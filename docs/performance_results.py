@@ -133,7 +133,7 @@ def medians(clock: str = "cpu_time") -> dict[str, float]:
 def digest() -> str:
     """Of all results: the plots carry it, so that a test knows whether they are up to date."""
     total = hashlib.sha256()
-    for name in (*CPP_TABLES, "conditions", "peers", "steps"):
+    for name in (*CPP_TABLES, "conditions", "mesh_pairs", "peers", "steps"):
         total.update((RESULTS / f"{name}.csv").read_bytes())
     return total.hexdigest()[:16]
 
@@ -155,7 +155,9 @@ def span(microseconds: float) -> str:
         return f"{1e3 * microseconds:.3g} ns"
     if microseconds < 1e3:
         return f"{microseconds:.3g} us"
-    return f"{microseconds / 1e3:.3g} ms"
+    if microseconds < 1e6:
+        return f"{microseconds / 1e3:.3g} ms"
+    return f"{microseconds / 1e6:.3g} s"
 
 
 def small(number: str) -> str:

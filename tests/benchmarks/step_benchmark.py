@@ -10,12 +10,14 @@ from __future__ import annotations
 
 import argparse
 import csv
+import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import assembly
 import mujoco
 import numpy as np
 
@@ -160,6 +162,25 @@ def scenes() -> Iterator[Scene]:
     yield Scene("20 boxes on a floor", vc.load(boxes_on_floor(20)), settle=0.5)
     yield Scene("20 boxes in 4 stacks", vc.load(stacks(20)), settle=0.5)
     yield Scene("18 boxes apart", vc.load(boxes_apart(18)), settle=0.0)
+    yield from pegs()
+
+
+def pegs() -> Iterator[Scene]:
+    """A peg of 8 mm in a hole of 8.2 mm, each a mesh of 20k triangles."""
+    with tempfile.TemporaryDirectory(prefix="volcontact-") as folder:
+        path = assembly.with_meshes(Path(folder) / "peg", 160, 60) / "scene_mesh.xml"
+        aligned, leaning = vc.load(path), assembly.jamming.loaded_model(path)
+    deep = assembly.jamming.UPPER_FACE - assembly.DEPTH + assembly.pegs.LENGTH / 2
+    aligned.qpos0[:] = 0.0, 0.0, deep, 1.0, 0.0, 0.0, 0.0
+    yield Scene("peg in hole, 20k triangles, aligned", aligned, settle=0.0, again=True)
+
+    data = mujoco.MjData(leaning)
+    with vc.attach(leaning) as contact:
+        clearance, azimuth = assembly.HOLES["8.2"][1], assembly.ANY_DIRECTION
+        assembly.jamming.place_loaded(leaning, data, contact, clearance, azimuth)
+    leaning.qpos0[:] = data.qpos
+    # So few steps that it does not spring away.
+    yield Scene("peg in hole, 20k triangles, at two points", leaning, 0.0, steps=20, again=True)
 
 
 def boxes_on_floor(count: int) -> str:
@@ -220,7 +241,7 @@ def main() -> None:
         for row in measure(scene):
             rows.append(row)
             print(
-                f"{row['scene']:36} {row['contact']:12} {row['time_us']:>9} us a step, "
+                f"{row['scene']:41} {row['contact']:12} {row['time_us']:>9} us a step, "
                 f"{row['touching']:>4} touching, {row['speed_mm_s']:>8} mm/s",
                 flush=True,
             )

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Python module `volcontact_timing` of peers_benchmark.py: our queries timed without Python, and
-// the independent integral they are judged by. The solids are those of the package `volcontact`.
+// Python module `volcontact_timing` of peers_benchmark.py and mesh_benchmark.py: our queries timed
+// without Python, the independent integral they are judged by, and the bumpy balls of the tests.
+// The solids are those of the package `volcontact`.
 #include <nanobind/eigen/dense.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
@@ -14,6 +15,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/support/meshes.h"
 #include "core/support/reference_integral.h"
 #include "volcontact/base/simd.h"
 #include "volcontact/pair/interference.h"
@@ -79,6 +81,21 @@ std::tuple<double, double> reference_volume(const Shape& a, const Shape& b, cons
   return {r.metrics.volume, r.volume_error};
 }
 
+using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+using Faces = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+// Points and triangles of a ball of about radius 1 with bumps, 20 * 4^levels triangles.
+std::tuple<Points, Faces> bumpy_ball(int levels, int seed) {
+  const test::Soup soup = test::bumpy_soup(levels, seed);
+  Points points(soup.vertices.size(), 3);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) points.row(i) = soup.vertices[i];
+  Faces faces(soup.triangles.size(), 3);
+  for (Eigen::Index i = 0; i < faces.rows(); ++i) {
+    for (int corner = 0; corner < 3; ++corner) faces(i, corner) = soup.triangles[i][corner];
+  }
+  return {points, faces};
+}
+
 const char* simd_path() {
   constexpr const char* kNames[] = {"portable", "AVX2", "AVX-512"};
   return kNames[static_cast<int>(best_simd_path())];
@@ -92,6 +109,7 @@ NB_MODULE(volcontact_timing, m) {
         nb::arg("tolerance"), nb::arg("engine"), nb::arg("queries"));
   m.def("reference_volume", &reference_volume, nb::arg("a"), nb::arg("b"), nb::arg("X_AB"),
         nb::arg("half_range"));
+  m.def("bumpy_ball", &bumpy_ball, nb::arg("levels"), nb::arg("seed"));
   m.def("simd_path", &simd_path);
 }
 

@@ -100,3 +100,57 @@ def test_shifted_peg_sticks_out_by_a_crescent_all_along() -> None:
     lens -= d * r * math.sqrt(1 - p * p)
     crescent = math.pi * r * r - lens
     assert exact_volumes.peg_in_bore(block, peg, pose) == pytest.approx(0.04 * crescent, rel=1e-5)
+
+
+def mesh_of_box(half: float) -> bodies.Body:
+    points = half * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    around = {0: (0, 1, 3, 2), 1: (0, 4, 5, 1), 2: (0, 2, 6, 4)}
+    triangles = []
+    for axis, (a, b, c, d) in around.items():
+        far = {0: 4, 1: 2, 2: 1}[axis]
+        triangles += [
+            (a, b, c),
+            (a, c, d),
+            (a + far, c + far, b + far),
+            (a + far, d + far, c + far),
+        ]
+    return bodies.mesh(points, np.array(triangles))
+
+
+@pytest.mark.parametrize("height", [-0.3, 0.0, 0.4])
+def test_ball_in_the_face_of_a_mesh_is_a_cap(height: float) -> None:
+    depth = 0.5 - height
+    volume = exact_volumes.ball_in_mesh(
+        mesh_of_box(2.0), bodies.ball(0.5), pose_of(np.eye(3), (0.3, -0.2, 2.0 + height))
+    )
+    assert volume == pytest.approx(math.pi * depth**2 * (1.5 - depth) / 3, rel=EXACT)
+
+
+@pytest.mark.parametrize(
+    ("position", "share"),
+    [((0, 0, 0), 1), ((2, 0, 0), 1 / 2), ((2, 2, 0), 1 / 4), ((2, 2, 2), 1 / 8)],
+)
+def test_ball_on_a_mesh_of_a_box(position: tuple[float, ...], share: float) -> None:
+    pose = pose_of(np.eye(3), position)
+    volume = exact_volumes.ball_in_mesh(mesh_of_box(2.0), bodies.ball(0.5), pose)
+    assert volume == pytest.approx(share * math.pi / 6, rel=EXACT)
+
+
+def test_mesh_in_a_ball_is_the_mesh() -> None:
+    volume = exact_volumes.ball_in_mesh(mesh_of_box(0.2), bodies.ball(0.5), np.eye(4))
+    assert volume == pytest.approx(0.4**3, rel=EXACT)
+
+
+def test_ball_beyond_a_mesh_has_no_overlap() -> None:
+    pose = pose_of(np.eye(3), (0.8, 0.1, 0.0))
+    volume = exact_volumes.ball_in_mesh(mesh_of_box(0.2), bodies.ball(0.5), pose)
+    assert volume == pytest.approx(0.0, abs=1e-15)
+
+
+def test_a_turned_profile_is_a_ring_of_prisms() -> None:
+    """A rectangle turned in 12 steps: the difference of two prisms of 12 sides."""
+    profile = np.array([(1.0, -0.2), (1.5, -0.2), (1.5, 0.3), (1.0, 0.3)])
+    ring = bodies.turned_mesh(profile, 12)
+    area = 12 / 2 * math.sin(2 * math.pi / 12) * (1.5**2 - 1.0**2)
+    assert not ring.ours.turned
+    assert ring.ours.own_metrics().volume == pytest.approx(0.5 * area, rel=EXACT)

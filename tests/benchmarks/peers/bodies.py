@@ -20,7 +20,8 @@ class Body:
         sizes [m]: its radii and half lengths, in the order of our constructor
         size [m]: radius of a ball about the origin that holds it; infinite for the half-space
         ours: the solid of volcontact
-        points [m]: corners of a polytope, shape (n, 3)
+        points [m]: corners of a polytope or of a mesh, shape (n, 3)
+        triangles: of a mesh, counterclockwise seen from outside, shape (m, 3)
     """
 
     kind: str
@@ -28,6 +29,7 @@ class Body:
     size: float
     ours: Any
     points: np.ndarray | None = None
+    triangles: np.ndarray | None = None
 
 
 def half_space() -> Body:
@@ -79,3 +81,23 @@ def bored_block(half_sizes: tuple[float, float, float], radius: float) -> Body:
     """A box with a bore through it, about the z axis."""
     solid = vc.Box(half_sizes) - vc.Cylinder(radius, 1.5 * half_sizes[2])
     return Body("bored_block", (*half_sizes, radius), float(np.linalg.norm(half_sizes)), solid)
+
+
+def mesh(points: np.ndarray, triangles: np.ndarray) -> Body:
+    """What closed triangles enclose."""
+    size = float(np.linalg.norm(points, axis=1).max())
+    triangles = np.asarray(triangles, dtype=np.int32)
+    return Body("mesh", (), size, vc.Mesh(points, triangles), points, triangles)
+
+
+def turned_mesh(profile: np.ndarray, chords: int) -> Body:
+    """A closed profile (radius, z) [m], counterclockwise, shape (n, 2), turned about the z axis."""
+    angles = 2 * np.pi * np.arange(chords) / chords
+    around = np.stack([np.cos(angles), np.sin(angles), np.ones(chords)], axis=1)
+    points = (around[:, None] * profile[None][:, :, [0, 0, 1]]).reshape(-1, 3)
+    n = len(profile)
+    i, j = (x.ravel() for x in np.meshgrid(np.arange(chords), np.arange(n), indexing="ij"))
+    a, b = i * n + j, i * n + (j + 1) % n
+    c, d = ((i + 1) % chords) * n + (j + 1) % n, ((i + 1) % chords) * n + j
+    triangles = np.concatenate([np.stack([a, d, c], axis=1), np.stack([a, c, b], axis=1)])
+    return mesh(points, triangles)

@@ -39,7 +39,7 @@ logging.getLogger("drake").setLevel(logging.ERROR)  # it warns of deformable bod
 SEGMENTS = 64  # of the circles of meshes
 FINENESS = 0.1  # resolution hint by the size of the body
 MODULUS = 1.0  # [Pa], of all compliant bodies; with a slab of 1 m the pressure is the depth
-MESHES = {"bored_block", "torus"}
+MESHES = {"bored_block", "mesh", "torus"}
 
 
 class _Scene:

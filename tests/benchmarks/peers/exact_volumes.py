@@ -192,6 +192,52 @@ def peg_in_bore(a: Body, b: Body, pose: np.ndarray) -> float:
     )
 
 
+def ball_in_mesh(a: Body, b: Body, pose: np.ndarray) -> float:
+    """Ball in a mesh: cones from the middle of the ball over the triangles, cut by the ball.
+
+    A triangle, seen from the foot of its plane, is three fans of one edge each. The part of a fan
+    within the ball adds a flat cone, the part beyond it a cone with a piece of the sphere for base.
+    """
+    assert a.points is not None and a.triangles is not None
+    radius = b.sizes[0]
+    corners = (a.points - pose[:3, 3])[a.triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    lengths = np.linalg.norm(normals, axis=1)
+    corners, normals = corners[lengths > 0], normals[lengths > 0] / lengths[lengths > 0, None]
+    heights = np.einsum("ni,ni->n", normals, corners[:, 0])
+    feet = heights[:, None] * normals
+    squares = np.maximum(radius**2 - heights**2, 0.0)  # of the radii of the discs in the planes
+    total = 0.0
+    for k in range(3):
+        begin, edge = corners[:, k], corners[:, (k + 1) % 3] - corners[:, k]
+        # The line is in the disc where |begin - foot + t edge|^2 < square.
+        c2 = (edge**2).sum(axis=1)
+        c1 = ((begin - feet) * edge).sum(axis=1)
+        c0 = ((begin - feet) ** 2).sum(axis=1) - squares
+        root = np.sqrt(np.maximum(c1**2 - c2 * c0, 0.0))
+        enter, leave = np.clip((-c1 - root) / c2, 0, 1), np.clip((-c1 + root) / c2, 0, 1)
+        cuts = [begin + t[:, None] * edge for t in (0 * enter, enter, leave, 0 * enter + 1)]
+        for piece, (p, q) in enumerate(pairwise(cuts)):
+            twice = np.einsum("ni,ni->n", normals, np.cross(p - feet, q - feet))
+            if piece == 1:
+                total += (heights * twice).sum() / 6
+                continue
+            angles = np.arctan2(twice, ((p - feet) * (q - feet)).sum(axis=1))
+            base = _solid_angle(feet, p, q) - angles * (np.sign(heights) - heights / radius)
+            beyond = np.abs(heights) >= radius
+            base[beyond] = _solid_angle(feet, p, q)[beyond]
+            total += (heights * squares * angles / 6 + radius**3 / 3 * base).sum()
+    return float(total)
+
+
+def _solid_angle(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """Of triangles, seen from the origin, shape (n,)."""
+    p, q, r = (np.linalg.norm(x, axis=1) for x in (a, b, c))
+    ab, bc, ca = ((x * y).sum(axis=1) for x, y in ((a, b), (b, c), (c, a)))
+    across = np.einsum("ni,ni->n", a, np.cross(b, c))
+    return 2 * np.arctan2(across, p * q * r + ab * r + bc * p + ca * q)
+
+
 def polytopes(a: Body, b: Body, pose: np.ndarray) -> float:
     """Convex polytopes: every face cut by all other planes, in rational numbers."""
     rotation = [[Fraction(float(x)) for x in row] for row in pose[:3, :3]]

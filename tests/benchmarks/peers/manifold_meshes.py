@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import manifold3d
 import numpy as np
-from manifold3d import CrossSection, Manifold
+from manifold3d import CrossSection, Manifold, Mesh64
 
 from .bodies import Body
 
@@ -35,6 +35,9 @@ def mesh_of(body: Body, segments: int) -> Manifold:
         return Manifold.revolve(circle, segments)
     if body.kind == "polytope":
         return Manifold.hull_points(np.asarray(body.points))
+    if body.kind == "mesh":
+        assert body.triangles is not None
+        return Manifold(Mesh64(body.points, body.triangles.astype(np.uint64)))
     assert body.kind == "bored_block"
     bore = Manifold.cylinder(3 * s[2], s[3], s[3], segments, center=True)
     return Manifold.cube([2 * h for h in s[:3]], center=True) - bore
@@ -42,6 +45,8 @@ def mesh_of(body: Body, segments: int) -> Manifold:
 
 def triangles_of(body: Body, segments: int) -> tuple[np.ndarray, np.ndarray]:
     """Corners [m], shape (n, 3), and triangles, shape (m, 3), of the mesh."""
+    if body.kind == "mesh":
+        return body.points, body.triangles
     mesh = mesh_of(body, segments).to_mesh64()
     return np.asarray(mesh.vert_properties)[:, :3], np.asarray(mesh.tri_verts)
 
@@ -56,7 +61,7 @@ class Boolean:
         self.a, self.b = mesh_of(a, self.segments), mesh_of(b, self.segments)
         # Moving a mesh costs time too: the smaller one is moved.
         self.moves_b = self.b.num_tri() <= self.a.num_tri()
-        flat = {"half_space", "box", "polytope"}
+        flat = {"half_space", "box", "mesh", "polytope"}
         exact = a.kind in flat and b.kind in flat
         self.variant = "boolean" if exact else f"boolean, {self.segments} segments"
         triangles = self.a.num_tri() + self.b.num_tri()

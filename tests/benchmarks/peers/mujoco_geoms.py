@@ -41,7 +41,7 @@ class Native:
             assert body.points is not None
             asset = f'<mesh name="{name}" vertex="{_numbers(body.points)}"/>'
             return asset, f'<geom type="mesh" mesh="{name}" mass="1"/>'
-        if body.kind in ("bored_block", "torus"):
+        if body.kind in ("bored_block", "torus", "mesh"):
             from .manifold_meshes import triangles_of
 
             corners, triangles = triangles_of(body, SEGMENTS)
@@ -82,6 +82,22 @@ class Sdf(Native):
         if not {a.kind, b.kind} & {"bored_block", "torus"}:
             raise Unsupported
         self.note = f"distance field of a mesh of {SEGMENTS} segments; points"
+
+
+class Hull(Native):
+    """Contact points of convex hulls."""
+
+    def _check(self, a: Body, b: Body) -> None:
+        self.note = "points of the convex hulls, depth and normal"
+
+
+class MeshSdf(Native):
+    """Contact points by descent on the distance fields of the meshes themselves."""
+
+    variant, mesh_type = "SDF", "sdf"
+
+    def _check(self, a: Body, b: Body) -> None:
+        self.note = "points by descent on the distance field of the mesh"
 
 
 def _numbers(values: np.ndarray) -> str:
