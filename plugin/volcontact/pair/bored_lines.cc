@@ -214,7 +214,8 @@ class BoreRun {
     error_ = 0.0;
     set_breaks(low, high, open);
     volume_scale_ = 0.0;
-    const bool smooth_ring = !open && s_.breaks.complete && breaks_.size() == 2 && ring();
+    const bool smooth_ring = !open && s_.breaks.complete && breaks_.size() == 2 &&
+                             integrate_even_turn(s_.fan, s_.path, options_.tolerance, error_);
     for (std::size_t i = 0; i + 1 < breaks_.size() && !smooth_ring; ++i) {
       const double from = breaks_[i], to = breaks_[i + 1];
       const int parts = std::max(1, static_cast<int>(std::ceil((to - from) / kWidestAngle)));
@@ -275,27 +276,6 @@ class BoreRun {
     }
     error_ += error;
     s_.fan.accept_batch();
-  }
-
-  // A ring without corners: equal steps of the angle. False when 32 of them are too few.
-  bool ring() {
-    for (int batches : {2, 4}) {
-      double u[kLanes], v[kLanes], weight[kLanes], section[kLanes], volume[2] = {0.0, 0.0};
-      std::fill_n(weight, kLanes, 2.0 * kPi / (batches * kLanes));
-      s_.fan.clear();
-      for (int k = 0; k < batches; ++k) {
-        even_directions(batches * kLanes, k, u, v);
-        s_.fan.integrate(s_.path, u, v, weight, section);
-        s_.fan.accept_batch();
-        volume[k % 2] += s_.fan.batch().moments[0];
-      }
-      error_ = even_error(volume[0], volume[1]);
-      if (error_ <= outer_rule::kEvenTarget * options_.tolerance * (volume[0] + volume[1]))
-        return true;
-    }
-    s_.fan.clear();
-    error_ = 0.0;
-    return false;
   }
 
   void add_region() {

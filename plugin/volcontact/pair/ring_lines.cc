@@ -105,7 +105,9 @@ class RingRun {
     error_ = volume_scale_ = 0.0;
     set_corners(range);
     const bool done =
-        range.whole ? s_.breaks.empty() && even_turn() : corners_.size() == 2 && whole_range(range);
+        range.whole
+            ? s_.breaks.empty() && integrate_even_turn(s_.fan, s_.path, options_.tolerance, error_)
+            : corners_.size() == 2 && whole_range(range);
     for (std::size_t i = 0; i + 1 < corners_.size() && !done; ++i) {
       const double from = corners_[i], to = corners_[i + 1];
       const bool begins = !range.whole && i == 0, ends = !range.whole && i + 2 == corners_.size();
@@ -192,28 +194,6 @@ class RingRun {
     }
     error_ += error;
     s_.fan.accept_batch();
-  }
-
-  // All round and without corners: equal steps of the angle. False when 32 of them are too few.
-  bool even_turn() {
-    for (int batches : {2, 4}) {
-      double u[kLanes], v[kLanes], weight[kLanes], section[kLanes], volume[2] = {0.0, 0.0};
-      std::fill_n(weight, kLanes, 2.0 * kPi / (batches * kLanes));
-      s_.fan.clear();
-      for (int k = 0; k < batches; ++k) {
-        even_directions(batches * kLanes, k, u, v);
-        s_.fan.integrate(s_.path, u, v, weight, section);
-        s_.fan.accept_batch();
-        volume[k % 2] += s_.fan.batch().moments[0];
-      }
-      error_ = even_error(volume[0], volume[1]);
-      if (error_ <= outer_rule::kEvenTarget * options_.tolerance * (volume[0] + volume[1])) {
-        return true;
-      }
-    }
-    s_.fan.clear();
-    error_ = 0.0;
-    return false;
   }
 
   void add_region() {

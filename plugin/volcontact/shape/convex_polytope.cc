@@ -9,6 +9,7 @@
 
 #include "volcontact/base/fields.h"
 #include "volcontact/shape/convex_hull.h"
+#include "volcontact/shape/tetrahedron_sum.h"
 
 namespace volcontact {
 namespace {
@@ -141,24 +142,6 @@ std::vector<Loop> faces_of_hull(const std::vector<Triangle>& triangles,
   return is_closed_surface(loops) ? loops : single;
 }
 
-// Exact sums of the tetrahedra from a point inside to each triangle.
-VolumeMetrics metrics_of(const std::vector<Triangle>& triangles, const std::vector<Vec3>& points) {
-  const Vec3 origin = points[triangles[0][0]];
-  MomentSum sum;
-  for (const Triangle& t : triangles) {
-    const Vec3 a = points[t[0]] - origin, b = points[t[1]] - origin, c = points[t[2]] - origin;
-    const double det = a.dot(b.cross(c));
-    const Vec3 s = a + b + c;
-    sum.volume += det / 6.0;
-    sum.first += det / 24.0 * s;
-    sum.second += det / 120.0 *
-                  (s * s.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
-  }
-  VolumeMetrics metrics = sum.metrics();
-  metrics.centroid += origin;
-  return metrics;
-}
-
 // A sliver's own normal is noise. Any direction outward will do for it: the plane at support height
 // in that direction only touches the solid.
 ConvexPolytope::Face make_face(const Loop& loop, const std::vector<Vec3>& vertices,
@@ -176,15 +159,17 @@ ConvexPolytope::Face make_face(const Loop& loop, const std::vector<Vec3>& vertic
 ConvexPolytope::ConvexPolytope(const std::vector<Vec3>& points) {
   const std::vector<Triangle> triangles = convex_hull(points);
   auto data = std::make_shared<Data>();
-  data->metrics = metrics_of(triangles, points);
-  data->bounds = {points[triangles[0][0]], points[triangles[0][0]]};
+  TetrahedronSum sum{points[triangles[0][0]], {}};
+  data->bounds = {sum.origin, sum.origin};
   for (const Triangle& t : triangles) {
-    data->surface_area += area_of(t, points);
+    sum.add(points[t[0]], points[t[1]], points[t[2]]);
     for (int corner : t) {
       data->bounds.min = data->bounds.min.cwiseMin(points[corner]);
       data->bounds.max = data->bounds.max.cwiseMax(points[corner]);
     }
   }
+  data->metrics = sum.metrics();
+  data->surface_area = sum.surface_area;
   const double size = (data->bounds.max - data->bounds.min).norm();
   MeshTopology surface;
   make_topology(points, triangles, surface);

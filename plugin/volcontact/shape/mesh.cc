@@ -6,32 +6,10 @@
 #include <stdexcept>
 
 #include "volcontact/base/fields.h"
+#include "volcontact/shape/tetrahedron_sum.h"
 
 namespace volcontact {
 namespace {
-
-// Exact sums over the tetrahedra from one point to each triangle.
-struct TetrahedronSum {
-  Vec3 origin;
-  MomentSum sum;
-  double surface_area = 0.0;
-
-  void add(const Vec3& p, const Vec3& q, const Vec3& r) {
-    const Vec3 a = p - origin, b = q - origin, c = r - origin;
-    const double det = a.dot(b.cross(c));
-    const Vec3 s = a + b + c;
-    sum.volume += det / 6.0;
-    sum.first += det / 24.0 * s;
-    sum.second += det / 120.0 *
-                  (s * s.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
-    surface_area += 0.5 * (b - a).cross(c - a).norm();
-  }
-  VolumeMetrics metrics() const {
-    VolumeMetrics m = sum.metrics();
-    m.centroid += origin;
-    return m;
-  }
-};
 
 Mesh::Components components_of(const MeshTopology& mesh, const ObbTree& tree, const Vec3& origin) {
   const auto count = static_cast<std::size_t>(mesh.component_count);

@@ -38,6 +38,12 @@ struct ObbTree {
   std::vector<int> twins;
 };
 
+/// Two nodes of trees, and their lanes that a search through both has yet to compare.
+struct NodePair {
+  int node_a, node_b;
+  unsigned lanes_a, lanes_b;
+};
+
 ObbTree make_obb_tree(const MeshTopology& topology);
 
 }  // namespace volcontact

@@ -56,12 +56,8 @@ struct ColumnWindow {
 
 /// Memory of the search for cells.
 struct CellScratch {
-  struct Entry {
-    int node_a, node_b;
-    unsigned lanes_a, lanes_b;
-  };
   SimdPath path = best_simd_path();
-  std::vector<Entry> stack;
+  std::vector<NodePair> stack;
   std::vector<int> leaf_pairs;  ///< leaf of A, leaf of B, ...
   std::vector<ColumnCell> cells;
   bool upright = false;  ///< some triangle in the window has no projection

@@ -21,12 +21,8 @@ struct TriangleContact {
 
 /// Memory of the search for contacts.
 struct CrossingScratch {
-  struct Entry {
-    int node_a, node_b;
-    unsigned lanes_a, lanes_b;
-  };
   SimdPath path = best_simd_path();
-  std::vector<Entry> stack;
+  std::vector<NodePair> stack;
   std::vector<int> leaf_pairs;  ///< leaf of A, leaf of B, ...
   std::vector<TriangleContact> contacts;
 };
