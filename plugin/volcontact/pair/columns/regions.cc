@@ -173,8 +173,53 @@ bool is_layered(const std::vector<ColumnCell>& cells) noexcept {
                      [](const ColumnCell& c) { return c.sign_f > 0 || c.sign_g < 0; });
 }
 
+namespace {
+
+// Cells over a half-space that stand side by side, one for each face: its neighbours are known.
+int find_regions_below(const ObbTree& a, std::vector<ColumnCell>& cells, RegionScratch& scratch) {
+  const int count = static_cast<int>(cells.size());
+  std::vector<int>& of_slot = scratch.cell_of_slot;
+  if (of_slot.size() < a.triangle_of_slot.size()) of_slot.resize(a.triangle_of_slot.size(), -1);
+  std::vector<int>& parent = scratch.parent;
+  parent.resize(cells.size());
+  for (int i = 0; i < count; ++i) {
+    parent[i] = i;
+    of_slot[cells[i].f] = i;
+  }
+  const auto root = [&](int i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (int i = 0; i < count; ++i) {
+    ColumnCell& cell = cells[i];
+    for (int label = 0; label < 3; ++label) {
+      if ((cell.labels & 1u << label) == 0) continue;
+      const int other = of_slot[a.twins[3 * cell.f + label] / 3];
+      if (other < 0) {
+        cell.walls = static_cast<unsigned char>(cell.walls | 1u << label);
+      } else if (other < i) {
+        const int one = root(i), two = root(other);
+        parent[std::max(one, two)] = std::min(one, two);
+      }
+    }
+  }
+  scratch.region_of.resize(cells.size());
+  scratch.number.assign(cells.size(), -1);
+  int regions = 0;
+  for (int i = 0; i < count; ++i) {
+    int& number = scratch.number[root(i)];
+    if (number < 0) number = regions++;
+    scratch.region_of[i] = {number, number, cells[i].walls != 0 ? number : -1, -1};
+    of_slot[cells[i].f] = -1;
+  }
+  return regions;
+}
+
+}  // namespace
+
 int find_regions(const ObbTree& a, const ObbTree* b, std::vector<ColumnCell>& cells,
                  RegionScratch& scratch) noexcept {
+  if (b == nullptr && !is_layered(cells)) return find_regions_below(a, cells, scratch);
   const int count = static_cast<int>(cells.size());
   Joiner joiner(a, b, cells, scratch);
   // 0: no part of the surface; 1: its cells lie side by side; 2: they overlap.

@@ -29,6 +29,7 @@ struct RegionScratch {
   std::vector<Wall> walls;
   std::vector<unsigned char> solid;
   std::vector<CellRegion> region_of;
+  std::vector<int> cell_of_slot;  ///< -1 between uses
 };
 
 /// Parts the cells into the connected regions of the overlap and marks the edges of cells across
