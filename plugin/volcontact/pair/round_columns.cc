@@ -26,6 +26,13 @@ constexpr double kAlmostAxis = 0.97, kAlmostAcross = 0.3;
 
 std::size_t padded(std::size_t count) { return (count + kLanes - 1) / kLanes * kLanes; }
 
+double square_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 way = b - a;
+  const double square = way.squaredNorm();
+  const double t = square > 0.0 ? std::clamp((p - a).dot(way) / square, 0.0, 1.0) : 0.0;
+  return (a + t * way - p).squaredNorm();
+}
+
 // Surface integrals over the triangles and slivers of one patch, in Q.
 struct PatchSurface {
   Vec3 area_vector = Vec3::Zero(), area_moment = Vec3::Zero();
@@ -72,7 +79,7 @@ class RoundColumns {
     for (Patch& patch : s_.patches) {
       if (!measure(patch)) return false;
     }
-    add_sites(transformed(own_b, X_AB_));
+    add_sites(transformed(own_b, X_QB));
     return is_finite(out_.total);
   }
 
@@ -96,8 +103,7 @@ class RoundColumns {
       p -= origin_;
       if (round_level(solid_, p, gradient) > 0.0) return false;
       for (int k = 0; k < solid_.plane_count; ++k) {
-        const double* n = solid_.normal[k];
-        if (n[0] * p[0] + n[1] * p[1] + n[2] * p[2] > solid_.offset[k]) return false;
+        if (solid_.over_plane(k, p) > 0.0) return false;
       }
     }
     return true;
@@ -177,11 +183,10 @@ class RoundColumns {
   // Which plane faces of B the outline of the patch may run along.
   void find_active_planes() {
     for (int k = 0; k < solid_.plane_count; ++k) {
-      const Vec3 n(solid_.normal[k][0], solid_.normal[k][1], solid_.normal[k][2]);
       double highest = -kInfinity, lowest = kInfinity;
       for (const Triangle& t : s_.pieces_of_patch) {
         for (const Vec3& p : t.corner) {
-          const double h = n.dot(p) - solid_.offset[k];
+          const double h = solid_.over_plane(k, p);
           highest = std::max(highest, h);
           lowest = std::min(lowest, h);
         }
@@ -200,7 +205,7 @@ class RoundColumns {
     }
     Vec3 sum = -round.stableNormalized();
     for (int k = 0; k < solid_.plane_count; ++k) {
-      if (active_[k]) sum -= Vec3(solid_.normal[k][0], solid_.normal[k][1], solid_.normal[k][2]);
+      if (active_[k]) sum -= solid_.plane_normal(k);
     }
     return sum.isZero(1e-9) ? Vec3::UnitZ() : Vec3(sum.normalized());
   }
@@ -209,8 +214,7 @@ class RoundColumns {
   bool try_direction(const Vec3& up, std::size_t slivers, const PatchSurface& surface,
                      Patch& patch) {
     for (int k = 0; k < solid_.plane_count; ++k) {
-      const Vec3 n(solid_.normal[k][0], solid_.normal[k][1], solid_.normal[k][2]);
-      if (active_[k] && n.dot(up) > kLooksUp) return false;
+      if (active_[k] && solid_.plane_normal(k).dot(up) > kLooksUp) return false;
     }
     s_.parts = s_.pieces_of_patch;
     for (int k = 0; k < solid_.plane_count; ++k) {
@@ -229,21 +233,16 @@ class RoundColumns {
     const Vec3 n = surface.area_vector.stableNormalized();
     RoundSum along_n = sum;  // what the depth is about
     if (!n.isZero(0.0) && up.dot(n) < 1.0 - 1e-9 && up.dot(n) > 0.0) along_n = sum_parts(n);
-    MomentSum moments;
-    moments.volume = sum.volume;
-    moments.first = sum.first;
-    moments.second = sum.second;
-    moments.area_vector = surface.area_vector;
-    moments.area_moment = surface.area_moment;
-    moments.area = surface.area;
-    moments.counter_area = std::abs(sum.counter_area);
-    // A negative volume is to be taken away from a positive one, with all its moments.
-    VolumeMetrics& m = patch.metrics;
-    m = moments.volume > 0.0 ? moments.metrics() : negative_metrics(moments);
-    m.depth_moment = along_n.energy;
-    m.depth = height_over(along_n.low, n.isZero(0.0) ? up : n);
-    m.volume_error = error_of(sum);
-    m = transformed(m, Pose{Mat3::Identity(), origin_});
+    patch.moments = {sum.volume,
+                     sum.first,
+                     sum.second,
+                     surface.area_vector,
+                     surface.area_moment,
+                     surface.area,
+                     std::abs(sum.counter_area)};
+    patch.depth_moment = along_n.energy;
+    patch.depth = height_over(along_n.low, n.isZero(0.0) ? up : n);
+    patch.volume_error = error_of(sum);
     return true;
   }
 
@@ -254,20 +253,6 @@ class RoundColumns {
       for (const Vec3& p : t.corner) high = std::max(high, up.dot(p));
     }
     return high - low;
-  }
-
-  static VolumeMetrics negative_metrics(const MomentSum& moments) {
-    VolumeMetrics m;
-    m.volume = moments.volume;
-    if (m.volume == 0.0) return m;
-    m.centroid = moments.first / m.volume;
-    const Mat3 second = moments.second - m.centroid * moments.first.transpose();
-    m.inertia = second.trace() * Mat3::Identity() - second;
-    m.area_vector = moments.area_vector;
-    m.area_moment = moments.area_moment;
-    m.area = moments.area;
-    m.counter_area = moments.counter_area;
-    return m;
   }
 
   double error_of(const RoundSum& sum) const {
@@ -297,12 +282,7 @@ class RoundColumns {
         s_.divided.push_back(t);
         continue;
       }
-      const Vec3 &a = t.corner[0], &b = t.corner[1], &c = t.corner[2];
-      const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
-      s_.divided.push_back({{a, ab, ca}, t.face});
-      s_.divided.push_back({{ab, b, bc}, t.face});
-      s_.divided.push_back({{ca, bc, c}, t.face});
-      s_.divided.push_back({{ab, bc, ca}, t.face});
+      for (const Triangle& part : t.quarters()) s_.divided.push_back(part);
     }
     std::swap(s_.parts, s_.divided);
   }
@@ -314,51 +294,73 @@ class RoundColumns {
     double volume = 0.0;
     int copies = 0;
     for (const Patch& patch : s_.patches) {
-      volume += patch.metrics.volume;
-      if (patch.metrics.volume < 0.0) ++copies;
+      volume += patch.moments.volume;
+      if (patch.moments.volume < 0.0) ++copies;
     }
-    volume += copies * own_b.volume;
-    const double share = volume / own_b.volume;
-    copies -= static_cast<int>(std::floor(share));
-    // Next to a whole number rounding has decided; then a point in the middle of B does.
-    if (std::abs(share - std::round(share)) < kAlmostWhole) {
-      const bool filled = winding_around(a_, origin_, s_.cells) > 0;
-      copies += static_cast<int>(std::floor(share) - std::round(share)) + (filled ? 1 : 0);
+    const bool split = copies > 0;
+    const double share = volume / own_b.volume + copies;
+    const double whole = std::round(share);
+    // Next to a whole number rounding has decided; then a point of B does.
+    if (std::abs(share - whole) < kAlmostWhole) {
+      const bool filled = winding_around(a_, origin_ + lonely_point(), s_.cells) > 0;
+      copies += (filled ? 1 : 0) - static_cast<int>(whole);
+    } else {
+      copies -= static_cast<int>(std::floor(share));
     }
-    const bool apart =
-        copies == 0 && std::all_of(s_.patches.begin(), s_.patches.end(),
-                                   [](const Patch& p) { return p.metrics.volume > 0.0; });
-    if (apart) {
-      for (const Patch& patch : s_.patches) {
-        out_.sites.push_back(patch.metrics);
-        out_.total = out_.total + patch.metrics;
-      }
-      return;
+    if (copies == 0 && !split) {
+      for (const Patch& patch : s_.patches) add_site(patch);
+    } else {
+      add_site(joined(own_b, copies));
     }
-    VolumeMetrics all;
-    Vec3 moment = copies * own_b.volume * own_b.centroid;
-    all.volume = copies * own_b.volume;
+  }
+
+  // All patches, and copies of B, whose metrics are in Q.
+  Patch joined(const VolumeMetrics& own_b, int copies) const {
+    Patch all{};
+    const Vec3 first = copies * own_b.volume * own_b.centroid;
+    all.moments.volume = copies * own_b.volume;
+    all.moments.first = first;
+    all.moments.second = copies * own_b.second_moment() + first * own_b.centroid.transpose();
     for (const Patch& patch : s_.patches) {
-      all.volume += patch.metrics.volume;
-      moment += patch.metrics.volume * patch.metrics.centroid;
-      all.area_vector += patch.metrics.area_vector;
-      all.area_moment += patch.metrics.area_moment;
-      all.area += patch.metrics.area;
-      all.counter_area += patch.metrics.counter_area;
-      all.depth_moment += std::abs(patch.metrics.depth_moment);
-      all.depth = std::max(all.depth, patch.metrics.depth);
-      all.volume_error += patch.metrics.volume_error;
+      all.moments += patch.moments;
+      all.depth_moment += std::abs(patch.depth_moment);
+      all.depth = std::max(all.depth, patch.depth);
+      all.volume_error += patch.volume_error;
     }
-    if (!(all.volume > 0.0)) return;
-    all.centroid = moment / all.volume;
-    const auto shifted = [&](const VolumeMetrics& m) -> Mat3 {
-      const Vec3 d = m.centroid - all.centroid;
-      return m.inertia + m.volume * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
-    };
-    all.inertia = copies * shifted(own_b);
-    for (const Patch& patch : s_.patches) all.inertia += shifted(patch.metrics);
-    out_.sites.push_back(all);
-    out_.total = all;
+    return all;
+  }
+
+  void add_site(const Patch& patch) {
+    if (!(patch.moments.volume > 0.0)) return;
+    VolumeMetrics m = patch.moments.metrics();
+    m.depth_moment = patch.depth_moment;
+    m.depth = patch.depth;
+    m.volume_error = patch.volume_error;
+    out_.sites.push_back(transformed(m, Pose{Mat3::Identity(), origin_}));
+    out_.total = out_.total + out_.sites.back();
+  }
+
+  // Of five points spread in B the one farthest from A's edges: a thin part of A may hold any one
+  // of them, and a thin hole of A too.
+  Vec3 lonely_point() const {
+    const Vec3 ways[] = {Vec3::Zero(), Vec3(1.0, 1.0, 1.0), Vec3(1.0, -1.0, -1.0),
+                         Vec3(-1.0, 1.0, -1.0), Vec3(-1.0, -1.0, 1.0)};
+    Vec3 best = Vec3::Zero();
+    double farthest = -1.0;
+    for (const Vec3& way : ways) {
+      const Vec3 p = way.isZero(0.0) ? way : Vec3(0.5 * (b_.support(X_AB_, way) - origin_));
+      double nearest = kInfinity;
+      for (const Triangle& t : s_.pieces.triangles) {
+        for (int i = 0; i < 3; ++i) {
+          nearest = std::min(nearest, square_to_segment(p, t.corner[i], t.corner[(i + 1) % 3]));
+        }
+      }
+      if (nearest > farthest) {
+        farthest = nearest;
+        best = p;
+      }
+    }
+    return best;
   }
 
   const SurfaceView& a_;

@@ -15,7 +15,8 @@ struct RoundColumnsScratch {
   RoundSearchScratch search;
   RoundPieces pieces;
   struct Patch {
-    VolumeMetrics metrics;
+    MomentSum moments;  ///< of what lies below it, in Q
+    double depth_moment, depth, volume_error;
     int first_triangle, last_triangle, first_sliver, last_sliver;
   };
   std::vector<Patch> patches;

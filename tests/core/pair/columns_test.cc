@@ -13,11 +13,10 @@ namespace {
 
 using test::box_soup;
 using test::evaluated;
+using test::mesh_of;
 using test::Random;
+using test::shifted;
 using test::Soup;
-
-Mesh mesh_of(const Soup& soup) { return {soup.vertices, soup.triangles}; }
-Pose shifted(double x, double y, double z) { return {Mat3::Identity(), Vec3(x, y, z)}; }
 
 double sum_of_sites(const Interference& out) {
   double sum = 0.0;

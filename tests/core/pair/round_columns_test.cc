@@ -13,11 +13,10 @@ namespace {
 
 using test::box_soup;
 using test::evaluated;
+using test::mesh_of;
 using test::Random;
+using test::shifted;
 using test::Soup;
-
-Mesh mesh_of(const Soup& soup) { return {soup.vertices, soup.triangles}; }
-Pose shifted(double x, double y, double z) { return {Mat3::Identity(), Vec3(x, y, z)}; }
 
 std::vector<Shape> round_solids() {
   return {Sphere({.radius = 0.3}),
@@ -154,6 +153,20 @@ TEST(RoundColumns, CavitiesHoldNothing) {
   const double full = evaluated(mesh_of(test::ball_soup(3)), large, X_AB).total.volume;
   EXPECT_NEAR(evaluated(hollow, large, X_AB).total.volume,
               full - mesh_of(core).own_metrics().volume, 1e-3 * full);
+}
+
+TEST(RoundColumns, ANeedleInTheMiddleIsNotAllOfTheBall) {
+  const double half = 0.002, r = 0.3, depth = 0.4;
+  const Soup shaft = box_soup(Vec3(half, half, 0.4)).moved(shifted(0.0, 0.0, r - depth + 0.4));
+  const Sphere ball({.radius = r});
+  const double volume = 4.0 * half * half * depth;
+  const Interference out = evaluated(mesh_of(shaft), ball, Pose{});
+  EXPECT_EQ(out.engine, Engine::kColumns);
+  EXPECT_NEAR(out.total.volume, volume, 1e-3 * volume);
+  // Nor is a hole as thin.
+  const Mesh bored = mesh_of(box_soup(Vec3::Constant(1.0)).with(shaft.inside_out()));
+  EXPECT_NEAR(evaluated(bored, ball, Pose{}).total.volume, ball.own_metrics().volume - volume,
+              1e-3 * volume);
 }
 
 TEST(RoundColumns, EachTouchedWallIsASite) {

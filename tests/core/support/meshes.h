@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/support/random.h"
-#include "volcontact/shape/mesh_topology.h"
+#include "volcontact/shape/mesh.h"
 
 namespace volcontact::test {
 
@@ -36,6 +36,9 @@ struct Soup {
     return soup;
   }
 };
+
+inline Mesh mesh_of(const Soup& soup) { return {soup.vertices, soup.triangles}; }
+inline Pose shifted(double x, double y, double z) { return {Mat3::Identity(), Vec3(x, y, z)}; }
 
 /// A box with n x n squares on each face, cut into triangles; its vertices are not welded.
 inline Soup box_soup(const Vec3& half, int n = 1) {

@@ -29,9 +29,8 @@ struct Outline {
 // Cuts one triangle of A by the faces of B.
 class FaceCut {
  public:
-  FaceCut(const RoundSolid& solid, double size, int face, RoundPieces& pieces,
-          std::vector<Vec3>& corners)
-      : s_(solid), size_(size), face_(face), pieces_(pieces), corner_(corners) {}
+  FaceCut(const RoundSolid& solid, int face, RoundPieces& pieces, std::vector<Vec3>& corners)
+      : s_(solid), face_(face), pieces_(pieces), corner_(corners) {}
 
   // Cuts by the plane faces, then each part by the round one.
   void cut(const Vec3 (&corner)[3]) {
@@ -49,11 +48,10 @@ class FaceCut {
   double level(const Vec3& x, Vec3& gradient) const { return round_level(s_, x, gradient); }
 
   void cut_by_plane(int k, Outline& outline) const {
-    const Vec3 n(s_.normal[k][0], s_.normal[k][1], s_.normal[k][2]);
     Outline kept;
     for (int i = 0; i < outline.count; ++i) {
       const Vec3 &p = outline.corner[i], &q = outline.corner[i + 1 == outline.count ? 0 : i + 1];
-      const double h = n.dot(p) - s_.offset[k], next = n.dot(q) - s_.offset[k];
+      const double h = s_.over_plane(k, p), next = s_.over_plane(k, q);
       if (h <= 0.0) kept.add(p);
       if ((h <= 0.0) != (next <= 0.0)) kept.add(p + h / (h - next) * (q - p));
     }
@@ -62,11 +60,9 @@ class FaceCut {
   }
 
   void divide(const Vec3& a, const Vec3& b, const Vec3& c, int level) {
-    const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
-    cut_by_round(a, ab, ca, level + 1);
-    cut_by_round(ab, b, bc, level + 1);
-    cut_by_round(ca, bc, c, level + 1);
-    cut_by_round(ab, bc, ca, level + 1);
+    for (const RoundPieces::Triangle& t : RoundPieces::Triangle{{a, b, c}, face_}.quarters()) {
+      cut_by_round(t.corner[0], t.corner[1], t.corner[2], level + 1);
+    }
   }
 
   void cut_by_round(const Vec3& a, const Vec3& b, const Vec3& c, int divisions) {
@@ -121,7 +117,7 @@ class FaceCut {
       const Vec3 &p = outline[i], &q = outline[i + 1 == count ? 0 : i + 1];
       Vec3 tip;
       const double sag = find_tip(p, q, tip);
-      if (sag > kSag * (q - p).norm() && sag > kTinySag * size_ && divisions < kMostDivisions) {
+      if (sag > kSag * (q - p).norm() && sag > kTinySag * s_.size && divisions < kMostDivisions) {
         return divide(a, b, c, divisions);
       }
     }
@@ -220,7 +216,6 @@ class FaceCut {
   }
 
   const RoundSolid& s_;
-  const double size_;
   const int face_;
   RoundPieces& pieces_;
   Vec3 normal_, unit_;
@@ -234,8 +229,7 @@ bool edge_inside(const RoundSolid& s, const Vec3& p, const Vec3& q) {
   if (in.empty()) return false;
   in = {std::max(0.0, in.enter), std::min(1.0, in.leave)};
   for (int k = 0; k < s.plane_count; ++k) {
-    const Vec3 n(s.normal[k][0], s.normal[k][1], s.normal[k][2]);
-    const double h = n.dot(p) - s.offset[k], slope = n.dot(q - p);
+    const double h = s.over_plane(k, p), slope = s.plane_normal(k).dot(q - p);
     if (slope > 0.0) {
       in.leave = std::min(in.leave, -h / slope);
     } else if (slope < 0.0) {
@@ -306,11 +300,6 @@ bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid
   pieces.slivers.clear();
   pieces.slot_of_face.clear();
   pieces.patch_count = 0;
-  double size = 0.0;
-  for (const auto& row : solid.map) {
-    for (const double x : row) size = std::max(size, std::abs(x));
-  }
-  size = 1.0 / size;
   bool uncut = !scratch.found.empty();
   for (const auto& [slot, inside] : scratch.found) {
     const int face = static_cast<int>(pieces.slot_of_face.size());
@@ -320,7 +309,7 @@ bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid
     if (inside) {
       pieces.triangles.push_back({{corner[0], corner[1], corner[2]}, face});
     } else {
-      FaceCut(solid, size, face, pieces, scratch.corners).cut(corner);
+      FaceCut(solid, face, pieces, scratch.corners).cut(corner);
     }
     uncut &= inside;
     if (pieces.triangles.size() > before) pieces.slot_of_face.push_back(slot);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "volcontact/base/simd.h"
@@ -15,6 +16,14 @@ struct RoundPieces {
   struct Triangle {
     Vec3 corner[3];
     int face;  ///< number of the triangle of A it is part of
+
+    /// Cut in four through the middles of its sides.
+    std::array<Triangle, 4> quarters() const {
+      const Vec3 &a = corner[0], &b = corner[1], &c = corner[2];
+      const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+      return {Triangle{{a, ab, ca}, face}, Triangle{{ab, b, bc}, face}, Triangle{{ca, bc, c}, face},
+              Triangle{{ab, bc, ca}, face}};
+    }
   };
   /// What lies between a chord and the arc in which the face leaves the solid. The columns there
   /// get evenly shorter, or longer, from the `middle` of the chord to the arc.

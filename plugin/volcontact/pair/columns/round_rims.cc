@@ -19,8 +19,8 @@ class RimImage {
  public:
   RimImage(const RoundSolid& s, int k, const Vec3& up)
       : up_(up),
-        n_(s.normal[k][0], s.normal[k][1], s.normal[k][2]),
-        center_(s.rim_center[k][0], s.rim_center[k][1], s.rim_center[k][2]),
+        n_(s.plane_normal(k)),
+        center_(Vec3::Map(s.rim_center[k])),
         square_(s.rim_radius[k] * s.rim_radius[k]),
         speed_(-n_.dot(up)) {}
 
@@ -116,12 +116,7 @@ class RimImage {
   }
 
   void divide(const Piece& t, int divisions, std::vector<Piece>& parts) const {
-    const Vec3 &a = t.corner[0], &b = t.corner[1], &c = t.corner[2];
-    const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
-    split({{a, ab, ca}, t.face}, divisions + 1, parts);
-    split({{ab, b, bc}, t.face}, divisions + 1, parts);
-    split({{ca, bc, c}, t.face}, divisions + 1, parts);
-    split({{ab, bc, ca}, t.face}, divisions + 1, parts);
+    for (const Piece& part : t.quarters()) split(part, divisions + 1, parts);
   }
 
   const Vec3& up_;

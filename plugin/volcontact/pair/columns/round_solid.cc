@@ -7,8 +7,6 @@
 namespace volcontact {
 namespace {
 
-Vec3 vec(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
-
 Vec3 mapped(const RoundSolid& s, const Vec3& x) {
   Vec3 y;
   for (int i = 0; i < 3; ++i) {
@@ -77,6 +75,7 @@ bool round_solid_of(const ConvexView& b, const Pose& X_QB, FaceSet& faces, Round
       solid.rim_center[k][i] = rim.center[i];
     }
     solid.rim_radius[k] = rim.radius_u.norm();
+    solid.size = std::max(solid.size, solid.rim_radius[k]);
     solid.offset[k] = plane.offset;
   }
   for (int i = 0; i < 3; ++i) {
@@ -85,17 +84,18 @@ bool round_solid_of(const ConvexView& b, const Pose& X_QB, FaceSet& faces, Round
     solid.axis[i] = capsule ? faces.capsule[1].axis[i] : 0.0;
   }
   if (capsule) solid.half_length = faces.capsule[1].half_length;
+  if (solid.plane_count == 0) solid.size = 1.0 / face.map.cwiseAbs().maxCoeff();
   solid.has_axis = capsule || solid.plane_count > 0;
   if (solid.has_axis) solid.axis_direction = X_QB.rotation.col(2);
   return true;
 }
 
 RayInterval round_interval(const RoundSolid& s, const Vec3& o, const Vec3& d) {
-  const Vec3 from = o - vec(s.center);
+  const Vec3 from = o - Vec3::Map(s.center);
   if (s.cone) return in_cone(mapped(s, from), mapped(s, d));
   if (s.half_length == 0.0) return in_unit_ball(mapped(s, from), mapped(s, d));
   // A capsule: the hull of its tube and its balls.
-  const Vec3 axis = vec(s.axis);
+  const Vec3 axis = Vec3::Map(s.axis);
   RayInterval hull;
   const auto join = [&hull](const RayInterval& part) {
     if (part.empty()) return;
@@ -118,9 +118,9 @@ RayInterval round_interval(const RoundSolid& s, const Vec3& o, const Vec3& d) {
 }
 
 double round_level(const RoundSolid& s, const Vec3& x, Vec3& gradient) {
-  Vec3 from = x - vec(s.center);
+  Vec3 from = x - Vec3::Map(s.center);
   if (s.half_length > 0.0) {
-    const Vec3 axis = vec(s.axis);
+    const Vec3 axis = Vec3::Map(s.axis);
     from -= std::clamp(axis.dot(from), -s.half_length, s.half_length) * axis;
   }
   Vec3 y = mapped(s, from);

@@ -24,6 +24,11 @@ struct RoundSolid {
   bool cone = false;
   bool has_axis = false;  ///< not a ball or an ellipsoid
   Vec3 axis_direction = Vec3::UnitZ();
+  double size = 0.0;  ///< about its width [m]
+
+  Vec3 plane_normal(int k) const { return Vec3::Map(normal[k]); }
+  /// Height of x over plane face k, negative inside.
+  double over_plane(int k, const Vec3& x) const { return plane_normal(k).dot(x) - offset[k]; }
 };
 
 /// The faces of B posed in Q; `faces` is scratch memory. False when it has no round face.

@@ -62,11 +62,7 @@ RoundDirection direction_of(const RoundSolid& s, const Vec3& up) {
     d.longest += std::abs(s.offset[k]);
   }
   // Between two planes a line may run along a tube for long.
-  double scale = 0.0;
-  for (const auto& row : s.map) {
-    for (const double x : row) scale = std::max(scale, std::abs(x));
-  }
-  d.longest = 1e6 * (d.longest + 1.0 / scale + s.half_length);
+  d.longest = 1e6 * (d.longest + s.size + s.half_length);
   return d;
 }
 
