@@ -12,10 +12,9 @@
 namespace volcontact {
 namespace {
 
+using test::mesh_of;
 using test::Random;
 using test::Soup;
-
-Mesh mesh_of(const Soup& soup) { return {soup.vertices, soup.triangles}; }
 
 const Vec3 kHalf(0.3, 0.5, 0.2);
 
