@@ -34,6 +34,7 @@ ORDER = (
     "flat_patch",
     "closed_loop",
     "tumbling_box",
+    "potential",
     "rolling",
     "slide_to_roll",
     "incline",

@@ -202,6 +202,7 @@ PairLaws combine(const Side& a, const Side& b, const KeyedValues* pair) {
   out.laws.normal = make_normal(normal.name, normal_values, normal_choices);
   out.laws.friction = make_friction(friction.name, friction_values, friction_choices);
   out.laws.rolling = choose(kRolling, a, b, pair) != kOff;
+  out.laws.share_of_a = stiffnesses.b / (stiffnesses.a + stiffnesses.b);
   warn_unused(pair, normal, friction, out);
   warn_unused(a.material, normal, friction, out);
   if (b.material != a.material) warn_unused(b.material, normal, friction, out);

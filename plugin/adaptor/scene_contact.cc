@@ -129,12 +129,19 @@ void SceneContact::add_pair(const mjModel* m, const GeomPair& geoms) {
       geoms.listed < 0 ? nullptr : &keys_.pairs[static_cast<std::size_t>(geoms.listed)].keyed;
   PairLaws laws = combine(side(geoms.a), side(geoms.b), listed);
   for (const std::string& warning : laws.warnings) warn_once(warning);
+  laws.laws.formulation = keys_.options.formulation;
 
   const Shape& a = solids_[static_cast<std::size_t>(geoms.a)];
   const Shape& b = solids_[static_cast<std::size_t>(geoms.b)];
   const SceneOptions& options = keys_.options;
   Engine engine = options.engine == Engine::kAuto ? engine_for(a, b) : options.engine;
   const int most_cells = options.engine == Engine::kOctree ? kMostCells : kMostCellsInStep;
+  require(options.formulation != Formulation::kPotential || has_pressure_field(a, b),
+          "volcontact/option/formulation/potential does not serve geoms '" +
+              label(m, mjOBJ_GEOM, geoms.a) + "' and '" + label(m, mjOBJ_GEOM, geoms.b) + "', " +
+              name_of(a) + " with " + name_of(b) +
+              ": it takes planes with anything, boxes and polytopes with each other, and spheres, "
+              "ellipsoids and capsules with each other; use formulation/gonthier, or exclude them");
   if (!serves(engine, a, b)) {
     warn_once(std::string("engine ") + to_string(engine) + " does not serve " + name_of(a) +
               " with " + name_of(b) + "; auto serves them");

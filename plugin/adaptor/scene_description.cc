@@ -27,6 +27,7 @@ void write_options(const SceneOptions& options, JsonText& json) {
   json.member("target", kTargetWords[static_cast<int>(options.target)]);
   json.member("pairs", kPairRuleWords[static_cast<int>(options.pairs)]);
   json.member("mesh", kMeshFormWords[static_cast<int>(options.mesh)]);
+  json.member("formulation", kFormulationWords[static_cast<int>(options.formulation)]);
   json.member("threads", options.threads);
   json.end_object();
 }

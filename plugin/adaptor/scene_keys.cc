@@ -357,6 +357,7 @@ class KeyReader {
       made["target"] = {std::begin(kTargetWords), std::end(kTargetWords)};
       made["pairs"] = {std::begin(kPairRuleWords), std::end(kPairRuleWords)};
       made["mesh"] = {std::begin(kMeshFormWords), std::end(kMeshFormWords)};
+      made["formulation"] = {std::begin(kFormulationWords), std::end(kFormulationWords)};
       return made;
     }();
     return choices;
@@ -423,6 +424,7 @@ class KeyReader {
     set_choice("target", kTargetWords, options.target);
     set_choice("pairs", kPairRuleWords, options.pairs);
     set_choice("mesh", kMeshFormWords, options.mesh);
+    set_choice("formulation", kFormulationWords, options.formulation);
   }
 
   // A material that names its law may only give that law's fields.

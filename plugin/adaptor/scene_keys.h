@@ -57,6 +57,7 @@ struct SceneOptions {
   Target target = Target::kApplied;
   PairRule pairs = PairRule::kNative;
   MeshForm mesh = MeshForm::kExact;
+  Formulation formulation = Formulation::kGonthier;
 };
 
 /// A volcontact/pair/...: its values and the geom pairs it stands for, lower geom first.

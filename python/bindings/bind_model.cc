@@ -56,10 +56,11 @@ PyReport evaluate(const ContactModel& model, const std::optional<Matrix4>& X_WA,
 
 ContactModel make_model(const std::vector<GeometricPair>& pairs, const NormalPtr& normal,
                         const FrictionPtr& friction, bool rolling, double tolerance,
-                        const std::string& engine, int threads) {
+                        const std::string& engine, int threads, const std::string& formulation,
+                        double share_of_a) {
   require(tolerance > 0.0 && tolerance < 1.0,
           "contact_model: tolerance = " + std::to_string(tolerance) + " must be > 0 and < 1");
-  return ContactModel(pairs, {normal, friction, rolling},
+  return ContactModel(pairs, {normal, friction, rolling, formulation_from(formulation), share_of_a},
                       {tolerance, engine_from(engine), threads});
 }
 
@@ -141,13 +142,24 @@ void bind_model(nb::module_& m) {
           "__init__",
           [](ContactModel* self, const std::vector<GeometricPair>& pairs, const NormalPtr& normal,
              const FrictionPtr& friction, bool rolling, double tolerance, const std::string& engine,
-             int threads) {
-            new (self) ContactModel(
-                make_model(pairs, normal, friction, rolling, tolerance, engine, threads));
+             int threads, const std::string& formulation, double share_of_a) {
+            new (self) ContactModel(make_model(pairs, normal, friction, rolling, tolerance, engine,
+                                               threads, formulation, share_of_a));
           },
           nb::kw_only(), nb::arg("pairs"), nb::arg("normal"), nb::arg("friction") = nb::none(),
           nb::arg("rolling") = true, nb::arg("tolerance") = 1e-3, nb::arg("engine") = "auto",
-          nb::arg("threads") = 1)
+          nb::arg("threads") = 1, nb::arg("formulation") = "gonthier", nb::arg("share_of_a") = 0.5,
+          R"(Const once made.
+
+Args:
+    pairs, normal, friction, rolling: the solids and the laws
+    tolerance [-], engine, threads: as in `interference`
+    formulation: 'gonthier', k V along the area vector at the centroid of the volume, or
+        'potential', the gradient of int min(p_A, p_B) dV: conservative for every pair it takes
+    share_of_a [-]: share of the compliance 1/k_v that is A's layer, 0 to 1; for 'potential'
+
+Raises:
+    ValueError: a forced engine or the formulation does not serve a pair)")
       .def_prop_ro("row_size", &ContactModel::row_size,
                    "Numbers kept for each contact site; 0 when the laws keep nothing")
       .def("evaluate", &evaluate, nb::kw_only(), nb::arg("X_WA") = nb::none(),

@@ -1062,7 +1062,20 @@ class ContactModel:
     Geometric pairs x normal law x friction law: the CSA paper's contact model container.
     """
 
-    def __init__(self, *, pairs: Sequence[Pair], normal: NormalForce, friction: Friction | None = None, rolling: bool = True, tolerance: float = 0.001, engine: str = 'auto', threads: int = 1) -> None: ...
+    def __init__(self, *, pairs: Sequence[Pair], normal: NormalForce, friction: Friction | None = None, rolling: bool = True, tolerance: float = 0.001, engine: str = 'auto', threads: int = 1, formulation: str = 'gonthier', share_of_a: float = 0.5) -> None:
+        """
+        Const once made.
+
+        Args:
+            pairs, normal, friction, rolling: the solids and the laws
+            tolerance [-], engine, threads: as in `interference`
+            formulation: 'gonthier', k V along the area vector at the centroid of the volume, or
+                'potential', the gradient of int min(p_A, p_B) dV: conservative for every pair it takes
+            share_of_a [-]: share of the compliance 1/k_v that is A's layer, 0 to 1; for 'potential'
+
+        Raises:
+            ValueError: a forced engine or the formulation does not serve a pair
+        """
 
     @property
     def row_size(self) -> int:

@@ -52,6 +52,7 @@ TEST(SceneKeys, SceneWithoutKeysHasDefaults) {
   EXPECT_EQ(keys.options.engine, Engine::kAuto);
   EXPECT_EQ(keys.options.target, Target::kApplied);
   EXPECT_EQ(keys.options.pairs, PairRule::kNative);
+  EXPECT_EQ(keys.options.formulation, Formulation::kGonthier);
   EXPECT_TRUE(keys.materials.empty());
   EXPECT_EQ(keys.material_of_geom, (std::vector<int>{-1, -1, -1, -1}));
 }
@@ -60,12 +61,14 @@ TEST(SceneKeys, ReadsOptions) {
   const SceneKeys keys =
       read(numeric("volcontact/option/tolerance", "1e-5") +
            numeric("volcontact/option/threads", "3") + numeric("volcontact/option/engine/octree") +
-           numeric("volcontact/option/target/xfrc") + numeric("volcontact/option/pairs/listed"));
+           numeric("volcontact/option/target/xfrc") + numeric("volcontact/option/pairs/listed") +
+           numeric("volcontact/option/formulation/potential"));
   EXPECT_EQ(keys.options.tolerance, 1e-5);
   EXPECT_EQ(keys.options.threads, 3);
   EXPECT_EQ(keys.options.engine, Engine::kOctree);
   EXPECT_EQ(keys.options.target, Target::kXfrc);
   EXPECT_EQ(keys.options.pairs, PairRule::kListed);
+  EXPECT_EQ(keys.options.formulation, Formulation::kPotential);
 }
 
 TEST(SceneKeys, ChoiceWithDataZeroIsNotChosen) {

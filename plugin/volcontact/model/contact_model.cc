@@ -6,9 +6,18 @@
 #include <utility>
 
 #include "volcontact/base/check.h"
+#include "volcontact/base/fields.h"
 #include "volcontact/force/rolling.h"
 
 namespace volcontact {
+
+Formulation formulation_from(std::string_view word) {
+  const std::vector<std::string> words(std::begin(kFormulationWords), std::end(kFormulationWords));
+  const auto found = std::find(words.begin(), words.end(), word);
+  require(found != words.end(), unknown_word_message("formulation", word, words));
+  return static_cast<Formulation>(found - words.begin());
+}
+
 namespace {
 
 LawState slice(const LawState& state, int offset) {
@@ -23,6 +32,26 @@ std::vector<StateField> states_of(const ContactLaws& laws) {
     states.insert(states.end(), more.begin(), more.end());
   }
   return states;
+}
+
+// What pushes the bodies apart, per k_v: V along the area vector at the centroid, or the gradient
+// of the potential there.
+struct Push {
+  double size = 0.0;           // [m^3]
+  double energy = 0.0;         // [m^4]
+  Vec3 couple = Vec3::Zero();  // about the centroid [m^4]
+};
+
+// Sets the normal of the site.
+Push push_of(const PressureField* field_W, SiteReport& site) {
+  const VolumeMetrics& metrics = site.metrics;
+  if (!field_W) {
+    site.normal = metrics.normal();
+    return {metrics.volume, metrics.depth_moment, Vec3::Zero()};
+  }
+  const double size = field_W->force.norm();
+  if (size > 0.0) site.normal = field_W->force / size;
+  return {size, field_W->energy, field_W->couple};
 }
 
 // The relative motion of A against B at the centroid, split along and across the normal.
@@ -74,19 +103,19 @@ void add_site(SiteReport&& site, int pair, const BodyMotion& motion, ContactRepo
 }  // namespace
 
 SiteReport evaluate_site(const VolumeMetrics& metrics_W, const BodyMotion& motion,
-                         const ContactLaws& laws, const CarriedSite& carried,
-                         const LawState& state) noexcept {
+                         const ContactLaws& laws, const CarriedSite& carried, const LawState& state,
+                         const PressureField* field_W) noexcept {
   SiteReport site;
   site.metrics = metrics_W;
-  site.normal = metrics_W.normal();
+  const Push push = push_of(field_W, site);
   // A contained body has no direction to be pushed in: reported, but without a force.
   if (site.normal.isZero(0.0)) return site;
   split_motion(motion, site);
   const Vec3 rotation = motion.V_WA.angular - motion.V_WB.angular;
   site.spin = rotation.dot(site.normal);
 
-  const NormalOutput normal = laws.normal->evaluate(
-      {metrics_W.volume, metrics_W.depth_moment, site.approach_speed}, slice(state, 0));
+  const NormalOutput normal =
+      laws.normal->evaluate({push.size, push.energy, site.approach_speed}, slice(state, 0));
   site.normal_force = normal.magnitude;
   site.force_on_A = normal.magnitude * site.normal;
   site.elastic_energy = normal.elastic_energy;
@@ -99,6 +128,8 @@ SiteReport evaluate_site(const VolumeMetrics& metrics_W, const BodyMotion& motio
   }
   site.power.normal = (normal.magnitude - normal.elastic) * site.approach_speed;
   site.taken = site.power;
+  // The couple of a potential is elastic like the elastic part of the force.
+  if (push.size > 0.0) site.torque_on_A += normal.elastic / push.size * push.couple;
   if (laws.friction) add_friction(laws, carried, slice(state, laws.normal->state_size()), site);
   return site;
 }
@@ -112,7 +143,14 @@ ContactModel::ContactModel(std::vector<GeometricPair> pairs, ContactLaws laws,
     require(serves(options_.engine, pair.a, pair.b),
             std::string("engine ") + to_string(options_.engine) + " does not serve the pair " +
                 name_of(pair.a) + " - " + name_of(pair.b) + "; use auto or octree");
+    require(laws_.formulation != Formulation::kPotential || has_pressure_field(pair.a, pair.b),
+            std::string("formulation potential does not serve the pair ") + name_of(pair.a) +
+                " - " + name_of(pair.b) +
+                ": it takes half-spaces with anything, boxes and polytopes with each other, and "
+                "spheres, ellipsoids and capsules with each other; use gonthier");
   }
+  require(laws_.share_of_a >= 0.0 && laws_.share_of_a <= 1.0,
+          "contact_model: share_of_a = " + std::to_string(laws_.share_of_a) + " must be 0 to 1");
   states_ = states_of(laws_);
   row_size_ = states_.empty() ? 0 : kSiteHead + size_of(states_);
 }
@@ -141,9 +179,22 @@ void ContactModel::evaluate(const BodyMotion& motion, const SiteMemory& memory,
         state = {workspace.carrier.states(k), new_row(pair, sites_W[k], motion, report),
                  memory.elapsed};
       }
-      add_site(evaluate_site(sites_W[k], motion, laws_, carried, state), pair, motion, report);
+      PressureField field_W;
+      const bool potential = laws_.formulation == Formulation::kPotential;
+      if (potential) field_W = field_of(pairs_[i], motion, sites_W[k], workspace.pressure);
+      add_site(
+          evaluate_site(sites_W[k], motion, laws_, carried, state, potential ? &field_W : nullptr),
+          pair, motion, report);
     }
   }
+}
+
+PressureField ContactModel::field_of(const GeometricPair& pair, const BodyMotion& motion,
+                                     const VolumeMetrics& site_W, PressureScratch& scratch) const {
+  const Pose X_Wa = motion.X_WA * pair.X_Aa, X_aW = X_Wa.inverse();
+  const PressureField field = pressure_field(pair.a, pair.b, X_aW * (motion.X_WB * pair.X_Bb),
+                                             transformed(site_W, X_aW), laws_.share_of_a, scratch);
+  return {field.energy, X_Wa.rotation * field.force, X_Wa.rotation * field.couple};
 }
 
 // The states of a new row of the report, as they are carried over; its head is filled in.

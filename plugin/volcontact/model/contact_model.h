@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "volcontact/force/friction.h"
@@ -9,22 +10,38 @@
 #include "volcontact/model/contact_report.h"
 #include "volcontact/model/site_memory.h"
 #include "volcontact/pair/geometric_pair.h"
+#include "volcontact/pair/pressure_field.h"
 
 namespace volcontact {
+
+/// What carries the normal force, with the same parameters. docs/theory.md, "From metrics to
+/// wrench" and "The potential formulation".
+enum class Formulation : int {
+  kGonthier = 0,   ///< f = k V along the area vector, at the centroid of the volume
+  kPotential = 1,  ///< wrench = -grad U, U = int min(p_A, p_B) dV: conservative for every pair
+};
+inline constexpr const char* kFormulationWords[] = {"gonthier", "potential"};
+
+/// Throws std::invalid_argument naming the valid words and the nearest of them.
+Formulation formulation_from(std::string_view word);
 
 /// The laws of a contact and how it is integrated.
 struct ContactLaws {
   std::shared_ptr<const NormalForce> normal;
   std::shared_ptr<const Friction> friction;  ///< null: frictionless
   bool rolling = true;                       ///< rolling resistance, where the normal law damps
+  Formulation formulation = Formulation::kGonthier;
+  /// Of `potential`: share of the compliance 1/k_v that is A's layer, from 0 (A rigid) to 1 [-].
+  double share_of_a = 0.5;
 };
 
 /// Forces of one contact site from its metrics (world frame), the motion of the bodies, and what
 /// was carried over. `state` has the numbers of both laws. docs/theory.md, "From metrics to
-/// wrench".
+/// wrench". Under `potential`, `field_W` is the pressure field of the site, in the world frame;
+/// else it is null.
 SiteReport evaluate_site(const VolumeMetrics& metrics_W, const BodyMotion& motion,
-                         const ContactLaws& laws, const CarriedSite& carried,
-                         const LawState& state) noexcept;
+                         const ContactLaws& laws, const CarriedSite& carried, const LawState& state,
+                         const PressureField* field_W = nullptr) noexcept;
 
 /// The contact model container of the CSA paper: geometric pairs x normal law x friction law.
 /// Const once made; what lasts from one evaluation to the next is in rows that the caller keeps.
@@ -35,10 +52,11 @@ class ContactModel {
     InterferenceWorkspace engines;
     Interference interference;
     SiteCarrier carrier;
+    PressureScratch pressure;
   };
 
   /// Throws std::invalid_argument without pairs or normal law, or when a forced engine does not
-  /// serve a pair.
+  /// serve a pair or a pair has no pressure field for `potential`.
   ContactModel(std::vector<GeometricPair> pairs, ContactLaws laws,
                InterferenceOptions options = {});
 
@@ -57,6 +75,8 @@ class ContactModel {
  private:
   double* new_row(int pair, const VolumeMetrics& metrics_W, const BodyMotion& motion,
                   ContactReport& report) const;
+  PressureField field_of(const GeometricPair& pair, const BodyMotion& motion,
+                         const VolumeMetrics& site_W, PressureScratch& scratch) const;
 
   std::vector<GeometricPair> pairs_;
   ContactLaws laws_;

@@ -201,6 +201,73 @@ TEST(ContactModel, BooksEveryJoule) {
   EXPECT_NEAR((mechanical() + report.elastic_energy + dissipated) / start, 1.0, 1e-5);
 }
 
+ContactLaws potential(double damping, double share_of_a) {
+  return {make_normal("hunt_crossley", {{"stiffness", {1e7}}, {"damping", {damping}}}),
+          make_friction("regularized_coulomb", {{"friction", {0.4}}}), true,
+          Formulation::kPotential, share_of_a};
+}
+
+TEST(ContactModel, PotentialOfAHalfSpaceIsGonthiers) {
+  // Where the plane carries the field the two are one: all of it, damping and friction included.
+  const GeometricPair pair{Box({.half_sizes = {0.1, 0.2, 0.15}}),
+                           HalfSpace(),
+                           pose({0.4, 0.3, 0.0}, {0.0, 0.0, 0.01}),
+                           {}};
+  ContactLaws gonthier = potential(0.7, 0.3);
+  gonthier.formulation = Formulation::kGonthier;
+  ContactModel::Workspace workspace;
+  ContactReport one, other;
+  BodyMotion motion = moving();
+  motion.X_WB.translation = {0.3, 0.1, 0.55};
+  ContactModel({pair}, gonthier).evaluate(motion, {}, workspace, one);
+  ContactModel({pair}, potential(0.7, 0.3)).evaluate(motion, {}, workspace, other);
+  ASSERT_TRUE(one.touching());
+  const double size = one.wrench_on_A.force.norm();
+  EXPECT_LT((one.wrench_on_A.force - other.wrench_on_A.force).norm(), 1e-10 * size);
+  EXPECT_LT((one.wrench_on_A.torque - other.wrench_on_A.torque).norm(), 1e-10 * size);
+  EXPECT_NEAR(one.elastic_energy, other.elastic_energy, 1e-10 * one.elastic_energy);
+  EXPECT_NEAR(one.power.sum(), other.power.sum(), 1e-10 * one.power.sum());
+}
+
+TEST(ContactModel, PotentialGivesBackWhatItTook) {
+  // The power of the elastic wrench is the fall of the energy, along any motion of both bodies.
+  const GeometricPair pair{
+      Box({.half_sizes = {0.1, 0.2, 0.15}}), Box({.half_sizes = {0.3, 0.1, 0.2}}), {}, {}};
+  ContactLaws laws = potential(0.0, 0.3);
+  laws.friction = nullptr;
+  const ContactModel model({pair}, laws);
+  ContactModel::Workspace workspace;
+  ContactReport report;
+  BodyMotion motion = moving();
+  const auto energy_after = [&](double time) {
+    BodyMotion then = motion;
+    for (auto [pose_of, twist] : {std::pair{&then.X_WA, then.V_WA}, {&then.X_WB, then.V_WB}}) {
+      pose_of->translation += time * twist.linear;
+      pose_of->rotation = pose(time * twist.angular, Vec3::Zero()).rotation * pose_of->rotation;
+    }
+    model.evaluate(then, {}, workspace, report);
+    return report.elastic_energy;
+  };
+  constexpr double kStep = 1e-5;
+  const double rate = (energy_after(kStep) - energy_after(-kStep)) / (2.0 * kStep);
+  model.evaluate(motion, {}, workspace, report);
+  ASSERT_TRUE(report.touching());
+  EXPECT_GT((report.sites[0].torque_on_A).norm(), 1e-3 * report.sites[0].force_on_A.norm());
+  const double power = report.wrench_on_A.force.dot(motion.V_WA.linear) +
+                       report.wrench_on_A.torque.dot(motion.V_WA.angular) +
+                       report.wrench_on_B.force.dot(motion.V_WB.linear) +
+                       report.wrench_on_B.torque.dot(motion.V_WB.angular);
+  EXPECT_NEAR(power, -rate, 1e-6 * std::abs(rate));
+}
+
+TEST(ContactModel, RefusesAPairWithoutPressureField) {
+  const GeometricPair pair{Box({.half_sizes = {0.1, 0.2, 0.15}}), Sphere({.radius = 0.1}), {}, {}};
+  EXPECT_THROW(ContactModel({pair}, potential(0.0, 0.5)), std::invalid_argument);
+  EXPECT_THROW(ContactModel({{Sphere({.radius = 1.0}), HalfSpace(), {}, {}}}, potential(0.0, 1.5)),
+               std::invalid_argument);
+  EXPECT_THROW(formulation_from("potentail"), std::invalid_argument);
+}
+
 TEST(ContactModel, RefusesNoPairsNoLawAndAnEngineThatDoesNotServe) {
   EXPECT_THROW(ContactModel({}, {make_normal("hunt_crossley", {}), nullptr, true}),
                std::invalid_argument);
