@@ -48,6 +48,7 @@ class Columns {
 
   void meshes(int most_leaf_pairs) {
     if (bounds_apart(a_.bounds, b_->bounds, X_AB_)) return;
+    if (b_->planes != nullptr && add_on_one_face()) return finish();
     most_leaf_pairs_ = most_leaf_pairs;
     const double reach = kReach * (size_of(a_.bounds) + size_of(b_->bounds));
     const bool counted =
@@ -84,6 +85,41 @@ class Columns {
     m.depth = a_.bounds.half_sizes().dot(up_A.cwiseAbs()) - (X_BA_ * a_.bounds.center()).z();
     out_.sites.push_back(m);
     finish();
+  }
+
+  // What A's surface cuts off a convex B when it meets only one of its faces: a half-space would
+  // lose as much. False when it meets others, or none.
+  bool add_on_one_face() {
+    const std::vector<SurfacePlane>& planes = *b_->planes;
+    const Vec3 middle = X_BA_ * a_.bounds.center(), half = a_.bounds.half_sizes();
+    const SurfacePlane* face = nullptr;
+    double highest = -kInfinity, reach = 0.0;
+    for (const SurfacePlane& plane : planes) {
+      const double here = half.dot((X_BA_.rotation.transpose() * plane.normal).cwiseAbs());
+      const double low = plane.normal.dot(middle) - here - plane.offset;
+      if (low > highest) highest = low, reach = here, face = &plane;
+    }
+    if (highest >= 0.0) return true;
+    if (highest + 2.0 * reach <= 0.0) return false;
+    const Pose X_BC{basis_with_z(face->normal), face->offset * face->normal};
+    const Pose X_CB = X_BC.inverse();
+    ColumnPrism& prism = scratch_.prism;
+    prism.margin = rounding_;
+    prism.sides.clear();
+    for (const SurfacePlane& plane : planes) {
+      if (&plane == face) continue;
+      const Vec3 normal = X_CB.rotation * plane.normal;
+      prism.sides.push_back({normal, plane.offset - plane.normal.dot(X_BC.translation)});
+    }
+    const Vec3 center = X_CB * b_->bounds.center(),
+               size = X_CB.rotation.cwiseAbs() * b_->bounds.half_sizes() +
+                      Vec3::Constant(2.0 * rounding_);
+    prism.bounds = {center - size, center + size};
+    const Pose X_CA = X_CB * X_BA_;
+    if (!make_cells_in_prism(*a_.tree, X_CA, prism, scratch_.cells)) return false;
+    if (cells().empty()) return false;
+    add_regions(X_CA, Pose{}, X_AB_ * X_BC, nullptr);
+    return !out_.sites.empty();
   }
 
   std::vector<ColumnCell>& cells() { return scratch_.cells.cells; }

@@ -19,7 +19,8 @@ struct ColumnsScratch {
   RegionScratch regions;
   SampledScratch sampled;
   std::vector<CellSum> sums;
-  ObbTree box[2];                      ///< surfaces of A and B where they are boxes
+  SurfaceStore store[2];  ///< of A and B
+  ColumnPrism prism;
   std::vector<int> crossing_parts[2];  ///< of A and of B, of the whole pair
   std::vector<int> crossing_here[2];   ///< of one patch
   std::vector<std::pair<int, int>> own_pairs;

@@ -57,8 +57,7 @@ template <typename S>
 constexpr bool is_mesh = std::is_same_v<S, Mesh>;
 template <typename A, typename B>
 constexpr bool has_columns =
-    (is_mesh<A> && (HasTriangles<B> || std::is_same_v<B, HalfSpace> || HasRoundFaces<B>)) ||
-    (is_mesh<B> && HasTriangles<A>);
+    is_mesh<A> && (HasTriangles<B> || std::is_same_v<B, HalfSpace> || HasRoundFaces<B>);
 template <typename A, typename B>
 constexpr bool both_unbounded = std::is_same_v<A, HalfSpace> && std::is_same_v<B, HalfSpace>;
 
@@ -162,9 +161,9 @@ template <typename A, typename B>
 bool columns(const A& a, const B& b, const Pose& X_AB, const InterferenceOptions& options,
              InterferenceWorkspace::Scratch& scratch, Interference& out) {
   if constexpr (has_columns<A, B>) {
-    const SurfaceView surface_a = surface_of(a, scratch.columns.box[0]);
+    const SurfaceView surface_a = surface_of(a, scratch.columns.store[0]);
     if constexpr (HasTriangles<B>) {
-      columns_interference(surface_a, surface_of(b, scratch.columns.box[1]), X_AB, options,
+      columns_interference(surface_a, surface_of(b, scratch.columns.store[1]), X_AB, options,
                            scratch.columns, out);
     } else if constexpr (HasRoundFaces<B>) {
       return round_columns(surface_a, ConvexView(b), X_AB, options, scratch.round_columns, out);

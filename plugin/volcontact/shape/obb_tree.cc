@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "volcontact/base/fields.h"
 
@@ -11,8 +12,9 @@ namespace volcontact {
 namespace {
 
 constexpr double kPadding = 1e-13;  // of the size of the mesh
-constexpr double kSlender = 16.0;   // a box longer than this is cut across
-constexpr double kThinner = 1.7;    // how much volume a cut along the box must save
+constexpr double kFlat = 0.005;     // thickness of a flat box by its length
+constexpr double kShorter = 0.9;    // volume to be left by a cut across a shorter side
+constexpr double kSaved = 0.8;      // volume to be left by a cut that was worth it
 
 struct Obb {
   Vec3 center = Vec3::Zero();
@@ -99,34 +101,63 @@ class Builder {
     return middle;
   }
 
-  // Across the longest side of its box, or across the second longest where that makes the boxes
-  // much thinner, as around a cylinder.
-  void split(int index) {
-    const int first = branches_[index].first, last = branches_[index].last;
-    if (last - first <= kLanes) return;
-    const Obb box = branches_[index].box;
-    int sides[3] = {0, 1, 2};
-    std::sort(sides, sides + 3, [&](int i, int j) { return box.half[i] > box.half[j]; });
-    Obb halves[2];
-    int middle = 0;
-    double least = kInfinity;
-    for (int k = 1; k >= 0; --k) {
-      if (k == 1 && box.half[sides[0]] > kSlender * box.half[sides[1]]) continue;
-      const int at = halve(first, last, box.axes.row(sides[k]).transpose());
-      const Obb left = fit(first, at), right = fit(at, last);
-      const double volume = left.half.prod() + right.half.prod();
-      if (k == 0 && volume > kThinner * least) {
-        halve(first, last, box.axes.row(sides[1]).transpose());
-        break;
+  // The sides of a box that a cut may go across, the longest first. A flat box has only one.
+  struct Sides {
+    int list[3], count;
+  };
+  static Sides sides_of(const Obb& box) {
+    Sides sides{{0, 1, 2}, 3};
+    std::sort(sides.list, sides.list + 3, [&](int i, int j) { return box.half[i] > box.half[j]; });
+    if (box.half[sides.list[2]] < kFlat * box.half[sides.list[0]]) sides.count = 1;
+    return sides;
+  }
+
+  struct Halves {
+    Branch left, right;
+    double volume() const { return left.box.half.prod() + right.box.half.prod(); }
+  };
+  Halves cut(const Branch& branch, int side) {
+    const int first = branch.first, last = branch.last;
+    const int middle = halve(first, last, branch.box.axes.row(side).transpose());
+    return {{fit(first, middle), first, middle}, {fit(middle, last), middle, last}};
+  }
+
+  // The cut after which the boxes have the least volume, or the next ones have after `more` cuts.
+  std::pair<Halves, double> best_cut(const Branch& branch, int more) {
+    const Sides sides = sides_of(branch.box);
+    std::pair<Halves, double> best{{}, kInfinity};
+    int best_side = -1;
+    for (int k = 0; k < sides.count; ++k) {
+      const Halves halves = cut(branch, sides.list[k]);
+      const double volume =
+          more == 0 ? halves.volume() : least_volume(halves.left) + least_volume(halves.right);
+      if (volume < (k == 0 ? 1.0 : kShorter) * best.second) {
+        best = {halves, volume};
+        best_side = k;
       }
-      halves[0] = left, halves[1] = right;
-      middle = at;
-      least = volume;
     }
+    if (best_side != sides.count - 1) {
+      halve(branch.first, branch.last, branch.box.axes.row(sides.list[best_side]).transpose());
+    }
+    return best;
+  }
+  double least_volume(const Branch& branch) {
+    return branch.last - branch.first <= kLanes ? branch.box.half.prod()
+                                                : best_cut(branch, 0).second;
+  }
+
+  // Across the longest side of its box, or where that makes the boxes much thinner, as around a
+  // cylinder. The first cut through a closed ring or tube saves nothing: the second one tells.
+  void split(int index) {
+    const Branch branch = branches_[index];
+    if (branch.last - branch.first <= kLanes) return;
+    auto [halves, volume] = best_cut(branch, 0);
+    const bool is_flat = sides_of(branch.box).count == 1;
+    if (!is_flat && volume > kSaved * branch.box.half.prod()) halves = best_cut(branch, 1).first;
     const int left = static_cast<int>(branches_.size());
     branches_[index].left = left;
-    branches_.push_back({halves[0], first, middle});
-    branches_.push_back({halves[1], middle, last});
+    branches_.push_back(halves.left);
+    branches_.push_back(halves.right);
     split(left);
     split(left + 1);
   }

@@ -7,6 +7,7 @@
 #include "core/support/gradient.h"
 #include "core/support/matchers.h"
 #include "core/support/meshes.h"
+#include "core/support/random_shapes.h"
 
 namespace volcontact {
 namespace {
@@ -268,22 +269,106 @@ TEST(Columns, BeyondItsBudgetItSamplesAndSaysSo) {
   EXPECT_LE((sampled.total.centroid - exact.total.centroid).norm(), 1e-2);
 }
 
+// How far a mesh reaches along a direction.
+double reach_of(const Mesh& mesh, const Vec3& e) {
+  double reach = -kInfinity;
+  for (const Vec3& p : mesh.topology().vertices) reach = std::max(reach, e.dot(p));
+  return reach;
+}
+
+// The middle of a face of a convex solid, given the corners of all.
+Vec3 middle_of(const SurfacePlane& face, const std::vector<Vec3>& corners) {
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (const Vec3& p : corners) {
+    if (std::abs(face.normal.dot(p) - face.offset) < 1e-9) sum += p, ++count;
+  }
+  return sum / count;
+}
+
+// Where a mesh meets one face of a convex solid only, it is cut as by a half-space; elsewhere as by
+// the solid's triangles, which must always come to the same.
+void expect_cut_as_by_triangles(const ConvexPolytope& solid) {
+  const Mesh mesh = mesh_of(test::bumpy_soup(3, 6));
+  SurfaceStore stores[2];
+  const SurfaceView a = surface_of(mesh, stores[0]), faces = surface_of(solid, stores[1]);
+  SurfaceView triangles = faces;
+  triangles.planes = nullptr;
+  ColumnsScratch scratch;
+  Interference out, expected;
+  Random random(9);
+  int on_one = 0, on_more = 0;
+  for (int i = 0; i < 300; ++i) {
+    const SurfacePlane& face = (*faces.planes)[static_cast<std::size_t>(i) % faces.planes->size()];
+    const Pose turned = random.pose(0.0);
+    const double height = reach_of(mesh, -turned.rotation.transpose() * face.normal);
+    const double depth = i % 2 == 0 ? 0.02 : 0.2;
+    const Vec3 at = middle_of(face, solid.vertices()) + (height - depth) * face.normal;
+    const Pose X_AB = Pose{turned.rotation, at}.inverse();
+    columns_interference(a, faces, X_AB, {}, scratch, out);
+    const bool below = !scratch.cells.cells.empty() && scratch.cells.cells[0].g < 0;
+    columns_interference(a, triangles, X_AB, {}, scratch, expected);
+    ASSERT_TRUE(out.total.touching()) << i;
+    (below ? on_one : on_more)++;
+    ASSERT_TRUE(test::same(out.total, expected.total, {1e-9, 1.0})) << i;
+  }
+  EXPECT_GT(on_one, 80);
+  EXPECT_GT(on_more, 20);
+}
+
+TEST(Columns, ConvexSolidsCutAsTheirTrianglesDo) {
+  expect_cut_as_by_triangles(test::polytope_of(Box({.half_sizes = Vec3(1.2, 0.9, 0.4)})));
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 6; ++i) {
+    const double angle = i * M_PI / 3.0;
+    corners.emplace_back(1.5 * std::cos(angle), 1.5 * std::sin(angle), -0.5);
+    corners.emplace_back(0.9 * std::cos(angle), 0.9 * std::sin(angle), 0.5);
+  }
+  expect_cut_as_by_triangles(ConvexPolytope(corners));
+}
+
+TEST(Columns, AMeshOnABoxIsCutAsByAHalfSpace) {
+  const Mesh mesh = mesh_of(test::bumpy_soup(3, 6));
+  const Box box({.half_sizes = Vec3(3.0, 3.0, 0.5)});
+  Random random(10);
+  for (int i = 0; i < 30; ++i) {
+    const Mat3 turned = random.pose(0.0).rotation;
+    const double height = reach_of(mesh, -turned.transpose().col(2));
+    const Vec3 aside(random.in_box(1.0).x(), random.in_box(1.0).y(), 0.0);
+    const Pose X_HA{turned, aside + (height - 0.02) * Vec3::UnitZ()};
+    const Pose X_BA{turned, X_HA.translation + 0.5 * Vec3::UnitZ()};
+    const VolumeMetrics expected = evaluated(mesh, HalfSpace(), X_HA.inverse()).total;
+    ASSERT_TRUE(expected.touching());
+    EXPECT_TRUE(test::same(evaluated(mesh, box, X_BA.inverse()).total, expected, {1e-10, 1.0}));
+    const Pose X_BH = shifted(0.0, 0.0, 0.5);
+    EXPECT_TRUE(test::same(evaluated(box, mesh, X_BA).total,
+                           transformed(evaluated(HalfSpace(), mesh, X_HA).total, X_BH),
+                           {1e-10, 1.0}));
+  }
+}
+
 TEST(Columns, EveryInstructionSetMakesTheSameBits) {
   const Touching pair = bumpy_pair(3, 0.02);
-  ObbTree unused;
-  std::vector<VolumeMetrics> results;
+  const Mesh& a = pair.a;
+  const Box box({.half_sizes = Vec3(3.0, 3.0, 1.0)});
+  const Pose X_AB = shifted(0.0, 0.0, -0.98 - reach_of(a, -Vec3::UnitZ()));
+  SurfaceStore stores[2];
+  std::vector<VolumeMetrics> on_mesh, on_box;
   for (SimdPath path : {SimdPath::kPortable, SimdPath::kAvx2, SimdPath::kAvx512}) {
     if (!can_run(path)) continue;
     ColumnsScratch scratch;
     scratch.crossing.path = path;
     scratch.cells.path = path;
     Interference out;
-    columns_interference(surface_of(pair.a, unused), surface_of(pair.b, unused), pair.X_AB, {},
-                         scratch, out);
-    results.push_back(out.total);
+    const SurfaceView view = surface_of(a, stores[0]);
+    columns_interference(view, surface_of(pair.b, stores[1]), pair.X_AB, {}, scratch, out);
+    on_mesh.push_back(out.total);
+    columns_interference(view, surface_of(box, stores[1]), X_AB, {}, scratch, out);
+    on_box.push_back(out.total);
   }
-  for (const VolumeMetrics& m : results) {
-    EXPECT_TRUE(test::same(m, results[0], {0.0, 0.0}));
+  for (const auto& results : {on_mesh, on_box}) {
+    ASSERT_TRUE(results[0].touching());
+    for (const VolumeMetrics& m : results) EXPECT_TRUE(test::same(m, results[0], {0.0, 0.0}));
   }
 }
 

@@ -227,7 +227,7 @@ TEST(RoundColumns, BothOrdersAgree) {
 
 TEST(RoundColumns, EveryInstructionSetMakesTheSameBits) {
   const Mesh mesh = mesh_of(test::bumpy_soup(3, 2));
-  ObbTree unused;
+  SurfaceStore unused;
   for (const Shape& b : round_solids()) {
     std::vector<VolumeMetrics> results;
     for (SimdPath path : {SimdPath::kPortable, SimdPath::kAvx2, SimdPath::kAvx512}) {

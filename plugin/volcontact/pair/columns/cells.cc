@@ -176,6 +176,34 @@ void add_cell_below(const ColumnFace& f, int slot_f, std::vector<ColumnCell>& ce
   finish(polygon[current], f, slot_f, ground, -1, cells);
 }
 
+// Where the part of a triangle below z = 0 lies.
+enum class Place { kWithin, kBeyond, kAcross };
+
+Place place_in(const double corners[3][3], const ColumnPrism& prism) {
+  Vec3 p[4];
+  int count = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double *from = corners[i], *to = corners[i == 2 ? 0 : i + 1];
+    if (from[2] <= 0.0) p[count++] = Vec3(from[0], from[1], from[2]);
+    if ((from[2] <= 0.0) != (to[2] <= 0.0)) {
+      const double t = from[2] / (from[2] - to[2]);
+      p[count++] = Vec3(from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1]), 0.0);
+    }
+  }
+  bool within = true;
+  for (const SurfacePlane& side : prism.sides) {
+    double low = kInfinity, high = -kInfinity;
+    for (int i = 0; i < count; ++i) {
+      const double value = side.normal.dot(p[i]) - side.offset;
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    if (low > prism.margin) return Place::kBeyond;
+    within = within && high < -prism.margin;
+  }
+  return within ? Place::kWithin : Place::kAcross;
+}
+
 const ColumnWindow kAxis{Vec3::Zero(), Vec3::Zero()};
 
 // Whether the z axis passes through a face: 1 yes, 0 no, -1 too near to an edge to say.
@@ -245,6 +273,11 @@ void make_cells(const ObbTree& a, const Pose& X_CA, const ObbTree& b, const Pose
 
 void make_cells_below(const ObbTree& a, const Pose& X_CA, CellScratch& scratch) noexcept {
   VOLCONTACT_SIMD_CALL(scratch.path, make_cells_below_wide, a, X_CA, scratch);
+}
+
+bool make_cells_in_prism(const ObbTree& a, const Pose& X_CA, const ColumnPrism& prism,
+                         CellScratch& scratch) noexcept {
+  return VOLCONTACT_SIMD_CALL(scratch.path, make_cells_in_prism_wide, a, X_CA, prism, scratch);
 }
 
 bool meets_level(const ObbTree& tree, const Pose& X_CM, const ColumnWindow& window, double z,

@@ -6,6 +6,7 @@
 #include "volcontact/base/fields.h"
 #include "volcontact/base/simd.h"
 #include "volcontact/base/types.h"
+#include "volcontact/pair/columns/surface_view.h"
 #include "volcontact/shape/obb_tree.h"
 
 namespace volcontact {
@@ -73,6 +74,18 @@ void make_cells(const ObbTree& a, const Pose& X_CA, const ObbTree& b, const Pose
 
 /// The cells of A with the half-space z < 0 of C.
 void make_cells_below(const ObbTree& a, const Pose& X_CA, CellScratch& scratch) noexcept;
+
+/// One face of a convex solid, on the plane z = 0 of C with the solid below it.
+struct ColumnPrism {
+  ColumnWindow bounds;              ///< of the solid
+  std::vector<SurfacePlane> sides;  ///< its other faces
+  double margin = 0.0;              ///< nearer to a side, nobody knows on which side of it [m]
+};
+
+/// The cells of A with a convex solid whose other faces A's surface does not meet: those of the
+/// triangles within it. False when it meets one of them.
+bool make_cells_in_prism(const ObbTree& a, const Pose& X_CA, const ColumnPrism& prism,
+                         CellScratch& scratch) noexcept;
 
 /// Whether some triangle meets the rectangle of the window at height z.
 bool meets_level(const ObbTree& tree, const Pose& X_CM, const ColumnWindow& window, double z,

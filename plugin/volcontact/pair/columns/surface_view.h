@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "volcontact/shape/box.h"
 #include "volcontact/shape/convex_polytope.h"
 #include "volcontact/shape/mesh.h"
 
 namespace volcontact {
+
+/// normal . x <= offset, the normal of unit length.
+struct SurfacePlane {
+  Vec3 normal;
+  double offset;
+};
 
 /// What the columns engine needs of a solid whose surface is made of triangles. It refers to the
 /// solid and must not outlive it.
@@ -15,7 +23,8 @@ struct SurfaceView {
   Aabb bounds;
   VolumeMetrics own;
   double surface_area;
-  Vec3 point;  ///< on the surface
+  Vec3 point;                                         ///< on the surface
+  const std::vector<SurfacePlane>* planes = nullptr;  ///< of a convex solid
 
   int part_count() const {
     return components == nullptr ? 1 : static_cast<int>(components->size());
@@ -29,28 +38,44 @@ struct SurfaceView {
   }
 };
 
+/// What a view refers to and the solid does not hold itself.
+struct SurfaceStore {
+  ObbTree tree;  ///< of a box
+  std::vector<SurfacePlane> planes;
+};
+
 /// The triangles of a box, which has no tree of its own.
 void make_box_tree(const Vec3& half_sizes, ObbTree& tree);
 
-inline SurfaceView surface_of(const Mesh& mesh, ObbTree&) {
+inline SurfaceView surface_of(const Mesh& mesh, SurfaceStore&) {
   const Mesh::Components& parts = mesh.components();
   return {&mesh.tree(),        parts.size() > 1 ? &parts : nullptr,
           mesh.bounds(),       mesh.own_metrics(),
           mesh.surface_area(), mesh.topology().vertices[0]};
 }
 
-inline SurfaceView surface_of(const ConvexPolytope& solid, ObbTree&) {
-  return {&solid.tree(),      nullptr, solid.bounds(), solid.own_metrics(), solid.surface_area(),
-          solid.vertices()[0]};
+inline SurfaceView surface_of(const ConvexPolytope& solid, SurfaceStore& store) {
+  store.planes.clear();
+  for (const ConvexPolytope::Face& face : solid.faces()) {
+    store.planes.push_back({face.normal, face.offset});
+  }
+  return {
+      &solid.tree(),       nullptr,      solid.bounds(), solid.own_metrics(), solid.surface_area(),
+      solid.vertices()[0], &store.planes};
 }
-inline SurfaceView surface_of(const Box& solid, ObbTree& tree) {
-  make_box_tree(solid.half_sizes(), tree);
+inline SurfaceView surface_of(const Box& solid, SurfaceStore& store) {
+  make_box_tree(solid.half_sizes(), store.tree);
   const Vec3& half = solid.half_sizes();
+  store.planes.clear();
+  for (int i = 0; i < 3; ++i) {
+    store.planes.push_back({Vec3::Unit(i), half[i]});
+    store.planes.push_back({-Vec3::Unit(i), half[i]});
+  }
   const double area = 8.0 * (half.x() * half.y() + half.y() * half.z() + half.z() * half.x());
-  return {&tree, nullptr, solid.bounds(), solid.own_metrics(), area, half};
+  return {&store.tree, nullptr, solid.bounds(), solid.own_metrics(), area, half, &store.planes};
 }
 
 template <typename S>
-concept HasTriangles = requires(const S& solid, ObbTree& tree) { surface_of(solid, tree); };
+concept HasTriangles = requires(const S& solid, SurfaceStore& store) { surface_of(solid, store); };
 
 }  // namespace volcontact
