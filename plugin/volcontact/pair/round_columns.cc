@@ -67,7 +67,7 @@ class RoundColumns {
     const Pose X_QB{X_AB_.rotation, X_AB_.translation - origin_};
     if (!round_solid_of(b_, X_QB, s_.faces, solid_)) return false;
     if (holds_all_of_a()) return add_contained(a_.own, a_.surface_area, 0.0);
-    if (!find_round_pieces(*a_.tree, origin_, solid_, options_.most_cells, s_.search, s_.pieces)) {
+    if (!find_round_pieces(*a_.tree, origin_, solid_, options_, s_.search, s_.pieces)) {
       return false;
     }
     if (s_.pieces.whole) return add_contained(a_.own, a_.surface_area, 0.0);

@@ -12,12 +12,13 @@
 namespace volcontact {
 namespace {
 
-constexpr double kSag = 0.3;           // of an arc over its chord; a triangle with more is divided
-constexpr int kMostHalvings = 10;      // of an arc
-constexpr int kMostPasses = 6;         // over the arcs of a polygon
-constexpr double kSliverShare = 0.01;  // of the area of the polygon within the arcs
-constexpr int kMostDivisions = 24;     // of a triangle in four
-constexpr double kTinySag = 1e-9;      // of the solid's size
+constexpr double kSag = 0.3;            // of an arc over its chord; a triangle with more is divided
+constexpr int kMostHalvings = 10;       // of an arc
+constexpr int kMostPasses = 6;          // over the arcs of a polygon
+constexpr double kLeastSlivers = 0.01;  // of the area of the polygon within the arcs
+constexpr double kMostSlivers = 0.3;    // the same where it is one of many
+constexpr int kMostDivisions = 24;      // of a triangle in four
+constexpr double kTinySag = 1e-9;       // of the solid's size
 
 // Corners of a plane convex polygon, at most those of a triangle cut by two planes.
 struct Outline {
@@ -29,8 +30,9 @@ struct Outline {
 // Cuts one triangle of A by the faces of B.
 class FaceCut {
  public:
-  FaceCut(const RoundSolid& solid, int face, RoundPieces& pieces, std::vector<Vec3>& corners)
-      : s_(solid), face_(face), pieces_(pieces), corner_(corners) {}
+  FaceCut(const RoundSolid& solid, int face, double sliver_share, RoundPieces& pieces,
+          std::vector<Vec3>& corners)
+      : s_(solid), face_(face), sliver_share_(sliver_share), pieces_(pieces), corner_(corners) {}
 
   // Cuts by the plane faces, then each part by the round one.
   void cut(const Vec3 (&corner)[3]) {
@@ -86,6 +88,7 @@ class FaceCut {
     // The outline inside: parts of the edges, and arcs from where it leaves to where it enters.
     Vec3 outline[6];
     bool arc_after[6];
+    Arc arc[6];
     int count = 0;
     for (int i = 0; i < 3; ++i) {
       const int j = i == 2 ? 0 : i + 1;
@@ -114,14 +117,13 @@ class FaceCut {
     }
     for (int i = 0; i < count; ++i) {
       if (!arc_after[i]) continue;
-      const Vec3 &p = outline[i], &q = outline[i + 1 == count ? 0 : i + 1];
-      Vec3 tip;
-      const double sag = find_tip(p, q, tip);
-      if (sag > kSag * (q - p).norm() && sag > kTinySag * s_.size && divisions < kMostDivisions) {
+      arc[i] = arc_between(outline[i], outline[i + 1 == count ? 0 : i + 1]);
+      const double sag = arc[i].sag;
+      if (sag > kSag * arc[i].chord() && sag > kTinySag * s_.size && divisions < kMostDivisions) {
         return divide(a, b, c, divisions);
       }
     }
-    add_outline(outline, arc_after, count);
+    add_outline(outline, arc_after, arc, count);
   }
 
   // Whether a triangle without corners and edges in the solid may hold all of its section.
@@ -153,19 +155,24 @@ class FaceCut {
     return true;
   }
 
-  // The point of the arc farthest from its chord, nearly; returns how far. An arc does not leave
-  // the triangle: what is found beyond is the far side of a section that is touched in a point.
-  double find_tip(const Vec3& p, const Vec3& q, Vec3& tip) const {
+  // An arc of the round face in the plane of the triangle, from p to q.
+  struct Arc {
+    Vec3 p, q, tip;  // the tip is the point farthest from the chord, nearly
+    double sag;      // and so far from it
+    double chord() const { return (q - p).norm(); }
+  };
+
+  // An arc does not leave the triangle: what is found beyond is the far side of a section that is
+  // touched in a point.
+  Arc arc_between(const Vec3& p, const Vec3& q) const {
     const Vec3 middle = 0.5 * (p + q), outward = (q - p).cross(normal_);
+    const Arc none{p, q, middle, 0.0};
     const double length = outward.norm();
-    tip = middle;
-    if (!(length > 0.0)) return 0.0;
+    if (!(length > 0.0)) return none;
     const RayInterval ray = round_interval(s_, middle, outward / length);
     const double sag = ray.empty() || !std::isfinite(ray.leave) ? 0.0 : std::max(0.0, ray.leave);
-    tip = middle + sag / length * outward;
-    if (in_triangle(tip)) return sag;
-    tip = middle;
-    return 0.0;
+    const Arc arc{p, q, middle + sag / length * outward, sag};
+    return in_triangle(arc.tip) ? arc : none;
   }
 
   void add_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -174,22 +181,20 @@ class FaceCut {
 
   // Appends the points of the arc after p, before q, and the slivers that they leave, none of them
   // larger than `most` where halving can help it.
-  void add_arc(const Vec3& p, const Vec3& q, double most, int halvings) {
-    Vec3 tip;
-    const double sag = find_tip(p, q, tip);
-    if (!(sag > 0.0)) return;
-    const double area = 2.0 / 3.0 * (q - p).norm() * sag;
+  void add_arc(const Arc& arc, double most, int halvings) {
+    if (!(arc.sag > 0.0)) return;
+    const double area = 2.0 / 3.0 * arc.chord() * arc.sag;
     if (area > most && halvings < kMostHalvings) {
-      add_arc(p, tip, most, halvings + 1);
-      corner_.push_back(tip);
-      add_arc(tip, q, most, halvings + 1);
+      add_arc(arc_between(arc.p, arc.tip), most, halvings + 1);
+      corner_.push_back(arc.tip);
+      add_arc(arc_between(arc.tip, arc.q), most, halvings + 1);
       return;
     }
-    pieces_.slivers.push_back({0.5 * (p + q), area * unit_, tip, face_});
+    pieces_.slivers.push_back({0.5 * (arc.p + arc.q), area * unit_, arc.tip, face_});
   }
 
   // With as many points on the arcs as make the slivers small beside the polygon within them.
-  void add_outline(const Vec3* outline, const bool* arc_after, int count) {
+  void add_outline(const Vec3* outline, const bool* arc_after, const Arc* arc, int count) {
     const std::size_t before = pieces_.slivers.size();
     unit_ = normal_.normalized();
     double most = kInfinity;
@@ -198,7 +203,7 @@ class FaceCut {
       corner_.clear();
       for (int i = 0; i < count; ++i) {
         corner_.push_back(outline[i]);
-        if (arc_after[i]) add_arc(outline[i], outline[i + 1 == count ? 0 : i + 1], most, 0);
+        if (arc_after[i]) add_arc(arc[i], most, 0);
       }
       double area = 0.0, slivers = 0.0;
       for (std::size_t i = 2; i < corner_.size(); ++i) {
@@ -207,8 +212,8 @@ class FaceCut {
       for (std::size_t i = before; i < pieces_.slivers.size(); ++i) {
         slivers += pieces_.slivers[i].area_vector.norm();
       }
-      if (slivers <= kSliverShare * area) break;
-      most = kSliverShare * (area + slivers) / 8.0;
+      if (slivers <= sliver_share_ * area) break;
+      most = sliver_share_ * (area + slivers) / 8.0;
     }
     for (std::size_t i = 2; i < corner_.size(); ++i) {
       add_triangle(corner_[0], corner_[i - 1], corner_[i]);
@@ -217,6 +222,7 @@ class FaceCut {
 
   const RoundSolid& s_;
   const int face_;
+  const double sliver_share_;
   RoundPieces& pieces_;
   Vec3 normal_, unit_;
   Vec3 part_[3];  // of the triangle, that is cut by the round face now
@@ -293,9 +299,14 @@ void find_patches(const ObbTree& tree, const Vec3& origin, const RoundSolid& sol
 
 }  // namespace
 
-bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid& solid, int most,
-                       RoundSearchScratch& scratch, RoundPieces& pieces) noexcept {
+bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid& solid,
+                       const InterferenceOptions& options, RoundSearchScratch& scratch,
+                       RoundPieces& pieces) noexcept {
   VOLCONTACT_SIMD_CALL(scratch.path, find_triangles_near, tree, origin, solid, scratch);
+  // The columns at the rim of a patch are short, and the more triangles it has, the less of it are
+  // those at the rim.
+  const double share = std::clamp(options.tolerance * static_cast<double>(scratch.found.size()),
+                                  kLeastSlivers, kMostSlivers);
   pieces.triangles.clear();
   pieces.slivers.clear();
   pieces.slot_of_face.clear();
@@ -309,11 +320,11 @@ bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid
     if (inside) {
       pieces.triangles.push_back({{corner[0], corner[1], corner[2]}, face});
     } else {
-      FaceCut(solid, face, pieces, scratch.corners).cut(corner);
+      FaceCut(solid, face, share, pieces, scratch.corners).cut(corner);
     }
     uncut &= inside;
     if (pieces.triangles.size() > before) pieces.slot_of_face.push_back(slot);
-    if (static_cast<int>(pieces.triangles.size()) > most) return false;
+    if (static_cast<int>(pieces.triangles.size()) > options.most_cells) return false;
   }
   pieces.whole = uncut && scratch.found.size() == triangle_count(tree);
   if (!pieces.whole) find_patches(tree, origin, solid, scratch, pieces);

@@ -6,6 +6,7 @@
 
 #include "volcontact/base/simd.h"
 #include "volcontact/pair/columns/round_solid.h"
+#include "volcontact/pair/interference.h"
 #include "volcontact/shape/obb_tree.h"
 
 namespace volcontact {
@@ -56,8 +57,9 @@ struct RoundSearchScratch {
 };
 
 /// Cuts the triangles of a tree, whose frame is that of Q but for an origin at -`origin`, by a
-/// round solid. False when there are more than `most` pieces.
-bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid& solid, int most,
-                       RoundSearchScratch& scratch, RoundPieces& pieces) noexcept;
+/// round solid. False when there are more pieces than `options.most_cells`.
+bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid& solid,
+                       const InterferenceOptions& options, RoundSearchScratch& scratch,
+                       RoundPieces& pieces) noexcept;
 
 }  // namespace volcontact
