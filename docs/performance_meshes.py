@@ -30,7 +30,8 @@ _STEP = 300.0  # [us]
 
 # Columns: title, library and the beginning of its variant.
 _COLUMNS = (
-    ("volcontact in C++", "volcontact", ""),
+    ("volcontact in C++", "volcontact", "in C++"),
+    ("from pose to pose", "volcontact", "from pose"),
     ("manifold3d", "manifold3d", ""),
     ("CGAL", "CGAL", ""),
     ("Drake, hydroelastic", "Drake", ""),

@@ -5,7 +5,10 @@
 
 runs it and all other benchmarks. All libraries see the same triangles at the same poses, in turns.
 Ours is timed in a loop in C++, the others from Python, CGAL in its own program; times are processor
-times. The slower ones see fewer poses. What a library takes to build its solids does not count.
+times, the median of each pose over the turns and then over the poses. Ours is timed twice: drifting
+slowly from each pose, as from step to step of a simulation, and from pose to pose, where nothing
+that the memory caches hold is of use. The slower ones see fewer poses. What a library takes to
+build its solids does not count.
 """
 
 from __future__ import annotations
@@ -21,7 +24,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from peers.cases import Case
+from peers.cases import Case, pose_of, turn
 from peers.library import Unsupported
 from peers.mesh_cases import all_cases
 from peers.ours import FromPython, microseconds_in_cpp
@@ -33,6 +36,7 @@ TURNS = 15
 LEAST = 2  # turns, and poses of those a case has
 SECONDS = 0.3  # of one library on one pair: slower ones take fewer turns and poses
 LOOP = 1e3  # our own loop in one turn [us]
+DRIFT, DRIFTS = 1e-6, 32  # of the size of B, and poses of one course
 WAYS = {  # what to import, and its ways to ask
     "peers.exact_meshes": ("MeshBoolean", "Corefinement"),
     "peers.mesh_surfaces": ("MeshHydroelastic",),
@@ -81,7 +85,8 @@ class Course:
     """The times of one way on one pair, turn by turn, and its answers."""
 
     def __init__(self, query: Any, poses: np.ndarray) -> None:
-        self.query, self.times = query, []
+        self.query = query
+        self.times: list[np.ndarray] = []  # of each turn, of each pose [us]
         self.answers: list[Answer] = []
         self._ask(poses[0])
         once = max(1e-3, self._ask(poses[0]))
@@ -111,7 +116,7 @@ class Course:
             spent.append(self._ask(pose))
             if not self.times:
                 self.answers.append(self._judge())
-        self.times.append(float(np.mean(spent)))
+        self.times.append(np.array(spent))
 
 
 def says_of_itself(answer: Any) -> tuple[float, str]:
@@ -132,16 +137,40 @@ class InCpp(FromPython):
 
 
 class OurCourse(Course):
-    """All poses over and over in C++."""
+    """In C++, drifting from each pose."""
 
     def run_turn(self) -> None:
         """Every pose, at least once."""
         if not self.times:
             super().run_turn()
-        self.times.append(microseconds_in_cpp(self.query.case, self.poses, self._enough()))
+            self.queries = np.maximum(1, LOOP / self.times[0]).astype(int)
+            self.courses = [drift(pose, self.query.case.b.size) for pose in self.poses]
+        self.times.append(self._measure())
 
-    def _enough(self) -> int:
-        return max(1, int(LOOP / self.times[-1]))
+    def _measure(self) -> np.ndarray:
+        ask = zip(self.courses, self.queries, strict=True)
+        return np.array([microseconds_in_cpp(self.query.case, c, int(n)) for c, n in ask])
+
+
+class FromPoseToPose(OurCourse):
+    """In C++, all poses over and over."""
+
+    def _measure(self) -> np.ndarray:
+        mean = microseconds_in_cpp(self.query.case, self.poses, int(self.queries.mean()))
+        return np.full(len(self.poses), mean)
+
+
+class Jumping(InCpp):
+    """Ours, never twice at the same pose."""
+
+    variant = "from pose to pose in C++"
+
+
+def drift(pose: np.ndarray, size: float) -> np.ndarray:
+    """Poses along a slow motion that begins at one."""
+    steps = np.arange(DRIFTS) if np.isfinite(size) else np.zeros(1)
+    way = DRIFT * size * np.array([1.0, -2.0, 1.5])
+    return np.array([pose @ pose_of(turn((1, 2, 3), DRIFT * k), k * way) for k in steps])
 
 
 def ways_to_ask() -> list[type]:
@@ -160,7 +189,7 @@ def ways_to_ask() -> list[type]:
 def measure(case: Case, ways: Sequence[type]) -> list[Row]:
     """All rows of one pair, ours first."""
     ours = OurCourse(InCpp(case), case.poses)
-    courses: list[Course] = [ours]
+    courses: list[Course] = [ours, FromPoseToPose(Jumping(case), case.poses)]
     for way in ways:
         try:
             courses.append(Course(way(case.a, case.b), case.poses))
@@ -170,7 +199,8 @@ def measure(case: Case, ways: Sequence[type]) -> list[Row]:
         for course in courses:
             if turn < course.turns:
                 course.run_turn()
-    ours.times = ours.times[1:]  # the first was asked from Python
+    for course in courses[:2]:
+        course.times = course.times[1:]  # the first was asked from Python
     truths = [case.exact(case.a, case.b, pose) if case.exact else None for pose in ours.poses]
     return [row_of(case, course, ours.answers, truths) for course in courses]
 
@@ -210,7 +240,7 @@ def row_of(
         for answer, mine, truth in zip(answers, ours, truths, strict=False)
     ]
     worst = np.max(errors, axis=0)
-    q1, median, q3 = np.percentile(course.times, [25, 50, 75])
+    q1, median, q3 = np.percentile(np.median(course.times, axis=0), [25, 50, 75])
     return Row(
         case=case.name,
         library=query.library,
