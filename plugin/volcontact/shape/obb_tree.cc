@@ -13,7 +13,9 @@ namespace {
 
 constexpr double kPadding = 1e-13;  // of the size of the mesh
 constexpr double kFlat = 0.005;     // thickness of a flat box by its length
-constexpr double kShorter = 0.9;    // volume to be left by a cut across a shorter side
+constexpr double kOther = 0.9;      // volume to be left, by that of a cut across the longest side
+constexpr int kSamples = 256;       // triangles by which ways to part many are compared
+constexpr int kLeastGap = 4;        // between normals on both sides of an edge, in eighths
 constexpr double kSaved = 0.8;      // volume to be left by a cut that was worth it
 
 struct Obb {
@@ -36,7 +38,9 @@ class Builder {
   explicit Builder(const MeshTopology& mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
     std::iota(order_.begin(), order_.end(), 0);
     for (const Triangle& t : mesh.triangles) {
-      middles_.push_back((mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0);
+      const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+      middles_.push_back((a + b + c) / 3.0);
+      normals_.push_back((b - a).cross(c - a).stableNormalized());
     }
     Vec3 low = mesh.vertices[0], high = mesh.vertices[0];
     for (const Vec3& v : mesh.vertices) low = low.cwiseMin(v), high = high.cwiseMax(v);
@@ -53,11 +57,12 @@ class Builder {
   }
 
  private:
-  Obb fit(int first, int last) const {
+  // Around all triangles of a range, or around every so many of them.
+  Obb fit(int first, int last, int stride = 1) const {
     Mat3 second = Mat3::Zero();
     Vec3 mean = Vec3::Zero();
     double weight = 0.0;
-    for (int i = first; i < last; ++i) {
+    for (int i = first; i < last; i += stride) {
       const Triangle& t = mesh_.triangles[order_[i]];
       const Vec3 &a = mesh_.vertices[t[0]], &b = mesh_.vertices[t[1]], &c = mesh_.vertices[t[2]];
       const double area = (b - a).cross(c - a).norm();
@@ -67,18 +72,18 @@ class Builder {
       second += area / 12.0 *
                 (sum * sum.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
     }
-    Obb upright = around(Mat3::Identity(), first, last);
+    Obb upright = around(Mat3::Identity(), first, last, stride);
     if (!(weight > 0.0)) return upright;
     mean /= weight;
     const Mat3 covariance = second / weight - mean * mean.transpose();
     const Eigen::SelfAdjointEigenSolver<Mat3> solver(covariance);
-    const Obb turned = around(solver.eigenvectors().transpose(), first, last);
+    const Obb turned = around(solver.eigenvectors().transpose(), first, last, stride);
     return upright.half.prod() < 0.9 * turned.half.prod() ? upright : turned;
   }
 
-  Obb around(const Mat3& axes, int first, int last) const {
+  Obb around(const Mat3& axes, int first, int last, int stride) const {
     Vec3 low = Vec3::Constant(kInfinity), high = -low;
-    for (int i = first; i < last; ++i) {
+    for (int i = first; i < last; i += stride) {
       for (int corner : mesh_.triangles[order_[i]]) {
         const Vec3 p = axes * mesh_.vertices[corner];
         low = low.cwiseMin(p);
@@ -101,63 +106,92 @@ class Builder {
     return middle;
   }
 
-  // The sides of a box that a cut may go across, the longest first. A flat box has only one.
-  struct Sides {
-    int list[3], count;
+  // Ways to part the triangles of a branch: in halves across a side of its box, or by the
+  // directions they look in.
+  static constexpr int kByNormals = 3;
+  struct Ways {
+    int list[4], count;  // the cut across the longest side first
   };
-  static Sides sides_of(const Obb& box) {
-    Sides sides{{0, 1, 2}, 3};
-    std::sort(sides.list, sides.list + 3, [&](int i, int j) { return box.half[i] > box.half[j]; });
-    if (box.half[sides.list[2]] < kFlat * box.half[sides.list[0]]) sides.count = 1;
-    return sides;
+  static Ways ways_of(const Obb& box) {
+    Ways ways{{0, 1, 2, kByNormals}, 4};
+    std::sort(ways.list, ways.list + 3, [&](int i, int j) { return box.half[i] > box.half[j]; });
+    if (box.half[ways.list[2]] < kFlat * box.half[ways.list[0]]) ways.count = 1;
+    return ways;
   }
 
-  struct Halves {
-    Branch left, right;
-    double volume() const { return left.box.half.prod() + right.box.half.prod(); }
-  };
-  Halves cut(const Branch& branch, int side) {
-    const int first = branch.first, last = branch.last;
-    const int middle = halve(first, last, branch.box.axes.row(side).transpose());
-    return {{fit(first, middle), first, middle}, {fit(middle, last), middle, last}};
+  // Returns where the second part begins; the end of the branch when there is none.
+  int part(const Branch& branch, int way) {
+    if (way == kByNormals) return part_by_normals(branch);
+    return halve(branch.first, branch.last, branch.box.axes.row(way).transpose());
   }
 
-  // The cut after which the boxes have the least volume, or the next ones have after `more` cuts.
-  std::pair<Halves, double> best_cut(const Branch& branch, int more) {
-    const Sides sides = sides_of(branch.box);
-    std::pair<Halves, double> best{{}, kInfinity};
-    int best_side = -1;
-    for (int k = 0; k < sides.count; ++k) {
-      const Halves halves = cut(branch, sides.list[k]);
-      const double volume =
-          more == 0 ? halves.volume() : least_volume(halves.left) + least_volume(halves.right);
-      if (volume < (k == 0 ? 1.0 : kShorter) * best.second) {
-        best = {halves, volume};
-        best_side = k;
+  // Where no triangle looks in between: on both sides of a sharp edge.
+  int part_by_normals(const Branch& branch) {
+    constexpr int kBins = 16;
+    const auto bin_of = [](double cosine) {
+      return std::clamp(static_cast<int>((0.5 + 0.5 * cosine) * kBins), 0, kBins - 1);
+    };
+    int widest = kLeastGap - 1, side = -1, limit = 0;
+    for (int k = 0; k < 3; ++k) {
+      bool taken[kBins] = {};
+      for (int i = branch.first; i < branch.last; ++i) {
+        taken[bin_of(branch.box.axes.row(k).dot(normals_[order_[i]]))] = true;
+      }
+      for (int bin = 0, last = -1; bin < kBins; ++bin) {
+        if (!taken[bin]) continue;
+        if (last >= 0 && bin - last > widest) widest = bin - last, side = k, limit = bin;
+        last = bin;
       }
     }
-    if (best_side != sides.count - 1) {
-      halve(branch.first, branch.last, branch.box.axes.row(sides.list[best_side]).transpose());
+    if (side < 0) return branch.last;
+    const auto second = std::stable_partition(
+        order_.begin() + branch.first, order_.begin() + branch.last,
+        [&](int i) { return bin_of(branch.box.axes.row(side).dot(normals_[i])) < limit; });
+    return static_cast<int>(second - order_.begin());
+  }
+
+  Branch sampled(int first, int last) const {
+    return {fit(first, last, std::max(1, (last - first) / kSamples)), first, last};
+  }
+
+  struct Choice {
+    int way;
+    double volume;  // about that of the boxes of its parts, or of theirs `more` cuts later
+  };
+  Choice best_way(const Branch& branch, int more) {
+    const Ways ways = ways_of(branch.box);
+    Choice best{ways.list[0], kInfinity};
+    for (int k = 0; k < ways.count; ++k) {
+      const int middle = part(branch, ways.list[k]);
+      if (middle == branch.last) continue;
+      const Branch left = sampled(branch.first, middle), right = sampled(middle, branch.last);
+      const double volume = more == 0 ? left.box.half.prod() + right.box.half.prod()
+                                      : least_volume(left) + least_volume(right);
+      if (volume < (k == 0 ? 1.0 : kOther) * best.volume) best = {ways.list[k], volume};
     }
     return best;
   }
   double least_volume(const Branch& branch) {
     return branch.last - branch.first <= kLanes ? branch.box.half.prod()
-                                                : best_cut(branch, 0).second;
+                                                : best_way(branch, 0).volume;
   }
 
   // Across the longest side of its box, or where that makes the boxes much thinner, as around a
-  // cylinder. The first cut through a closed ring or tube saves nothing: the second one tells.
+  // cylinder or at an edge. The first cut through a closed ring or tube saves nothing: the second
+  // one tells.
   void split(int index) {
     const Branch branch = branches_[index];
     if (branch.last - branch.first <= kLanes) return;
-    auto [halves, volume] = best_cut(branch, 0);
-    const bool is_flat = sides_of(branch.box).count == 1;
-    if (!is_flat && volume > kSaved * branch.box.half.prod()) halves = best_cut(branch, 1).first;
-    const int left = static_cast<int>(branches_.size());
+    int way = ways_of(branch.box).list[0];
+    if (ways_of(branch.box).count > 1) {
+      Choice choice = best_way(branch, 0);
+      if (choice.volume > kSaved * branch.box.half.prod()) choice = best_way(branch, 1);
+      way = choice.way;
+    }
+    const int middle = part(branch, way), left = static_cast<int>(branches_.size());
     branches_[index].left = left;
-    branches_.push_back(halves.left);
-    branches_.push_back(halves.right);
+    branches_.push_back({fit(branch.first, middle), branch.first, middle});
+    branches_.push_back({fit(middle, branch.last), middle, branch.last});
     split(left);
     split(left + 1);
   }
@@ -245,7 +279,7 @@ class Builder {
 
   const MeshTopology& mesh_;
   std::vector<int> order_;
-  std::vector<Vec3> middles_;
+  std::vector<Vec3> middles_, normals_;  // of the triangles
   double padding_;
   std::vector<Branch> branches_;
   ObbTree tree_;
