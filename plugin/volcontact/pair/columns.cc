@@ -152,15 +152,34 @@ class Columns {
     return true;
   }
 
+  // Axes of the columns through a patch in B's frame: z towards A, x along the patch, so that its
+  // window is no wider than it must be.
+  Mat3 columns_along(const ContactPatch& patch) const {
+    const Mat3 R_BC = basis_with_z(patch.flux.toward_a);
+    const Vec3 middle = 0.5 * (patch.low + patch.high);
+    double xx = 0.0, xy = 0.0, yy = 0.0;
+    for (int k = patch.first; k < patch.last; ++k) {
+      const TriangleContact& contact = scratch_.crossing.contacts[scratch_.patches.order[k]];
+      const Vec3 p = R_BC.transpose() * (0.5 * (contact.p + contact.q) - middle);
+      xx += p.x() * p.x();
+      xy += p.x() * p.y();
+      yy += p.y() * p.y();
+    }
+    const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);
+    Mat3 turned = R_BC;
+    turned.col(0) = std::cos(angle) * R_BC.col(0) + std::sin(angle) * R_BC.col(1);
+    turned.col(1) = R_BC.col(2).cross(turned.col(0));
+    return turned;
+  }
+
   // Columns from B to A through one patch alone: right when A does not reach below the window, nor
   // B above it, nor the overlap out of it at the sides, and when A's surface found inside of B is
   // the one that the curve of the patch bounds.
   bool add_patch(const ContactPatch& patch) {
     if (!patch.flux.closed || patch.flux.toward_a.isZero()) return false;
     const std::vector<TriangleContact>& contacts = scratch_.crossing.contacts;
-    const Vec3 middle_B = 0.5 * (patch.low + patch.high);
-    const Mat3 R_BC = basis_with_z(patch.flux.toward_a);
-    const Pose X_BC{R_BC, middle_B};
+    const Pose X_BC{columns_along(patch), 0.5 * (patch.low + patch.high)};
+    const Mat3& R_BC = X_BC.rotation;
     const Pose X_CB = X_BC.inverse();
     const Pose X_CA = X_CB * X_BA_;
     ColumnWindow curve{Vec3::Constant(kInfinity), Vec3::Constant(-kInfinity)};
