@@ -44,7 +44,8 @@ def render() -> str:
 
 
 def _is_derived(component: type, base: type) -> bool:
-    return issubclass(component, base) and component is not base
+    own = component.__name__.startswith("Python")  # what a user's classes derive from
+    return issubclass(component, base) and component is not base and not own
 
 
 def _section(component: type) -> str:

@@ -15,27 +15,10 @@ const Row* find(const std::vector<Row>& rows, std::string_view name) {
   return found == rows.end() ? nullptr : &*found;
 }
 
-template <typename Law>
-LawRow row_of() {
-  const typename Law::Params params{};
-  LawRow row{Law::kName, {}, {}};
-  for (const auto& field : Law::kFields) {
-    FieldRow entry{field.name, field.unit, field.range, {}};
-    for (int i = 0; i < field.size(); ++i) entry.defaults.push_back(field.get(params, i));
-    row.fields.push_back(entry);
-  }
-  if constexpr (kHasChoices<Law>) {
-    for (const auto& choice : Law::kChoices) {
-      row.choices.push_back({choice.name, {choice.words.begin(), choice.words.end()}});
-    }
-  }
-  return row;
-}
-
-template <typename List>
-std::vector<LawRow> rows_of(List list) {
+template <typename Base>
+std::vector<LawRow> rows_of(const std::vector<LawEntry<Base>>& entries) {
   std::vector<LawRow> rows;
-  for_each_type(list, [&](auto tag) { rows.push_back(row_of<typename decltype(tag)::Type>()); });
+  for (const LawEntry<Base>& entry : entries) rows.push_back(entry.row);
   return rows;
 }
 
@@ -61,21 +44,13 @@ std::vector<ChoiceRow> collect_choices() {
 
 }  // namespace
 
-const FieldRow* LawRow::field(std::string_view field_name) const {
-  return find(fields, field_name);
-}
-
-const ChoiceRow* LawRow::choice(std::string_view choice_name) const {
-  return find(choices, choice_name);
-}
-
 const std::vector<LawRow>& normal_laws() {
-  static const std::vector<LawRow> rows = rows_of(NormalLaws{});
+  static const std::vector<LawRow> rows = rows_of(normal_law_entries());
   return rows;
 }
 
 const std::vector<LawRow>& friction_laws() {
-  static const std::vector<LawRow> rows = rows_of(FrictionLaws{});
+  static const std::vector<LawRow> rows = rows_of(friction_law_entries());
   return rows;
 }
 

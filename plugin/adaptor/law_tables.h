@@ -5,31 +5,12 @@
 #include <string_view>
 #include <vector>
 
-#include "volcontact/base/fields.h"
+#include "volcontact/force/law_table.h"
 
 namespace volcontact::adaptor {
 
-/// What the key reader needs of a law's table, with the law's type taken away.
-struct FieldRow {
-  std::string name;
-  std::string unit;
-  Range range;
-  std::vector<double> defaults;
-};
-struct ChoiceRow {
-  std::string name;
-  std::vector<std::string> words;
-};
-struct LawRow {
-  std::string name;
-  std::vector<FieldRow> fields;
-  std::vector<ChoiceRow> choices;
-
-  const FieldRow* field(std::string_view field_name) const;
-  const ChoiceRow* choice(std::string_view choice_name) const;
-};
-
-/// The laws of the lists in force/laws.h, in their order: the first is the default.
+/// The laws of the lists in force/laws.h, in their order, and those a program added: the first is
+/// the default. As they are when first asked for.
 const std::vector<LawRow>& normal_laws();
 const std::vector<LawRow>& friction_laws();
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/vector.h>
 
 #include "bindings.h"
 #include "fields.h"
@@ -18,6 +20,44 @@ void bind_law(nb::module_& m, const char* what) {
   detail::def_law_init<Law, Base>(type, std::make_index_sequence<Law::kFields.size()>{},
                                   std::make_index_sequence<detail::choice_count<Law>()>{});
   def_properties<Law>(type);
+}
+
+// Keywords of Python as the fields and choices of a law: words, numbers, or some numbers.
+template <typename Base>
+std::shared_ptr<const Base> make_by_name(std::shared_ptr<const Base> (*make)(std::string_view,
+                                                                             const FieldValues&,
+                                                                             const ChoiceValues&),
+                                         const std::string& name, const nb::kwargs& parameters) {
+  FieldValues values;
+  ChoiceValues choices;
+  for (const auto [key, value] : parameters) {
+    const std::string field = nb::cast<std::string>(key);
+    if (nb::isinstance<nb::str>(value)) {
+      choices[field] = nb::cast<std::string>(value);
+    } else if (nb::isinstance<nb::sequence>(value)) {
+      values[field] = nb::cast<std::vector<double>>(value);
+    } else {
+      values[field] = {nb::cast<double>(value)};
+    }
+  }
+  return make(name, values, choices);
+}
+
+void bind_makers(nb::module_& m) {
+  m.def(
+      "make_normal",
+      [](const std::string& name, const nb::kwargs& parameters) {
+        return make_by_name<NormalForce>(&make_normal, name, parameters);
+      },
+      nb::arg("name"), nb::arg("parameters"),
+      "The normal law called `name`, as in MJCF keys, with its parameters as keywords: also one "
+      "that was built in by VOLCONTACT_LAWS");
+  m.def(
+      "make_friction",
+      [](const std::string& name, const nb::kwargs& parameters) {
+        return make_by_name<Friction>(&make_friction, name, parameters);
+      },
+      nb::arg("name"), nb::arg("parameters"), "The same for friction laws");
 }
 
 void bind_layers(nb::module_& m) {
@@ -63,6 +103,7 @@ void bind_laws(nb::module_& m) {
   for_each_type(FrictionLaws{}, [&](auto tag) {
     bind_law<typename decltype(tag)::Type, Friction>(m, "Friction law");
   });
+  bind_makers(m);
   bind_layers(m);
 }
 

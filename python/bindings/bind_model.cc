@@ -6,6 +6,7 @@
 
 #include "arrays.h"
 #include "bindings.h"
+#include "python_law.h"
 #include "volcontact/model/contact_model.h"
 
 namespace volcontact::python {
@@ -49,8 +50,11 @@ PyReport evaluate(const ContactModel& model, const std::optional<Matrix4>& X_WA,
   if (state) memory = {state->data(), static_cast<int>(state->rows()), model.row_size(), 0.0};
   memory.elapsed = elapsed;
   thread_local ContactModel::Workspace workspace;
-  nb::gil_scoped_release release;
-  model.evaluate(motion, memory, workspace, report);
+  {
+    nb::gil_scoped_release release;
+    model.evaluate(motion, memory, workspace, report);
+  }
+  rethrow_law_error();
   return report;
 }
 
@@ -72,6 +76,19 @@ void require_no_python(const Shape& shape) {
           "contact model is evaluated without Python's lock; write that solid in C++, or compose "
           "it of shapes");
 }
+
+// A law in Python may lead back to the model, through its class and the module of that.
+int traverse_model(PyObject* self, visitproc visit, void* arg) {
+  Py_VISIT(Py_TYPE(self));
+  if (!nb::inst_ready(self)) return 0;
+  const ContactLaws& laws = nb::inst_ptr<ContactModel>(self)->laws();
+  const nb::handle normal = nb::find(laws.normal), friction = nb::find(laws.friction);
+  Py_VISIT(normal.ptr());
+  Py_VISIT(friction.ptr());
+  return 0;
+}
+PyType_Slot model_slots[] = {{Py_tp_traverse, reinterpret_cast<void*>(&traverse_model)},
+                             {0, nullptr}};
 
 void bind_report(nb::module_& m) {
   nb::class_<ByChannel>(m, "ByChannel", "One number for each way in which a contact dissipates.")
@@ -137,7 +154,8 @@ void bind_model(nb::module_& m) {
   bind_report(m);
   nb::class_<ContactModel>(
       m, "ContactModel",
-      "Geometric pairs x normal law x friction law: the CSA paper's contact model container.")
+      "Geometric pairs x normal law x friction law: the CSA paper's contact model container.",
+      nb::type_slots(model_slots))
       .def(
           "__init__",
           [](ContactModel* self, const std::vector<GeometricPair>& pairs, const NormalPtr& normal,

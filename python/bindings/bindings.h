@@ -11,6 +11,7 @@ void bind_shapes(nanobind::module_& m);
 void bind_signed_distance(nanobind::module_& m);
 void bind_interference(nanobind::module_& m);
 void bind_laws(nanobind::module_& m);
+void bind_own_laws(nanobind::module_& m);
 void bind_model(nanobind::module_& m);
 
 }  // namespace volcontact::python

@@ -8,5 +8,6 @@ NB_MODULE(_volcontact, m) {
   volcontact::python::bind_signed_distance(m);
   volcontact::python::bind_interference(m);
   volcontact::python::bind_laws(m);
+  volcontact::python::bind_own_laws(m);
   volcontact::python::bind_model(m);
 }

@@ -10,6 +10,7 @@ from __future__ import annotations
 import ctypes
 import functools
 import importlib.util
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -138,9 +139,15 @@ class Adaptor:
 def adaptor() -> Adaptor:
     """The adaptor for the MuJoCo that was imported.
 
+    The environment variable VOLCONTACT_ADAPTOR names another library in its place: one with laws of
+    your own, docs/own_laws.md.
+
     Raises:
         RuntimeError: the package has none for this release, or a broken one.
     """
+    own = os.environ.get("VOLCONTACT_ADAPTOR")
+    if own:
+        return Adaptor(Path(own))
     wanted = _PREFIX + mujoco.__version__ + _SUFFIX
     folders = _library_folders()
     for folder in folders:

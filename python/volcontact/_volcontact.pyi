@@ -917,6 +917,14 @@ class Bristle(Friction):
     def coupling(self) -> str:
         """how sliding and spinning share the friction"""
 
+def make_normal(name: str, **parameters) -> NormalForce:
+    """
+    The normal law called `name`, as in MJCF keys, with its parameters as keywords: also one that was built in by VOLCONTACT_LAWS
+    """
+
+def make_friction(name: str, **parameters) -> Friction:
+    """The same for friction laws"""
+
 def layer_stiffness(*, modulus: float, thickness: float, poisson_ratio: float | None = None) -> float:
     """
     Stiffness of an elastic layer on a rigid core.
@@ -940,6 +948,104 @@ def series_damping(stiffness_a: float, damping_a: float, stiffness_b: float, dam
 
 def series_restitution(stiffness_a: float, restitution_a: float, stiffness_b: float, restitution_b: float) -> float:
     """e [-] of two layers in series, each with its own against a rigid body"""
+
+class NormalInput:
+    """All a normal law knows of a contact site."""
+
+    @property
+    def volume(self) -> float:
+        """V [m^3]"""
+
+    @property
+    def depth_moment(self) -> float:
+        """int L^2/2 dA [m^4]"""
+
+    @property
+    def approach_speed(self) -> float:
+        """> 0 while approaching [m/s]"""
+
+class Patch:
+    """The contact patch as a friction law sees it."""
+
+    @property
+    def gyration_radius(self) -> float:
+        """[m]"""
+
+    @property
+    def volume(self) -> float:
+        """[m^3]"""
+
+    @property
+    def area(self) -> float:
+        """Projected along the normal [m^2]"""
+
+    @property
+    def second_moment(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order='F')]:
+        """int r r^T dV about the centroid [m^5], shape (3, 3)"""
+
+class FrictionInput:
+    """All a friction law knows of a contact site; world frame."""
+
+    @property
+    def normal_force(self) -> float:
+        """[N]"""
+
+    @property
+    def normal(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """On A, shape (3,)"""
+
+    @property
+    def slip(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """Tangential velocity of A against B at the centroid [m/s], shape (3,)"""
+
+    @property
+    def spin(self) -> float:
+        """Of A against B about the normal [rad/s]"""
+
+    @property
+    def travel(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """Way of A against B since the committed time [m], shape (3,)"""
+
+    @property
+    def turn(self) -> float:
+        """About the normal since then [rad]"""
+
+    @property
+    def patch(self) -> Patch: ...
+
+class NormalOutput:
+    """What a normal law returns."""
+
+    def __init__(self, *, magnitude: float, elastic: float, elastic_energy: float, rolling_damping: float = 0.0) -> None:
+        """
+        Args:
+            magnitude [N]: f_n, >= 0
+            elastic [N]: the part of it that is stored
+            elastic_energy [J]: what is stored
+            rolling_damping [N s/m^4]: torque per rolling speed and second moment of the volume
+        """
+
+class FrictionOutput:
+    """What a friction law returns."""
+
+    def __init__(self, *, force: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], torque: float = 0.0, slide_energy: float = 0.0, spin_energy: float = 0.0, slide_power: float, spin_power: float = 0.0) -> None:
+        """
+        Args:
+            force [N]: on A, tangential, shape (3,)
+            torque [N m]: on A, about the normal
+            slide_energy, spin_energy [J]: stored in deflection and in twist
+            slide_power, spin_power [W]: dissipated: work done against friction less what is being stored
+        """
+
+class PythonNormal(NormalForce):
+    """Base of vc.NormalLaw."""
+
+    def __init__(self, name: str, states: Sequence[tuple[str, str, str]]) -> None: ...
+
+class PythonFriction(Friction):
+    """Base of vc.FrictionLaw."""
+
+    def __init__(self, name: str, states: Sequence[tuple[str, str, str]]) -> None: ...
 
 class Pair:
     """A solid fixed on body A and a solid fixed on body B."""

@@ -56,11 +56,11 @@ TEST(SceneContact, BallRestsWhereTheCapCarriesItsWeight) {
 }
 
 TEST(SceneContact, PotentialRefusesAPairByItsGeoms) {
-  const std::string key = "<custom>" + testing::numeric("volcontact/option/formulation/potential", "1");
-  const auto scene = [&](const std::string& size) {
+  const auto scene = [](const std::string& size) {
     return "<mujoco><worldbody><geom name='table' type='box' size='1 1 1'/><body pos='0 0 1.1'>"
            "<freejoint/><geom name='thing' " +
-           size + "/></body></worldbody>" + key + "</custom></mujoco>";
+           size + "/></body></worldbody>" +
+           testing::numeric("volcontact/option/formulation/potential", "1") + "</mujoco>";
   };
   const ModelPointer boxes = testing::load(scene("type='box' size='.1 .1 .1'"));
   EXPECT_EQ(SceneContact(boxes.get()).pairs()[0].laws.laws.formulation, Formulation::kPotential);
