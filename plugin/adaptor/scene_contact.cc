@@ -40,12 +40,12 @@ double typical_time(Engine engine) {
 constexpr double kWorthSharing = 200e-6;
 constexpr int kPairsPerTask = 16;
 
+// Takes over and adds to `meshes`, by number; copies share their data.
 std::vector<Shape> solids_of(const mjModel* m, const SceneKeys& keys,
-                             const std::vector<GeomPair>& pairs) {
+                             const std::vector<GeomPair>& pairs, std::map<int, Shape>& meshes) {
   std::vector<Shape> solids(static_cast<std::size_t>(m->ngeom), Shape(HalfSpace()));
   std::set<int> geoms;
   for (const GeomPair& pair : pairs) geoms.insert({pair.a, pair.b});
-  std::map<int, Shape> meshes;  // copies share their data
   for (const int geom : geoms) {
     Shape& solid = solids[static_cast<std::size_t>(geom)];
     const ComposedGeoms* parts = keys.composed(geom);
@@ -92,10 +92,13 @@ bool any(const std::vector<char>& flags, std::size_t count) {
 
 }  // namespace
 
-SceneContact::SceneContact(const mjModel* m)
+SceneContact::SceneContact(const mjModel* m, const SceneContact* before)
     : keys_(read_scene_keys(m)),
       geom_pairs_(pairs_of(m, keys_)),
-      solids_(solids_of(m, keys_, geom_pairs_)),
+      meshes_(before != nullptr && before->options().mesh == options().mesh
+                  ? before->meshes_
+                  : std::map<int, Shape>()),
+      solids_(solids_of(m, keys_, geom_pairs_, meshes_)),
       cull_(geom_pairs_, solids_) {
   warn_about_model(m);
   if (geom_pairs_.empty()) {

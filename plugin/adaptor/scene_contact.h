@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,8 @@ class SceneContact {
   };
 
   /// Reads the scene. Throws std::invalid_argument with a message for the author of the scene.
-  explicit SceneContact(const mjModel* m);
+  /// `before`: of the same model with other numbers; its meshes need not be made again.
+  explicit SceneContact(const mjModel* m, const SceneContact* before = nullptr);
 
   const SceneKeys& keys() const { return keys_; }
   const SceneOptions& options() const { return keys_.options; }
@@ -98,7 +100,8 @@ class SceneContact {
 
   SceneKeys keys_;
   std::vector<GeomPair> geom_pairs_;
-  std::vector<Shape> solids_;  // by geom; of geoms without a pair a placeholder
+  std::map<int, Shape> meshes_;  // by number
+  std::vector<Shape> solids_;    // by geom; of geoms without a pair a placeholder
   std::vector<PairContact> pairs_;
   Cull cull_;
   SitePoolLayout sites_;

@@ -85,7 +85,7 @@ VariantPointer variant_for(AttachedScene& scene, const mjModel* m) {
   }
   std::string error;
   try {
-    auto contact = std::make_shared<const SceneContact>(m);
+    auto contact = std::make_shared<const SceneContact>(m, scene.last_valid.get());
     require_same_structure(*scene.last_valid, *contact);
     require_room(m, *contact);
     scene.last_valid = std::move(contact);

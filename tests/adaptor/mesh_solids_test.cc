@@ -46,6 +46,20 @@ TEST(MeshSolids, AreTheHullWhenTheSceneSaysSo) {
   EXPECT_NEAR(own_metrics_of(contact.solids()[1]).volume, 3.5, 1e-5);
 }
 
+TEST(MeshSolids, AreNotMadeAgainForOtherNumbers) {
+  const testing::ModelPointer m =
+      testing::compile(scene(kFaces, testing::material("m", {{"stiffness", "2e8"}}, {"ell"})));
+  const SceneContact before(m.get());
+  m->numeric_data[0] = 1e8;
+  m->geom_friction[0] = 0.3;
+  const SceneContact now(m.get(), &before);
+  const auto tree = [](const SceneContact& contact) {
+    return &std::get<Mesh>(contact.solids()[1]).tree();
+  };
+  EXPECT_EQ(tree(now), tree(before));
+  EXPECT_NE(tree(SceneContact(m.get())), tree(before));
+}
+
 TEST(MeshSolids, MirroredMeshIsTurned) {
   const testing::ModelPointer m = testing::compile(scene(kFaces, "", "-1 1 1"));
   EXPECT_NEAR(own_metrics_of(solid_of_geom(m.get(), 1)).volume, 3.0, 1e-5);
