@@ -80,7 +80,9 @@ class RoundColumns {
       if (!measure(patch)) return false;
     }
     add_sites(transformed(own_b, X_QB));
-    return is_finite(out_.total);
+    VolumeMetrics& total = out_.total;
+    if (total.volume_error > options_.tolerance * total.volume) total.status = Status::kApproximate;
+    return is_finite(total);
   }
 
  private:

@@ -12,13 +12,13 @@
 namespace volcontact {
 namespace {
 
-constexpr double kSag = 0.3;            // of an arc over its chord; a triangle with more is divided
-constexpr int kMostHalvings = 10;       // of an arc
-constexpr int kMostPasses = 6;          // over the arcs of a polygon
-constexpr double kLeastSlivers = 0.01;  // of the area of the polygon within the arcs
-constexpr double kMostSlivers = 0.3;    // the same where it is one of many
-constexpr int kMostDivisions = 24;      // of a triangle in four
-constexpr double kTinySag = 1e-9;       // of the solid's size
+constexpr double kSag = 0.3;          // of an arc over its chord; a triangle with more is divided
+constexpr int kMostHalvings = 10;     // of an arc
+constexpr int kMostPasses = 6;        // over the arcs of a polygon
+constexpr double kSlivers = 10.0;     // by the tolerance, of the area of the polygon within
+constexpr double kMostSlivers = 0.3;  // the same where it is one of many
+constexpr int kMostDivisions = 24;    // of a triangle in four
+constexpr double kTinySag = 1e-9;     // of the solid's size
 
 // Corners of a plane convex polygon, at most those of a triangle cut by two planes.
 struct Outline {
@@ -305,8 +305,8 @@ bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid
   VOLCONTACT_SIMD_CALL(scratch.path, find_triangles_near, tree, origin, solid, scratch);
   // The columns at the rim of a patch are short, and the more triangles it has, the less of it are
   // those at the rim.
-  const double share = std::clamp(options.tolerance * static_cast<double>(scratch.found.size()),
-                                  kLeastSlivers, kMostSlivers);
+  const double many = static_cast<double>(scratch.found.size());
+  const double share = std::min(kMostSlivers, options.tolerance * std::max(kSlivers, many));
   pieces.triangles.clear();
   pieces.slivers.clear();
   pieces.slot_of_face.clear();
