@@ -14,6 +14,7 @@
 #include "volcontact/pair/composed_lines.h"
 #include "volcontact/pair/octree.h"
 #include "volcontact/pair/ring_lines.h"
+#include "volcontact/pair/ring_pair.h"
 #include "volcontact/pair/round_columns.h"
 
 namespace volcontact {
@@ -23,6 +24,7 @@ struct InterferenceWorkspace::Scratch {
   LinesScratch lines;
   ComposedScratch composed;
   RingScratch ring;
+  RingPairScratch ring_pair;
   ColumnsScratch columns;
   RoundColumnsScratch round_columns;
   OctreeScratch octree;
@@ -48,6 +50,8 @@ template <typename A, typename B>
 constexpr bool has_lines = HasFaces<A> && HasFaces<B> && (HasRoundFaces<A> || HasRoundFaces<B>);
 template <typename A, typename B>
 constexpr bool has_ring = std::is_same_v<A, Torus> && HasFaces<B> && !std::is_same_v<B, HalfSpace>;
+template <typename A, typename B>
+constexpr bool both_rings = std::is_same_v<A, Torus> && std::is_same_v<B, Torus>;
 template <typename S>
 constexpr bool is_composed = std::is_same_v<S, Csg>;
 template <typename A, typename B>
@@ -71,7 +75,8 @@ constexpr bool serves_pair(Engine engine) {
     case Engine::kClip:
       return has_clip<A, B> || has_clip<B, A>;
     case Engine::kLines:
-      return has_lines<A, B> || has_composed_lines<A, B> || has_ring<A, B> || has_ring<B, A>;
+      return has_lines<A, B> || has_composed_lines<A, B> || has_ring<A, B> || has_ring<B, A> ||
+             both_rings<A, B>;
     case Engine::kColumns:
       return has_columns<A, B> || has_columns<B, A>;
     case Engine::kOctree:
@@ -141,6 +146,8 @@ bool lines(const A& a, const B& b, const Pose& X_AB, const InterferenceOptions& 
     if (!lines_interference(ConvexView(a), ConvexView(b), X_AB, options, scratch.lines, out)) {
       return false;
     }
+  } else if constexpr (both_rings<A, B>) {
+    if (!ring_pair(a, b, X_AB, options, scratch.ring_pair, out)) return false;
   } else if constexpr (has_ring<A, B>) {
     ring_interference(a, ConvexView(b), X_AB, options, scratch.ring, scratch.composed.regions, out);
   } else if constexpr (has_ring<B, A>) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcontact/pair/even_steps.h"
 #include "volcontact/pair/even_turn.h"
 #include "volcontact/pair/outer_rule.h"
 #include "volcontact/pair/ring_breaks.h"
@@ -17,7 +18,6 @@ constexpr double kNearEnd = 3e-4;     // of a range: to which its ends are known
 constexpr double kOnAxis = 1e-8;      // of a plane from the axis, per radius
 constexpr double kEndError = 5.0;     // error by its estimate where an arc ends in nothing
 constexpr double kTarget = 1e-2;      // share of the tolerance asked of an arc: kinks may be hidden
-constexpr double kFallError = 10.0;   // the same by the fall of waves, as measured
 constexpr double kWhole = 0.999;      // share of a solid in the overlap, that is all of it
 
 class RingRun {
@@ -136,16 +136,9 @@ class RingRun {
       weight[i] = half * kPi / kLanes * steps.sin[i];
     }
     s_.fan.integrate(s_.path, u, v, weight, section);
-    double waves[kLanes] = {}, volume = 0.0;
-    for (int i = 0; i < kLanes; ++i) {
-      section[i] *= weight[i];
-      volume += section[i];
-      for (int k = 1; k < kLanes; ++k) waves[k] += 2.0 * section[i] * steps.cos[k][i];
-    }
-    // The error is the wave number 16, and no more than this foretells from those before.
-    const double last = std::abs(waves[5]) + std::abs(waves[6]) + std::abs(waves[7]);
-    const double first = std::abs(waves[1]) + std::abs(waves[2]) + std::abs(waves[3]);
-    error_ = first > 0.0 ? last * std::min(1.0, kFallError * last / first) : last;
+    for (int i = 0; i < kLanes; ++i) section[i] *= weight[i];
+    double volume;
+    error_ = steps.error(section, volume);
     volume_scale_ = volume;
     if (error_ > outer_rule::kTarget * options_.tolerance * volume) {
       error_ = 0.0;
@@ -153,23 +146,6 @@ class RingRun {
     }
     s_.fan.accept_batch();
     return true;
-  }
-
-  // Eight equal steps of theta over half a turn.
-  struct EvenSteps {
-    double cos[kLanes][kLanes], sin[kLanes];  // of multiples 0 to 7 of theta, and of theta
-  };
-  static const EvenSteps& even_steps() {
-    static const EvenSteps steps = [] {
-      EvenSteps all;
-      for (int i = 0; i < kLanes; ++i) {
-        const double theta = kPi * (i + 0.5) / kLanes;
-        for (int k = 0; k < kLanes; ++k) all.cos[k][i] = std::cos(k * theta);
-        all.sin[i] = std::sin(theta);
-      }
-      return all;
-    }();
-    return steps;
   }
 
   void integrate_arc(const Arc& arc, double x_from, double x_to, int depth) {

@@ -88,7 +88,8 @@ INSTANTIATE_TEST_SUITE_P(
                       NamedPair{"cylinder", "box"}, NamedPair{"cylinder", "hollow_cylinder"},
                       NamedPair{"frustum", "ellipsoid"}, NamedPair{"capsule", "convex_polytope"},
                       NamedPair{"sphere", "torus"}, NamedPair{"torus", "box"},
-                      NamedPair{"cylinder", "torus"}, NamedPair{"torus", "convex_polytope"}),
+                      NamedPair{"cylinder", "torus"}, NamedPair{"torus", "convex_polytope"},
+                      NamedPair{"torus", "torus"}),
     [](const auto& test) { return std::string(test.param.first) + "_" + test.param.second; });
 
 TEST(Spread, MedianAndWorst) {

@@ -78,8 +78,8 @@ TEST(Interference, AutoTakesTheFirstEngineThatServes) {
   EXPECT_EQ(evaluated(kBox, kCan, touching_pose(random)).engine, Engine::kLines);
   EXPECT_EQ(engine_for(kBox, kRing), Engine::kLines);
   EXPECT_EQ(evaluated(kBox, kRing, touching_pose(random)).engine, Engine::kLines);
-  EXPECT_EQ(engine_for(kRing, kRing), Engine::kOctree);
-  EXPECT_EQ(evaluated(kRing, kRing, touching_pose(random)).engine, Engine::kOctree);
+  EXPECT_EQ(engine_for(kRing, kRing), Engine::kLines);
+  EXPECT_EQ(evaluated(kRing, kRing, touching_pose(random)).engine, Engine::kLines);
 }
 
 TEST(Interference, ServesSaysWhichEnginesCan) {

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "volcontact/base/simd.h"
+#include "volcontact/base/types.h"
+
+namespace volcontact {
+
+/// Eight equal steps of theta over half a turn: the rule for integrands that are even and periodic
+/// in theta, such as what grows from nothing to nothing between angle = middle -+ half cos theta.
+struct EvenSteps {
+  static constexpr double kFallError = 10.0;  ///< error by the fall of waves, as measured
+  double cos[kLanes][kLanes], sin[kLanes];    ///< of multiples 0 to 7 of theta, and of theta
+
+  EvenSteps() {
+    for (int i = 0; i < kLanes; ++i) {
+      const double theta = kPi * (i + 0.5) / kLanes;
+      for (int k = 0; k < kLanes; ++k) cos[k][i] = std::cos(k * theta);
+      sin[i] = std::sin(theta);
+    }
+  }
+
+  /// Estimate of the error, from the values times their weights, whose sum goes to `total`: the
+  /// error is the wave number 16, and no more than this foretells from those before.
+  double error(const double* terms, double& total) const {
+    double waves[kLanes] = {};
+    total = 0.0;
+    for (int i = 0; i < kLanes; ++i) {
+      total += terms[i];
+      for (int k = 1; k < kLanes; ++k) waves[k] += 2.0 * terms[i] * cos[k][i];
+    }
+    const double last = std::abs(waves[5]) + std::abs(waves[6]) + std::abs(waves[7]);
+    const double first = std::abs(waves[1]) + std::abs(waves[2]) + std::abs(waves[3]);
+    return first > 0.0 ? last * std::min(1.0, kFallError * last / first) : last;
+  }
+};
+
+inline const EvenSteps& even_steps() {
+  static const EvenSteps steps;
+  return steps;
+}
+
+}  // namespace volcontact
