@@ -7,7 +7,9 @@ import math
 
 import mujoco
 import numpy as np
-from case import Bounds, Case, Curve, Figure, Plot, load, simulate
+from case import GRAVITY, Bounds, Case, Curve, Figure, Plot, load, simulate, start
+
+from volcontact._mujoco_views import dense
 
 RADIUS, TILT = 0.0375, 0.1
 
@@ -33,7 +35,15 @@ def measure() -> Case:
         turned = np.unwrap(rows[:, 1])
         return float((turned[-1] - turned[0]) / (rows[-1, 0] - rows[0, 0]))
 
+    model = load("euler_disc/scene.xml")
+    model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
+    data = start(model)
+    mujoco.mj_forward(model, data)
+    mass, thickness = float(model.body_mass[1]), float(model.geom_size[model.ngeom - 1][1])
+    energy = float(dense(data.energy).sum()) - mass * GRAVITY * thickness  # over that at rest, flat
+    ratio = energy / (mass * GRAVITY * RADIUS * math.sin(TILT))
     case.figures += [
+        Figure("energy at the start over m g R sin a", "-", 1.5, 1e-2, ratio),
         Figure("precession", "rad/s", 102.38, 1e-2, rate(run.rows), rate(native.rows)),
         Bounds("least tilt", "rad", 0.095, TILT, run.rows[:, 2].min(), native.rows[:, 2].min()),
         Bounds("largest tilt", "rad", TILT, 0.105, run.rows[:, 2].max(), native.rows[:, 2].max()),

@@ -9,6 +9,8 @@ import mujoco
 import numpy as np
 from case import GRAVITY, Case, Curve, Figure, Plot, depth_of_ball, load, simulate
 
+import volcontact as vc
+
 MASS, RADIUS, STIFFNESS, DAMPING = 1.0, 0.05, 1e8, 0.5
 DEPTH = depth_of_ball(MASS * GRAVITY, RADIUS, STIFFNESS)
 SCENE = f"""
@@ -56,7 +58,19 @@ def measure() -> Case:
     run = simulate(load(SCENE), 3.0, watch, every=100, setup=roll)
     native = simulate(load(SCENE), 3.0, watch, every=100, setup=roll, native=True)
     case.closures.append(run.closure)
+    # k a X2 w, X2 the second moment of the cap, at 1 m/s and the arm.
+    cap = math.pi * DEPTH**3 * (20.0 * RADIUS**2 - 15.0 * RADIUS * DEPTH + 3.0 * DEPTH**2) / 60.0
+    model = vc.ContactModel(
+        pairs=[vc.Pair(vc.Sphere(radius=RADIUS), vc.HalfSpace())],
+        normal=vc.HuntCrossley(stiffness=STIFFNESS, damping=DAMPING),
+    )
+    pose = np.eye(4)
+    pose[2, 3] = RADIUS - DEPTH
+    report = model.evaluate(X_WA=pose, V_WA=np.array([0.0, 1.0 / RADIUS, 0.0, 1.0, 0.0, 0.0]))
+    torque = -float(report.torque_on_A[1])
     case.figures += [
+        Figure("torque at 1 m/s", "N m", 1.28696e-3, 1e-5, torque),
+        Figure("second moment of the cap", "m^5", cap, 1e-9, torque * RADIUS / 5e7),
         Figure("decay", "1/s", 0.018665, 1e-3, rate(run.rows), rate(native.rows)),
         Figure("arm of the friction", "m", 0.04947, 1e-4, arm),
     ]

@@ -87,6 +87,12 @@ def measure() -> Case:
         Figure("quadrature, 40 rad/s: rest", "s", 0.64669, 3e-3, rest(fast.rows, spins=True)),
         Figure("quadrature, 40 rad/s: way", "m", 0.33418, 3e-3, fast.rows[-1, 3]),
     ]
+    fast = slide("ellipsoid", 40.0)
+    case.closures.append(fast.closure)
+    case.figures += [
+        Figure("ellipsoid, 40 rad/s: rest", "s", 0.58853, 1e-3, rest(fast.rows, spins=True)),
+        Figure("ellipsoid, 40 rad/s: way", "m", 0.29427, 1e-3, fast.rows[-1, 3]),
+    ]
     curves.append(Curve("native", native.rows[:, 0], native.rows[:, 1], "--"))
     case.plots.append(Plot("speed", "time [s]", "speed [m/s]", tuple(curves)))
     return case

@@ -8,13 +8,15 @@ import math
 import mujoco
 from case import GRAVITY, Case, Figure, crossings, load, simulate
 
+import volcontact as vc
+
 SCENE = """
 <mujoco>
   <option timestep="{step!r}" integrator="RK4" gravity="0 0 {gravity!r}"/>
   <worldbody>
     <geom name="floor" type="plane" size="1 1 0.1"/>
     <body pos="0 0 {height!r}"><freejoint/>
-      <geom name="body" type="{shape}" size="{size}" mass="1"/></body>
+      <geom name="body" {shape} mass="1"/></body>
   </worldbody>
   <custom>
     <numeric name="volcontact/pair/body/stiffness" data="{stiffness!r}"/>
@@ -24,21 +26,25 @@ SCENE = """
     </tuple>
   </custom>
 </mujoco>"""
-SHAPES = {"sphere": "0.05", "cylinder": "0.05 0.05", "box": "0.05 0.05 0.05"}
+SHAPES = {
+    "sphere": 'type="sphere" size="0.05"',
+    "cylinder": 'type="cylinder" size="0.05 0.05"',
+    "lying cylinder": 'type="cylinder" size="0.05 0.05" euler="90 0 0"',
+    "box": 'type="box" size="0.05 0.05 0.05"',
+}
 
 
-def depth_at_rest(shape: str, stiffness: float) -> float:
+def depth_at_rest(shape: str, stiffness: float, *, native: bool = False) -> float:
     """How deep a body of 1 kg sinks [m]."""
     scene = SCENE.format(
         step=2e-4,
         gravity=-GRAVITY,
         height=0.05,
-        shape=shape,
-        size=SHAPES[shape],
+        shape=SHAPES[shape],
         stiffness=stiffness,
         damping=20.0,
     )
-    run = simulate(load(scene), 1.5, lambda _, d: (d.qpos[2],), every=100)
+    run = simulate(load(scene), 1.5, lambda _, d: (d.qpos[2],), every=100, native=native)
     return 0.05 - float(run.rows[-1, 1])
 
 
@@ -49,8 +55,7 @@ def bounce_frequency(case: Case) -> float:
         step=1e-4,
         gravity=-GRAVITY,
         height=0.05 - depth + 1e-6,
-        shape="sphere",
-        size=SHAPES["sphere"],
+        shape=SHAPES["sphere"],
         stiffness=1e8,
         damping=0.0,
     )
@@ -67,8 +72,7 @@ def impact_constant(shape: str, case: Case) -> float:
         step=step,
         gravity=0.0,
         height=0.05 + 1e-9,
-        shape=shape,
-        size=SHAPES[shape],
+        shape=SHAPES[shape],
         stiffness=1e9,
         damping=0.0,
     )
@@ -89,16 +93,33 @@ def measure() -> Case:
         "A body of 1 kg sinks until k_v V is its weight. With k_v = E/R, the layer as thick as "
         "the radius, a ball has F = pi E x^2 and a cylinder on its face pi E R x, the table of "
         "Drake's documentation (E = 1e7 Pa). An impact lasts c h/v, h the greatest depth: c = pi "
-        "for a flat face, whose force is linear, and 2.80436 for the force of a shallow cap, "
-        "quadratic in depth.",
+        "for a flat face, whose force is linear, 2.94328 for a lying cylinder, whose force grows "
+        "with the power 3/2 as Hertz's, and 2.80436 for a shallow cap, quadratic in depth. Native "
+        "contact takes its depth from the solver's parameters, whatever the material.",
     )
     soft = 1e7 / 0.05  # E/R
+    lying = impact_constant("lying cylinder", case)
     case.figures += [
-        Figure("ball, k_v = 1e8 N/m^3", "m", 0.7923638796e-3, 1e-6, depth_at_rest("sphere", 1e8)),
+        Figure(
+            "ball, k_v = 1e8 N/m^3",
+            "m",
+            0.7923638796e-3,
+            1e-6,
+            depth_at_rest("sphere", 1e8),
+            depth_at_rest("sphere", 1e8, native=True),
+        ),
+        Figure(
+            "2e8 and 5e8 N/m^3 in series",
+            "N/m^3",
+            1.428571e8,
+            1e-6,
+            vc.series_stiffness(2e8, 5e8),
+        ),
         Figure("the same: bounce frequency", "Hz", 25.011, 1e-4, bounce_frequency(case)),
         Figure("ball, E = 1e7 Pa", "m", 0.559e-3, 3e-3, depth_at_rest("sphere", soft)),
         Figure("cylinder, E = 1e7 Pa", "m", 6.2e-6, 1e-2, depth_at_rest("cylinder", soft)),
         Figure("impact of a flat face: c", "-", math.pi, 1e-4, impact_constant("box", case)),
+        Figure("impact of a lying cylinder: c", "-", 2.94328, 2e-3, lying),
         Figure("impact of a ball: c", "-", 2.80436, 2e-3, impact_constant("sphere", case)),
     ]
     return case
