@@ -16,7 +16,6 @@ constexpr double kReach = 1e-13;      // of the size: where rounding decides whe
 constexpr int kMostContacts = 20000;  // of one query
 constexpr double kFlux = 1e-8;        // of the square of the length of a curve
 constexpr double kNoArea = 1e-8;      // of the largest cell: rounding has made it
-constexpr int kCellsOfLeafPair = 2;   // about
 
 double size_of(const Aabb& bounds) {
   return bounds.min.cwiseAbs().cwiseMax(bounds.max.cwiseAbs()).sum();
@@ -199,12 +198,22 @@ class Columns {
     const Vec3 size = curve.high - curve.low;
     const double margin = rounding_ + 1e-9 * size.maxCoeff();
     const double least = std::min(size.x(), size.y()), most = std::max(size.x(), size.y());
-    for (double bulge : {0.5 * least, most}) {
+    const double doubt = kFlux * patch.flux.length * patch.flux.length;
+    struct Attempt {
+      double bulge;
+      bool level;  // A does not reach below the window, nor B above it
+    };
+    // Beside a patch that goes far around a pin, A may well reach below the window. Without layers,
+    // B's surface in the cells then tells as A's does whether they are whole.
+    for (const auto& [bulge, level] :
+         {Attempt{0.5 * least, true}, {most, true}, {0.1 * least, false}}) {
       ColumnWindow window = curve;
       window.low -= Vec3(margin, margin, bulge + margin);
       window.high += Vec3(margin, margin, bulge + margin);
-      if (meets_level(*a_.tree, X_CA, window, window.low.z(), scratch_.cells)) continue;
-      if (meets_level(*b_->tree, X_CB, window, window.high.z(), scratch_.cells)) continue;
+      if (level && (meets_level(*a_.tree, X_CA, window, window.low.z(), scratch_.cells) ||
+                    meets_level(*b_->tree, X_CB, window, window.high.z(), scratch_.cells))) {
+        continue;
+      }
       if (!find_leaf_pairs(*a_.tree, X_CA, *b_->tree, X_CB, window, most_leaf_pairs_,
                            scratch_.cells)) {
         return false;
@@ -220,13 +229,27 @@ class Columns {
         scratch_.regions.region_of.assign(cells().size(), CellRegion{0, 0, -1, -1});
         scratch_.own_regions.assign(1, 1);
       }
-      if (shared && (is_layered(cells()) || !find_own_regions(patch, window))) continue;
+      if ((shared || !level) && is_layered(cells())) continue;
+      if (shared && !find_own_regions(patch, window)) continue;
       const Vec3 area_vector =
           R_BC * add_regions(X_CA, X_CB, X_AB_ * X_BC, b_->tree, shared || simple);
-      const double doubt = kFlux * patch.flux.length * patch.flux.length;
+      if (!level && (R_BC * area_vector_of_b(shared) + patch.flux.area_vector).norm() > doubt) {
+        return false;
+      }
       return (area_vector - patch.flux.area_vector).norm() <= doubt;
     }
     return false;
+  }
+
+  // Of B's surface in cells without layers, of all regions or of those that are marked; in C.
+  Vec3 area_vector_of_b(bool own) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t k = 0; k < cells().size(); ++k) {
+      const ColumnCell& cell = cells()[k];
+      if (own && !scratch_.own_regions[scratch_.regions.region_of[k].of_g]) continue;
+      sum += cell.area * Vec3(-cell.slope_g[0], -cell.slope_g[1], 1.0);
+    }
+    return sum;
   }
 
   // Whether the cells end within the sides of a window; of all regions, or of those listed.
@@ -330,7 +353,7 @@ class Columns {
     const Pose X_BC{basis_with_z(toward_a), b_->bounds.center()};
     const Pose X_CB = X_BC.inverse();
     const Pose X_CA = X_CB * X_BA_;
-    if (find_leaf_pairs(*a_.tree, X_CA, *b_->tree, X_CB, ColumnWindow{}, most_leaf_pairs_,
+    if (find_leaf_pairs(*a_.tree, X_CA, *b_->tree, X_CB, ColumnWindow{}, most_leaf_pairs_ / 2,
                         scratch_.cells)) {
       make_cells(*a_.tree, X_CA, *b_->tree, X_CB, ColumnWindow{}, scratch_.cells);
       add_regions(X_CA, X_CB, X_AB_ * X_BC, b_->tree);
@@ -409,7 +432,7 @@ class Columns {
 void columns_interference(const SurfaceView& a, const SurfaceView& b, const Pose& X_AB,
                           const InterferenceOptions& options, ColumnsScratch& scratch,
                           Interference& out) noexcept {
-  Columns(a, &b, X_AB, scratch, out).meshes(options.most_cells / kCellsOfLeafPair);
+  Columns(a, &b, X_AB, scratch, out).meshes(options.most_cells);
 }
 
 void columns_interference(const SurfaceView& a, const HalfSpace&, const Pose& X_AB,
