@@ -230,6 +230,7 @@ class Columns {
         scratch_.own_regions.assign(1, 1);
       }
       if ((shared || !level) && is_layered(cells())) continue;
+      if (!level && scratch_.cells.upright) continue;
       if (shared && !find_own_regions(patch, window)) continue;
       const Vec3 area_vector =
           R_BC * add_regions(X_CA, X_CB, X_AB_ * X_BC, b_->tree, shared || simple);
