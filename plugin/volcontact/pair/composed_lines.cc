@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
+#include "volcontact/pair/region_join.h"
+
 namespace volcontact {
 namespace {
-
-constexpr double kSamePlane = 1e-9;  // of normals, and of offsets per size of a patch
 
 class ComposedRun {
  public:
@@ -26,7 +26,12 @@ class ComposedRun {
         }
       }
     }
-    join_sites();
+    join_regions(
+        s_.regions, s_.site_of,
+        [this](const LinesRegion& region, const LinesRegion::PlanePatch& patch) {
+          return holds(region, patch);
+        },
+        out_);
     return true;
   }
 
@@ -52,27 +57,11 @@ class ComposedRun {
         patch.centroid = a.X_SB * patch.centroid;
       }
       std::erase_if(region.patches, [&](const LinesRegion::PlanePatch& patch) {
-        return !(patch.owner == Owner::kA ? is_seam(patch, a, Pose{}) : is_seam(patch, b, X_AB_));
+        const bool of_a = patch.owner == Owner::kA;
+        return !lies_in_seam(patch, of_a ? a.seams : b.seams, of_a ? Pose{} : X_AB_);
       });
     }
     return true;
-  }
-
-  // Whether a patch lies in a seam of its piece, whose solid has the pose X in A.
-  static bool is_seam(const LinesRegion::PlanePatch& patch, const LinesPiece& piece,
-                      const Pose& X) {
-    if (!piece.seams) return false;
-    return std::any_of(piece.seams->begin(), piece.seams->end(), [&](const Seam& seam) {
-      const Vec3 normal = X.rotation * seam.normal;
-      const double offset = seam.offset + normal.dot(X.translation);
-      return same_plane(patch, normal, offset);
-    });
-  }
-
-  static bool same_plane(const LinesRegion::PlanePatch& patch, const Vec3& normal, double offset) {
-    const double size = std::sqrt(patch.area) + patch.centroid.norm();
-    return (patch.normal - normal).norm() < kSamePlane &&
-           std::abs(patch.offset - offset) < kSamePlane * size;
   }
 
   // The bores that both bodies reach, in body A's frame; false for more than one.
@@ -102,57 +91,9 @@ class ComposedRun {
     return -body.support_height(X, -normal) - normal.dot(bore.center) < bore.radius;
   }
 
-  // Regions on the two sides of a seam have the same patch there: they are one site, and the patch
-  // is no surface.
-  void join_sites() {
-    const int n = static_cast<int>(s_.regions.size());
-    s_.site_of.resize(n);
-    for (int i = 0; i < n; ++i) s_.site_of[i] = i;
-    for (int i = 0; i < n; ++i) {
-      for (LinesRegion::PlanePatch& p : s_.regions[i].patches) {
-        for (int j = 0; j < i; ++j) {
-          for (LinesRegion::PlanePatch& q : s_.regions[j].patches) join(i, p, j, q);
-        }
-      }
-    }
-    out_.sites.clear();
-    out_.total = VolumeMetrics{};
-    for (int site = 0; site < n; ++site) {
-      if (s_.site_of[site] != site) continue;
-      VolumeMetrics sum = s_.regions[site].metrics;
-      for (int i = site + 1; i < n; ++i) {
-        if (root(i) == site) sum = sum + s_.regions[i].metrics;
-      }
-      settle_status(sum);
-      out_.total = out_.sites.empty() ? sum : out_.total + sum;
-      out_.sites.push_back(sum);
-    }
-  }
-
-  int root(int i) const {
-    while (s_.site_of[i] != i) i = s_.site_of[i];
-    return i;
-  }
-
-  void join(int i, LinesRegion::PlanePatch& p, int j, LinesRegion::PlanePatch& q) {
-    if (p.owner != q.owner || !same_plane(p, -q.normal, -q.offset)) return;
-    const double shared = std::min(p.area, q.area);
-    if (!(shared > 0.0)) return;
-    if (!holds(s_.regions[i], q) && !holds(s_.regions[j], p)) return;
-    const int a = root(i), b = root(j);
-    s_.site_of[std::max(a, b)] = std::min(a, b);
-    for (int k : {i, j}) {
-      VolumeMetrics& m = s_.regions[k].metrics;
-      double& area = p.owner == Owner::kA ? m.area : m.counter_area;
-      area = std::max(0.0, area - shared);
-    }
-    p.area -= shared;
-    q.area -= shared;
-  }
-
   // Whether the middle of a patch belongs to a region as well.
   bool holds(const LinesRegion& region, const LinesRegion::PlanePatch& patch) const {
-    const double slack = kSamePlane * (std::sqrt(patch.area) + patch.centroid.norm());
+    const double slack = patch_slack(patch);
     for (Owner owner : {Owner::kA, Owner::kB}) {
       const LinesPiece& piece = s_.pieces[index(owner)][region.piece[index(owner)]];
       const Pose X = owner == Owner::kA ? piece.X_SB : X_AB_ * piece.X_SB;
@@ -160,13 +101,6 @@ class ComposedRun {
       if (span.empty() || span.enter > slack || span.leave < -slack) return false;
     }
     return true;
-  }
-
-  // A part that is contained is no contained solid, unless it is all of the overlap.
-  void settle_status(VolumeMetrics& m) const {
-    if (m.status == Status::kContained && m.area > 0.0 && m.counter_area > 0.0) {
-      m.status = Status::kOk;
-    }
   }
 
   const Pose& X_AB_;

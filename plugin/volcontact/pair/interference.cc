@@ -13,6 +13,7 @@
 #include "volcontact/pair/columns.h"
 #include "volcontact/pair/composed_lines.h"
 #include "volcontact/pair/octree.h"
+#include "volcontact/pair/ring_composed.h"
 #include "volcontact/pair/ring_lines.h"
 #include "volcontact/pair/ring_pair.h"
 #include "volcontact/pair/round_columns.h"
@@ -55,6 +56,8 @@ constexpr bool both_rings = std::is_same_v<A, Torus> && std::is_same_v<B, Torus>
 template <typename S>
 constexpr bool is_composed = std::is_same_v<S, Csg>;
 template <typename A, typename B>
+constexpr bool has_ring_composed = std::is_same_v<A, Torus> && is_composed<B>;
+template <typename A, typename B>
 constexpr bool has_composed_lines =
     (is_composed<A> && (is_composed<B> || HasFaces<B>)) || (HasFaces<A> && is_composed<B>);
 template <typename S>
@@ -76,7 +79,7 @@ constexpr bool serves_pair(Engine engine) {
       return has_clip<A, B> || has_clip<B, A>;
     case Engine::kLines:
       return has_lines<A, B> || has_composed_lines<A, B> || has_ring<A, B> || has_ring<B, A> ||
-             both_rings<A, B>;
+             both_rings<A, B> || has_ring_composed<A, B> || has_ring_composed<B, A>;
     case Engine::kColumns:
       return has_columns<A, B> || has_columns<B, A>;
     case Engine::kOctree:
@@ -90,6 +93,12 @@ template <typename A, typename B>
 bool serves_pair(Engine engine, const A& a, const B& b) {
   if constexpr (has_composed_lines<A, B>) {
     if (engine == Engine::kLines) return has_lines_pieces(a) && has_lines_pieces(b);
+  }
+  if constexpr (has_ring_composed<A, B>) {
+    if (engine == Engine::kLines) return has_lines_pieces(b);
+  }
+  if constexpr (has_ring_composed<B, A>) {
+    if (engine == Engine::kLines) return has_lines_pieces(a);
   }
   return serves_pair<A, B>(engine);
 }
@@ -148,6 +157,13 @@ bool lines(const A& a, const B& b, const Pose& X_AB, const InterferenceOptions& 
     }
   } else if constexpr (both_rings<A, B>) {
     if (!ring_pair(a, b, X_AB, options, scratch.ring_pair, out)) return false;
+  } else if constexpr (has_ring_composed<A, B>) {
+    scratch.composed.pieces[1].clear();
+    add_lines_pieces(b, scratch.composed.pieces[1]);
+    if (!ring_composed(a, X_AB, options, scratch.ring, scratch.composed, out)) return false;
+  } else if constexpr (has_ring_composed<B, A>) {
+    if (!lines(b, a, X_AB.inverse(), options, scratch, out)) return false;
+    mirror_sites(X_AB, out);
   } else if constexpr (has_ring<A, B>) {
     ring_interference(a, ConvexView(b), X_AB, options, scratch.ring, scratch.composed.regions, out);
   } else if constexpr (has_ring<B, A>) {

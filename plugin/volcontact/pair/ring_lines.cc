@@ -23,8 +23,15 @@ constexpr double kWhole = 0.999;      // share of a solid in the overlap, that i
 class RingRun {
  public:
   RingRun(const Torus& torus, const ConvexView& body, const Pose& X,
-          const InterferenceOptions& options, RingScratch& scratch, LinesRegions& regions)
-      : torus_(torus), body_(body), X_(X), options_(options), s_(scratch), regions_(regions) {}
+          const InterferenceOptions& options, RingScratch& scratch, LinesRegions& regions,
+          RingSurface surface)
+      : torus_(torus),
+        body_(body),
+        X_(X),
+        options_(options),
+        s_(scratch),
+        regions_(regions),
+        surface_(surface) {}
 
   void run() {
     set_faces();
@@ -191,12 +198,14 @@ class RingRun {
     add_patches(region.patches);
   }
 
+  bool by_planes() const { return s_.faces.rounds.empty() && surface_ == RingSurface::kBest; }
+
   // From the planes of a body that has nothing else, else from the torus.
   void set_surface(MomentSum& sum) const {
     const RingSums& sums = s_.fan.total();
     const FanFaces& fan = s_.fan.faces().fan;
     sum.area = sums.area;
-    const bool flat = s_.faces.rounds.empty();
+    const bool flat = by_planes();
     for (int i = 0; i < fan.active_planes; ++i) {
       const double* x = sums.planes[i].sums;
       sum.counter_area += x[0];
@@ -220,7 +229,7 @@ class RingRun {
     metrics.depth = r - std::sqrt(std::max(0.0, sums.least_inside));
     metrics.depth_moment =
         ((r * r - R * R) * m[0] + 2.0 * R * sums.radial - m[4] - m[6] - m[9]) / (2.0 * r);
-    if (!s_.faces.rounds.empty()) return;
+    if (!by_planes()) return;
     double weight = 0.0, moment = 0.0, depth = 0.0;
     const FanFaces& fan = s_.fan.faces().fan;
     for (int i = 0; i < fan.active_planes; ++i) {
@@ -268,6 +277,7 @@ class RingRun {
   const InterferenceOptions& options_;
   RingScratch& s_;
   LinesRegions& regions_;
+  RingSurface surface_;
   std::vector<double>& corners_ = s_.corners;
   double error_ = 0.0, volume_scale_ = 0.0;
 };
@@ -276,8 +286,8 @@ class RingRun {
 
 void add_ring_regions(const Torus& torus, const ConvexView& body, const Pose& X,
                       const InterferenceOptions& options, RingScratch& scratch,
-                      LinesRegions& regions) noexcept {
-  RingRun(torus, body, X, options, scratch, regions).run();
+                      LinesRegions& regions, RingSurface surface) noexcept {
+  RingRun(torus, body, X, options, scratch, regions, surface).run();
 }
 
 void ring_interference(const Torus& torus, const ConvexView& body, const Pose& X_AB,

@@ -16,13 +16,17 @@ struct RingScratch {
   std::vector<double> breaks, corners;
 };
 
+/// Where area vector and depth are taken from: a body without round faces gives them best by its
+/// planes, but not when some of these are seams of a composed solid.
+enum class RingSurface { kBest, kTorus };
+
 /// Regions of the overlap of a torus with a bounded convex body at the pose X in its frame, by
 /// columns in half-planes through the axis of the torus. Adds them to `regions`, in the frame of
 /// the torus, with the torus as A; one for every contact site. `volume_error` is an estimate.
 /// docs/theory.md, "Rings".
 void add_ring_regions(const Torus& torus, const ConvexView& body, const Pose& X,
                       const InterferenceOptions& options, RingScratch& scratch,
-                      LinesRegions& regions) noexcept;
+                      LinesRegions& regions, RingSurface surface = RingSurface::kBest) noexcept;
 
 /// Interference of a torus with a convex body: metrics in the frame of the torus.
 void ring_interference(const Torus& torus, const ConvexView& body, const Pose& X_AB,
