@@ -3,74 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <sstream>
 
+#include "adaptor/scene_key.h"
 #include "adaptor/solids_of_geoms.h"
 #include "volcontact/base/check.h"
 
 namespace volcontact::adaptor {
 namespace {
 
-constexpr std::string_view kRoot = "volcontact/";
 const std::vector<std::string> kSections{"material", "option", "pair", "solid"};
 
-// "c1_volcontact/material/rubber/stiffness" split: prefix "c1_", parts {material, rubber,
-// stiffness}.
-struct Key {
-  std::string text;
-  std::string prefix;
-  std::vector<std::string> parts;
-
-  // "c1_volcontact/" + the first `count` parts.
-  std::string stem(std::size_t count) const {
-    std::string out = prefix + std::string(kRoot);
-    for (std::size_t i = 0; i < count; ++i) out += (i ? "/" : "") + parts[i];
-    return out;
-  }
-};
-
-std::vector<std::string> split(std::string_view text) {
-  std::vector<std::string> parts;
-  std::istringstream stream{std::string(text)};
-  for (std::string part; std::getline(stream, part, '/');) parts.push_back(part);
-  if (text.empty() || text.back() == '/') parts.emplace_back();
-  return parts;
-}
-
-// Null when the name is not one of ours. A first word that is nearly `volcontact` is an error: the
-// key would be ignored in silence.
-std::optional<Key> parse_key(const std::string& name) {
-  const std::size_t at = name.find(kRoot);
-  if (at != std::string::npos) {
-    return Key{name, name.substr(0, at), split(std::string_view(name).substr(at + kRoot.size()))};
-  }
-  const std::size_t slash = name.find('/');
-  if (slash == std::string::npos) return std::nullopt;
-  const std::string root(kRoot.substr(0, kRoot.size() - 1));
-  require(nearest_spelling(name.substr(0, slash), {root}).empty(),
-          name + ": unknown key (did you mean '" + root + name.substr(slash) + "'?)");
-  return std::nullopt;
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
-  return out;
-}
-
-[[noreturn]] void unknown(Key key, std::size_t part, const std::vector<std::string>& words) {
-  const std::string stem = key.stem(part) + (part ? "/" : "");
-  std::string message =
-      key.text + ": unknown key; after '" + stem + "' comes one of " + joined(words);
-  const std::string word = part < key.parts.size() ? key.parts[part] : "";
-  const std::string nearest = nearest_spelling(word, words);
-  if (!nearest.empty()) {
-    key.parts[part] = nearest;
-    message += " (did you mean '" + key.stem(key.parts.size()) + "'?)";
-  }
-  throw std::invalid_argument(message);
-}
+using Key = SceneKey;
 
 class KeyReader {
  public:
@@ -110,7 +53,7 @@ class KeyReader {
     const std::vector<std::string> sections{"material", "pair", "solid"};
     const std::string& section = key.parts[0];
     if (std::find(sections.begin(), sections.end(), section) == sections.end()) {
-      unknown(key, 0, sections);
+      unknown_part(key, 0, sections);
     }
     require(
         key.parts.size() == 2 && !key.parts[1].empty(),
@@ -163,12 +106,6 @@ class KeyReader {
                   "'; the geoms of a solid must be on one body: move it there");
     }
     keys_.solids.push_back(std::move(solid));
-  }
-
-  static std::string number_text(double number) {
-    std::ostringstream text;
-    text << number;
-    return text.str();
   }
 
   void check_part(const Key& key, int geom) const {
@@ -262,7 +199,7 @@ class KeyReader {
               key.text +
                   ": a solid has no numbers; its geoms are listed in a <tuple>, with prm=\"1\" "
                   "or prm=\"-1\"");
-      unknown(key, 0, kSections);
+      unknown_part(key, 0, kSections);
     }
   }
 
@@ -282,11 +219,11 @@ class KeyReader {
   }
 
   void read_keyed(const Key& key, const std::vector<double>& numbers) {
-    if (key.parts.size() < 3) unknown(key, 2, words_after_name());
+    if (key.parts.size() < 3) unknown_part(key, 2, words_after_name());
     const std::string& word = key.parts[2];
     const FieldRow* field = field_of_any_law(word);
     const ChoiceRow* choice = find_choice(word);
-    if (!field && !choice) unknown(key, 2, words_after_name());
+    if (!field && !choice) unknown_part(key, 2, words_after_name());
     KeyedValues& owner = owner_of(key);
     if (choice) {
       read_choice(key, 3, choice->words, numbers, owner.choices);
@@ -326,9 +263,9 @@ class KeyReader {
   // "not this one", so that a program can switch it in a compiled model.
   static void read_choice(const Key& key, std::size_t part, const std::vector<std::string>& words,
                           const std::vector<double>& numbers, ChoiceValues& choices) {
-    if (key.parts.size() <= part) unknown(key, part, words);
+    if (key.parts.size() <= part) unknown_part(key, part, words);
     const std::string& word = key.parts[part];
-    if (std::find(words.begin(), words.end(), word) == words.end()) unknown(key, part, words);
+    if (std::find(words.begin(), words.end(), word) == words.end()) unknown_part(key, part, words);
     if (key.parts.size() > part + 1) {
       throw std::invalid_argument(key.text + ": unknown key (did you mean '" + key.stem(part + 1) +
                                   "'?)");
@@ -366,7 +303,7 @@ class KeyReader {
   void read_option(const Key& key, const std::vector<double>& numbers) {
     std::vector<std::string> names = field_names<OptionNumbers>();
     for (const auto& [name, words] : option_choices()) names.push_back(name);
-    if (key.parts.size() < 2) unknown(key, 1, names);
+    if (key.parts.size() < 2) unknown_part(key, 1, names);
     const std::string& name = key.parts[1];
     const auto choice = option_choices().find(name);
     if (choice != option_choices().end()) {
@@ -380,7 +317,7 @@ class KeyReader {
       return;
     }
     const auto* field = find_field<OptionNumbers>(name);
-    if (!field || key.parts.size() > 2) unknown(key, 1, names);
+    if (!field || key.parts.size() > 2) unknown_part(key, 1, names);
     check_count(key, 1, numbers);
     require(field->range.contains(numbers[0]) &&
                 (name != "threads" || numbers[0] == std::floor(numbers[0])),

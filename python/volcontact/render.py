@@ -120,7 +120,7 @@ class Renderer:
 
         Args:
             qpos: shape (nq,).
-            sites: structured array of `volcontact.simulation.SITE`; drawn as patch discs and force
+            sites: structured array of `volcontact.recording.SITE`; drawn as patch discs and force
                 arrows, with the moving bodies translucent. The arrow shows the force on the body
                 that moves.
             style: of the sites; needed with `sites`.

@@ -55,22 +55,6 @@ TEST(SceneContact, BallRestsWhereTheCapCarriesItsWeight) {
   EXPECT_NEAR(found[0].force[2], -9.81, 1e-8);  // on the floor, the lower geom
 }
 
-TEST(SceneContact, PotentialRefusesAPairByItsGeoms) {
-  const auto scene = [](const std::string& size) {
-    return "<mujoco><worldbody><geom name='table' type='box' size='1 1 1'/><body pos='0 0 1.1'>"
-           "<freejoint/><geom name='thing' " +
-           size + "/></body></worldbody>" +
-           testing::numeric("volcontact/option/formulation/potential", "1") + "</mujoco>";
-  };
-  const ModelPointer boxes = testing::load(scene("type='box' size='.1 .1 .1'"));
-  EXPECT_EQ(SceneContact(boxes.get()).pairs()[0].laws.laws.formulation, Formulation::kPotential);
-  const ModelPointer ball = testing::compile(scene("type='sphere' size='.1'"));
-  const std::string message = testing::message_of([&] { SceneContact{ball.get()}; });
-  EXPECT_NE(message.find("formulation/potential does not serve geoms 'table' and 'thing'"),
-            std::string::npos)
-      << message;
-}
-
 TEST(SceneContact, CubeRestsAtWeightOverStiffnessAndFace) {
   // h = m g / (k A) = 9.81 / (1e7 0.04) m.
   constexpr double kDepth = 24.525e-6;

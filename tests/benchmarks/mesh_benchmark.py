@@ -195,9 +195,9 @@ def measure(case: Case, ways: Sequence[type]) -> list[Row]:
             courses.append(Course(way(case.a, case.b), case.poses))
         except Unsupported:
             continue
-    for turn in range(TURNS):
+    for number in range(TURNS):
         for course in courses:
-            if turn < course.turns:
+            if number < course.turns:
                 course.run_turn()
     for course in courses[:2]:
         course.times = course.times[1:]  # the first was asked from Python

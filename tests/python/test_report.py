@@ -9,6 +9,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
+from volcontact.recording import SITE, Frame, Recording
 from volcontact.report import Comparison, write_report
 from volcontact.report.comparison import (
     first_touch,
@@ -24,7 +25,6 @@ from volcontact.report.findings import findings
 from volcontact.report.page import label_of, page, title_of
 from volcontact.report.pictures import FramePair, png, side_by_side, write_frames
 from volcontact.report.units import angle, area, digits, nominal, quantity, ratio
-from volcontact.simulation import SITE, Frame, Recording
 
 DESIGN = DesignPose(
     body="box",

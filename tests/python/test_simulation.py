@@ -5,7 +5,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from volcontact.simulation import CHANNELS, SimulationError, simulate
+from volcontact.recording import CHANNELS
+from volcontact.simulation import SimulationError, simulate
 
 GRAVITY = 9.81
 MASS = 1.0

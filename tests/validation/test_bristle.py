@@ -98,7 +98,8 @@ def measure() -> Case:
         "A plate of 1 kg on bristles (1e5 N/m, critically damped, mu_C = 0.3, mu_S = 0.4, tau_dw "
         "= 0.5 s). A slow ramp breaks it away at mu_S; after a short rest t a quick ramp does so "
         "at mu_C + (mu_S - mu_C)(1 - exp(-t/tau_dw)), t with the ramp itself. Under vibration it "
-        "drifts as the equations of the law do, integrated separately.",
+        "drifts as the equations of the law do, integrated separately. The load does work, so no "
+        "balance of energy is drawn.",
     )
     case.figures.append(
         Figure("slow ramp: friction over weight", "-", STATIC, 5e-3, breakaway(0.0, 0.02))

@@ -287,14 +287,26 @@ class BoreRun {
     const double across = bore_.wall_normal(side_u_).dot(frame_.u);
     const double length = frame_.t.norm();
     const double height = frame_.central ? 1.0 / sums.low - 1.0 / sums.high : sums.high - sums.low;
-    m.depth_moment =
-        (share * across * sums.bore.depth_moment + (1.0 - share) * length * sums.depth_moment);
+    m.depth_moment = share * across * depth_along_normal(sums.bore, across) +
+                     (1.0 - share) * length * sums.depth_moment;
     m.depth = share * across * sums.bore.depth + (1.0 - share) * length * height;
     m.volume_error = error_ + outer_rule::kInnerError * m.volume;
     if (error_ > options_.tolerance * m.volume) m.status = Status::kApproximate;
     LinesRegion& region = regions_.add();
     region.metrics = transformed(m, Pose{Mat3::Identity(), frame_.center});
     add_patches(s_.fan, s_.faces.active, frame_, region.patches);
+  }
+
+  // int depth dV over columns along the normal: those across the wall are shorter by the cosine
+  // between the two, 1/c = 1 + (1 - c) to first order. Where the wall goes all round there is no
+  // normal.
+  double depth_along_normal(const FanSums::OnBore& on_bore, double across) const {
+    const double length = std::hypot(on_bore.x, on_bore.y);
+    if (!(length > 0.0)) return on_bore.depth_moment;
+    const double along = (on_bore.x * on_bore.depth_x + on_bore.y * on_bore.depth_y) / length;
+    const double one_sided = length / on_bore.wall, sideways = across / frame_.u.norm();
+    const double share = std::min(1.0, one_sided * one_sided) * sideways * sideways;
+    return on_bore.depth_moment + share * (on_bore.depth_moment - along);
   }
 
   const ConvexView& a_;

@@ -49,6 +49,8 @@ void Fan::accept_batch() {
   for (int i = 0; i < 10; ++i) total_.moments[i] += batch_.moments[i];
   total_.depth_moment += batch_.depth_moment;
   total_.bore.depth_moment += batch_.bore.depth_moment;
+  total_.bore.depth_x += batch_.bore.depth_x;
+  total_.bore.depth_y += batch_.bore.depth_y;
   total_.bore.depth = std::max(total_.bore.depth, batch_.bore.depth);
   total_.bore.wall += batch_.bore.wall;
   total_.bore.x += batch_.bore.x;

@@ -105,8 +105,9 @@ struct FanSums {
   /// times 1, x, y, x h, y h.
   struct OnBore {
     double wall, x, y, xh, yh;
-    double depth_moment;  ///< int depth dV
-    double depth;         ///< the largest: of rho - 1, times h in a central fan
+    double depth_moment;      ///< int depth dV
+    double depth_x, depth_y;  ///< the same times x, y of the direction of the half-plane
+    double depth;             ///< the largest: of rho - 1, times h in a central fan
   };
   OnBore bore;
   double low, high;  ///< least and largest height seen

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from volcontact.recording import Recording
 from volcontact.report.design_pose import DesignPose, angle_between
-from volcontact.simulation import Recording
 
 
 @dataclass(frozen=True)

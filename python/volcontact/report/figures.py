@@ -16,9 +16,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from volcontact.recording import CHANNELS, Recording
 from volcontact.report import palette
 from volcontact.report.comparison import Comparison, offset_from
-from volcontact.simulation import CHANNELS, Recording
 
 _SIZE = (4.2, 2.8)  # inches: readable when shrunk to a phone
 _POINTS = 900  # per curve; more cannot be seen at this size

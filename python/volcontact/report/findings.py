@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from volcontact.recording import CHANNELS, Recording
 from volcontact.report.comparison import (
     Comparison,
     first_touch,
@@ -19,7 +20,6 @@ from volcontact.report.comparison import (
 )
 from volcontact.report.design_pose import DesignPose, angle_between
 from volcontact.report.units import angle, area, digits, nominal, quantity, ratio
-from volcontact.simulation import CHANNELS, Recording
 
 _AT_REST = 1e-3  # [m/s]
 _SETTLED_SHARE = 0.1  # the last tenth of a run counts as its end

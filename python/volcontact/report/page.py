@@ -10,6 +10,7 @@ from pathlib import Path
 import jinja2
 import numpy as np
 
+from volcontact.recording import Recording
 from volcontact.report import palette
 from volcontact.report.comparison import Comparison, first_touch, is_seated, offset_from
 from volcontact.report.description import tables
@@ -18,7 +19,6 @@ from volcontact.report.figures import curves
 from volcontact.report.findings import findings
 from volcontact.report.pictures import FramePair, png, reference_force
 from volcontact.report.units import angle, digits, nominal, quantity
-from volcontact.simulation import Recording
 
 _PALETTE_COLORS = 200  # of the embedded pictures; the files in frames/ keep all
 

@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from volcontact.simulation import CHANNELS, Recording
+from volcontact.recording import CHANNELS, Recording
 
 _UNITS = {
     "time": "s",

@@ -5,6 +5,7 @@
 
 #include "core/support/evaluated.h"
 #include "core/support/gradient.h"
+#include "volcontact/pair/gauss.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact {
@@ -70,6 +71,24 @@ TEST(BoredLines, ABallAtTheWallIsTheSumOfItsSlices) {
 }
 
 // The ring between the wall and where the ball leaves the top is a solid of revolution.
+TEST(BoredLines, DepthMomentIsTheWorkOfTheVolume) {
+  // int V d(depth) along the push, in Gauss's five places of each of eight parts.
+  const Shape ball = Sphere({.radius = 0.001});
+  const auto pushed = [&](double depth) {
+    return evaluated(bored_block(), ball, {Mat3::Identity(), {kBore - 0.001 + depth, 0.0, 0.003}});
+  };
+  constexpr double kDepth = 1e-4;  // a tenth of the radius
+  constexpr int kParts = 8;
+  double work = 0.0;
+  for (int part = 0; part < kParts; ++part) {
+    for (int i = 0; i < 5; ++i) {
+      const double depth = kDepth * (part + GaussRule<5>::kNodes[i]) / kParts;
+      work += GaussRule<5>::kWeights[i] * kDepth / kParts * pushed(depth).total.volume;
+    }
+  }
+  EXPECT_NEAR(pushed(kDepth).total.depth_moment, work, 2e-6 * work);
+}
+
 TEST(BoredLines, ABallOnTheRimIsARing) {
   const double r = 0.015;
   for (double depth : {1e-6, 1e-4, 2e-3}) {

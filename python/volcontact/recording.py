@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a run of a scene leaves.
+
+Row i of a recording belongs to one instant: the state, the energies and the contact sites are all
+those of `time[i]`, at the beginning of step i. The last row is the state after the last step.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+ContactKind = Literal["volumetric", "native"]
+
+CHANNELS = ("normal", "roll", "slide", "spin")
+
+SITE = np.dtype(
+    [
+        ("geom_a", "i4"),
+        ("geom_b", "i4"),
+        ("position", "f8", (3,)),  # centroid of the patch, or MuJoCo's contact point [m], world
+        ("normal", "f8", (3,)),  # on a, from b to a [-]
+        ("force", "f8", (3,)),  # total force on a [N], world
+        ("area", "f8"),  # projected patch [m^2]; 0 for a native contact, which is a point
+        ("depth", "f8"),  # penetration along the normal [m]
+        ("volume", "f8"),  # interference volume [m^3]; 0 for a native contact
+    ]
+)
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One instant to draw: the full position state and the contact sites.
+
+    Attributes:
+        row: index into the arrays of the recording.
+        time: [s].
+        sites: structured array of `SITE`, one row a contact site.
+    """
+
+    row: int
+    time: float
+    sites: np.ndarray
+
+
+@dataclass(frozen=True)
+class Recording:
+    """What one run left. Arrays have one row per instant, n = steps + 1.
+
+    Attributes:
+        contact: "volumetric" or "native".
+        timestep: [s].
+        bodies: names of the bodies followed: those with a free joint, else all that can move.
+        time: [s], shape (n,).
+        qpos: shape (n, nq).
+        qvel: shape (n, nv).
+        position: of the body frames [m], world, shape (n, bodies, 3).
+        quaternion: of the body frames (w, x, y, z), shape (n, bodies, 4).
+        speed: of the body frames' origins [m/s], shape (n, bodies).
+        spin: angular speed of the bodies [rad/s], shape (n, bodies).
+        kinetic: [J], shape (n,).
+        potential: gravity and springs of the model, as MuJoCo counts them [J], shape (n,).
+        elastic: stored in the contact [J], shape (n,); 0 under native contact, which has no such
+            quantity.
+        dissipated: by the contact since the start [J], shape (n, 4), columns `CHANNELS`.
+        contact_force: sum over the sites of the magnitude of their force [N], shape (n,).
+        largest_site_force: [N], shape (n,).
+        site_count: shape (n,).
+        penetration: deepest site [m], shape (n,).
+        step_microseconds: wall time of each mj_step alone [us], shape (n - 1,).
+        warnings: MuJoCo's warning counters that are not 0, by name.
+        stopped: why the run ended early, or None.
+        dropped: evaluations in which volcontact left out a force that was no finite number.
+        frames: the instants to draw.
+        description: what volcontact understood of the scene; {} under native contact.
+        weight: of all that moves [N]; 0 without gravity.
+    """
+
+    contact: ContactKind
+    timestep: float
+    bodies: tuple[str, ...]
+    time: np.ndarray
+    qpos: np.ndarray
+    qvel: np.ndarray
+    position: np.ndarray
+    quaternion: np.ndarray
+    speed: np.ndarray
+    spin: np.ndarray
+    kinetic: np.ndarray
+    potential: np.ndarray
+    elastic: np.ndarray
+    dissipated: np.ndarray
+    contact_force: np.ndarray
+    largest_site_force: np.ndarray
+    site_count: np.ndarray
+    penetration: np.ndarray
+    step_microseconds: np.ndarray
+    warnings: dict[str, int]
+    stopped: str | None
+    dropped: int
+    frames: tuple[Frame, ...]
+    description: dict[str, Any]
+    weight: float
+
+    @property
+    def steps(self) -> int:
+        """Number of steps done."""
+        return len(self.time) - 1
+
+    @property
+    def height(self) -> np.ndarray:
+        """World z of the body frames [m], shape (n, bodies)."""
+        heights: np.ndarray = self.position[:, :, 2]
+        return heights
+
+    @property
+    def energy(self) -> np.ndarray:
+        """Mechanical energy: kinetic, potential and stored in the contact [J], shape (n,)."""
+        energy: np.ndarray = self.kinetic + self.potential + self.elastic
+        return energy
+
+    @property
+    def microseconds_per_step(self) -> float:
+        """Median wall time of one mj_step [us]; the median ignores what else the machine did."""
+        return float(np.median(self.step_microseconds)) if self.steps else 0.0
