@@ -115,6 +115,8 @@ def measure() -> Case:
         case.figures.append(
             Bounds(f"grate, {formulation}: error of energy", "-", low, high, run.closure, native)
         )
+        if formulation == "potential":
+            case.closures.append(run.closure)
         curves.append(Curve(formulation, run.rows[:, 0], run.unaccounted))
     case.plots.append(
         Plot("energy", "time [s]", "energy unaccounted for, of that turned over [-]", tuple(curves))
