@@ -339,6 +339,7 @@ def test_description_says_what_was_understood():
         "engine": "auto",
         "target": "applied",
         "pairs": "native",
+        "formulation": "gonthier",
         "threads": 0,
     }
     assert description["materials"]["rubber"]["geoms"] == ["floor", "ball"]
