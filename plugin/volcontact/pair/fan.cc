@@ -100,6 +100,7 @@ FanRound pierced(const RoundFace& face, const Vec3& ahead, const Vec3& base, con
   // Of a central fan the apex of a cone, or nearly so; else a tube along the columns.
   const double size = level_ahead ? base.squaredNorm() : face.map.squaredNorm();
   const double least = level_ahead ? kSameApex : kWallTilt;
+  r.cone = face.cone;
   r.wall = level_ahead == face.cone && ahead.squaredNorm() < least * least * size;
   if (r.wall) {
     // The root is that of minus the face's function.

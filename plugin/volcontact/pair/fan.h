@@ -50,7 +50,8 @@ struct FanRound {
   // component along the column * root|.
   double g[3], g_u[3], g_v[3], g_t[3];
   double weight;
-  bool wall;         ///< parallel to the columns: no root bounds them in reach
+  bool wall;  ///< parallel to the columns: no root bounds them in reach
+  bool cone;
   int lower, upper;  ///< which root bounds the solid below and above: -1, +1, or 0 for neither
   int owner;
   CapsulePart part;

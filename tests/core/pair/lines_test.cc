@@ -272,5 +272,26 @@ TEST(Lines, AConeWithItsAxisInAFaceAndItsRimOnAnotherIsCutInHalf) {
   }
 }
 
+// The half-plane through the apex of a cone and along its axis sees both of its sides meet at once,
+// and the face that holds the axis there as well.
+TEST(Lines, HalfAConeLiesBelowTheFaceThatHoldsItsAxis) {
+  const double r = 0.2, h = 0.15;
+  const Shape box = Box({.half_sizes = {0.3, 0.25, 0.2}}),
+              cone = Frustum({.bottom_radius = r, .top_radius = 0.0, .half_length = h});
+  Mat3 R;
+  R << 0, 0, 1, 0, 1, 0, -1, 0, 0;  // the axis along x
+  for (double off : {0.0, 1e-12, -1e-12, 1e-7}) {
+    // The rim touches the face y = 0.25.
+    const Pose X{R, {0.0, 0.05 + off, 0.2}};
+    const Interference out = test::evaluated(box, cone, X);
+    EXPECT_EQ(out.engine, Engine::kLines);
+    const double expected = 0.5 * kPi * r * r * 2.0 * h / 3.0;
+    EXPECT_NEAR(out.total.volume, expected, 1e-4 * expected) << off;
+    // By symmetry, and a quarter of the height from the base.
+    EXPECT_NEAR(out.total.centroid.x(), -h + 0.5 * h, 1e-4 * h);
+    EXPECT_NEAR(out.total.centroid.y(), 0.05, 1e-4 * r);
+  }
+}
+
 }  // namespace
 }  // namespace volcontact
