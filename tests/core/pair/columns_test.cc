@@ -245,6 +245,19 @@ TEST(Columns, PatchesSideBySideNeedNoMoreColumns) {
   EXPECT_NEAR(few.total.volume, all.total.volume, 1e-12 * all.total.volume);
 }
 
+// Beside a patch that goes 70 degrees to either side of a pin, the hole reaches below its window.
+TEST(Columns, PatchesFarAroundAPinNeedNoMoreColumns) {
+  const Mesh sleeve = mesh_of(test::ring_soup(1.0, 2.0, 1.0, 64));
+  const Mesh peg = mesh_of(test::ring_soup(0.5, 0.98, 2.0, 60));
+  const Pose X_AB{test::turn(Vec3::UnitX(), 0.002) * test::turn(Vec3::UnitY(), -0.02),
+                  Vec3(0.089, 0.001, 2.2)};
+  const Interference all = evaluated(sleeve, peg, X_AB, {.most_cells = 10000000});
+  const Interference few = evaluated(sleeve, peg, X_AB, {.most_cells = 600});
+  EXPECT_EQ(few.total.status, Status::kOk);
+  EXPECT_NEAR(few.total.volume, all.total.volume, 1e-12 * all.total.volume);
+  EXPECT_LE((few.total.area_vector - all.total.area_vector).norm(), 1e-12);
+}
+
 TEST(Columns, SamplesThatSeeNothingAreNoProof) {
   // A thin overlap of two surfaces in nearly the same place, beyond any budget.
   const Mesh outer = mesh_of(test::ball_soup(3)),
