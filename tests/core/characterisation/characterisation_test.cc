@@ -25,7 +25,9 @@ struct Promise {
   double noise;        // of the increments of V
 };
 
-bool has_many_faces(const Example& e) { return std::holds_alternative<ConvexPolytope>(e.shape); }
+bool has_many_faces(const Example& e) {
+  return std::holds_alternative<ConvexPolytope>(e.shape) || std::holds_alternative<Mesh>(e.shape);
+}
 
 Promise promise_of(Engine engine, const Example& a, const Example& b) {
   switch (engine) {
@@ -89,7 +91,8 @@ INSTANTIATE_TEST_SUITE_P(
                       NamedPair{"frustum", "ellipsoid"}, NamedPair{"capsule", "convex_polytope"},
                       NamedPair{"sphere", "torus"}, NamedPair{"torus", "box"},
                       NamedPair{"cylinder", "torus"}, NamedPair{"torus", "convex_polytope"},
-                      NamedPair{"torus", "torus"}),
+                      NamedPair{"torus", "torus"}, NamedPair{"box", "mesh"},
+                      NamedPair{"sphere", "mesh"}, NamedPair{"cylinder", "mesh"}),
     [](const auto& test) { return std::string(test.param.first) + "_" + test.param.second; });
 
 TEST(Spread, MedianAndWorst) {

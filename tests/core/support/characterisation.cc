@@ -164,7 +164,8 @@ Reference mirrored(const Reference& r, const Pose& X_AB) {
 }
 
 // Where the octree takes its time.
-bool has_cone_or_ring(const Example& e) {
+bool is_slow_in_octree(const Example& e) {
+  if (std::holds_alternative<Mesh>(e.shape)) return true;
   const auto is = [](const SimpleShape& s) {
     return std::holds_alternative<Frustum>(s) || std::holds_alternative<Torus>(s);
   };
@@ -201,7 +202,7 @@ std::vector<Characterisation> characterise(const Example& a, const Example& b,
     const Reference r = reference_integral(a.reference, b.reference, motion.back(), start.lookout);
     volumes.push_back(r.metrics.volume);
   }
-  const bool slow = has_cone_or_ring(a) || has_cone_or_ring(b);
+  const bool slow = is_slow_in_octree(a) || is_slow_in_octree(b);
   std::vector<Characterisation> rows;
   const auto judge = [&](const Example& first, const Example& second, Engine engine, bool mirror) {
     const bool octree = engine == Engine::kOctree;

@@ -40,7 +40,7 @@ struct Effort {
   int gradient_poses = 2;          ///< none of the octree: it is smooth to its tolerance only
   int motion_steps = 8;            ///< of the motion for the noise; 0: none
   int octree_poses = 2;            ///< of the poses, those that the octree gets too
-  int slow_octree_poses = 1;       ///< the same where it has cones or a torus, and no motion
+  int slow_octree_poses = 1;       ///< the same where it has cones, a torus, a mesh; no motion
   double octree_tolerance = 1e-2;  ///< relative error asked of the octree
 };
 
