@@ -7,10 +7,15 @@
 namespace volcontact {
 namespace {
 
+// 11 moments of the columns, then area vector and moment of their ends on A's surface.
+constexpr int kSums = 17;
+
 // Triangles of which the moments are still to be added.
 struct ColumnTriangles {
   static constexpr int kMost = 8 * kLanes;
   alignas(64) double x[3][kMost], y[3][kMost], middle[3][kMost], delta[3][kMost], area[kMost];
+  alignas(64) double slope_x[kMost], slope_y[kMost];  // of A's face
+  alignas(64) double area_of_a[kMost];                // 0 where the face is not A's surface here
   int count = 0;
 };
 
@@ -53,6 +58,9 @@ class Summation {
                                  (cell.y[i] - cell.y[0]) * (cell.x[i + 1] - cell.x[0]));
       const int k = triangles_.count++;
       triangles_.area[k] = weight * area;
+      triangles_.area_of_a[k] = from_f ? weight * area : 0.0;
+      triangles_.slope_x[k] = cell.slope_f[0];
+      triangles_.slope_y[k] = cell.slope_f[1];
       const int corner[3] = {0, i, i + 1};
       for (int c = 0; c < 3; ++c) {
         triangles_.x[c][k] = cell.x[corner[c]];
@@ -64,23 +72,9 @@ class Summation {
     }
   }
 
-  // A's face of a cell.
+  // A's face of a cell; its area vector and moment are those of its columns' lower ends.
   void add_surface_of_a(const ColumnCell& cell) {
-    const double weight = -cell.sign_f * cell.sign_g;
     const double ax = cell.slope_f[0], ay = cell.slope_f[1];
-    Vec3 first = Vec3::Zero();  // int (x, y, height of f) over the polygon
-    for (int i = 1; i + 1 < cell.count; ++i) {
-      const double area = 0.5 * ((cell.x[i] - cell.x[0]) * (cell.y[i + 1] - cell.y[0]) -
-                                 (cell.y[i] - cell.y[0]) * (cell.x[i + 1] - cell.x[0]));
-      const double third = area / 3.0;
-      first.x() += third * (cell.x[0] + cell.x[i] + cell.x[i + 1]);
-      first.y() += third * (cell.y[0] + cell.y[i] + cell.y[i + 1]);
-      first.z() += third * (cell.middle[0] + cell.middle[i] + cell.middle[i + 1] -
-                            0.5 * (cell.delta[0] + cell.delta[i] + cell.delta[i + 1]));
-    }
-    const Vec3 normal(ax, ay, -1.0);
-    sum_.moments.area_vector += weight * cell.area * normal;
-    sum_.moments.area_moment += weight * first.cross(normal);
     sum_.moments.area += cell.sign_g * cell.area * std::sqrt(1.0 + ax * ax + ay * ay);
     sum_.seen += cell.area;
   }
@@ -126,7 +120,7 @@ class Summation {
 
   CellSum finish() {
     flush();
-    double totals[11];
+    double totals[kSums];
     VOLCONTACT_SIMD_CALL(path_, total_wide, lanes_, totals);
     MomentSum& m = sum_.moments;
     m.volume = totals[0] / 3.0;
@@ -134,6 +128,8 @@ class Summation {
     m.second << totals[4], totals[7], totals[8], totals[7], totals[5], totals[9], totals[8],
         totals[9], totals[6];
     m.second /= 60.0;
+    m.area_vector += Vec3(totals[11], totals[12], -totals[13]);
+    m.area_moment += Vec3(totals[14], totals[15], totals[16]) / 3.0;
     sum_.energy = totals[10] / 24.0;
     sum_.low = low_;
     sum_.high = high_;
@@ -145,7 +141,8 @@ class Summation {
   void flush() {
     const int full = (triangles_.count + kLanes - 1) / kLanes * kLanes;
     for (int k = triangles_.count; k < full; ++k) {
-      triangles_.area[k] = 0.0;
+      triangles_.area[k] = triangles_.area_of_a[k] = 0.0;
+      triangles_.slope_x[k] = triangles_.slope_y[k] = 0.0;
       for (int c = 0; c < 3; ++c) {
         triangles_.x[c][k] = triangles_.y[c][k] = 0.0;
         triangles_.middle[c][k] = triangles_.delta[c][k] = 0.0;
@@ -179,7 +176,7 @@ class Summation {
   const ColumnSurface* surfaces_[2];
   const SimdPath path_;
   ColumnTriangles triangles_;
-  alignas(64) double lanes_[11][8] = {};
+  alignas(64) double lanes_[kSums][kLanes] = {};
   CellSum sum_;
   double low_ = kInfinity, high_ = -kInfinity, absolute_ = 0.0;
 };

@@ -72,17 +72,28 @@ signed char half_edge(const ColumnFace& face, int e) {
   return static_cast<signed char>(face.sign > 0 ? e : 2 - e);
 }
 
-void finish(const Polygon& polygon, const ColumnFace& f, int slot_f, const ColumnFace& g,
-            int slot_g, std::vector<ColumnCell>& cells) {
-  if (polygon.count > kLanes) return;  // bent by rounding: it has no area
+// A cell but for its corners.
+ColumnCell& add_cell_of(const ColumnFace& f, int slot_f, const ColumnFace& g, int slot_g, int count,
+                        std::vector<ColumnCell>& cells) {
   ColumnCell& cell = cells.emplace_back();
   cell.f = slot_f;
   cell.g = slot_g;
   cell.sign_f = static_cast<signed char>(f.sign);
   cell.sign_g = static_cast<signed char>(g.sign);
-  cell.count = static_cast<signed char>(polygon.count);
+  cell.count = static_cast<signed char>(count);
   cell.labels = 0;
   cell.walls = 0;
+  cell.slope_f[0] = f.slope_x;
+  cell.slope_f[1] = f.slope_y;
+  cell.slope_g[0] = g.slope_x;
+  cell.slope_g[1] = g.slope_y;
+  return cell;
+}
+
+void finish(const Polygon& polygon, const ColumnFace& f, int slot_f, const ColumnFace& g,
+            int slot_g, std::vector<ColumnCell>& cells) {
+  if (polygon.count > kLanes) return;  // bent by rounding: it has no area
+  ColumnCell& cell = add_cell_of(f, slot_f, g, slot_g, polygon.count, cells);
   const double dx = g.slope_x - f.slope_x, dy = g.slope_y - f.slope_y, d = g.level - f.level;
   const double mx = 0.5 * (g.slope_x + f.slope_x), my = 0.5 * (g.slope_y + f.slope_y),
                m = 0.5 * (g.level + f.level);
@@ -101,10 +112,6 @@ void finish(const Polygon& polygon, const ColumnFace& f, int slot_f, const Colum
     }
   }
   cell.area = 0.5 * twice_area;
-  cell.slope_f[0] = f.slope_x;
-  cell.slope_f[1] = f.slope_y;
-  cell.slope_g[0] = g.slope_x;
-  cell.slope_g[1] = g.slope_y;
 }
 
 // Cuts away where g is below f. Rounding leaves the sign of the height difference open where the
@@ -169,6 +176,22 @@ void add_cell(const ColumnFace& f, int slot_f, const ColumnFace& g, int slot_g,
 
 void add_cell_below(const ColumnFace& f, int slot_f, std::vector<ColumnCell>& cells) {
   const ColumnFace ground{{}, {}, 0.0, 0.0, 0.0, 1};
+  double depth[3];
+  for (int i = 0; i < 3; ++i) depth[i] = -(f.slope_x * f.x[i] + f.slope_y * f.y[i] + f.level);
+  if (std::min(depth[0], std::min(depth[1], depth[2])) >= 0.0) {  // most of them
+    ColumnCell& cell = add_cell_of(f, slot_f, ground, -1, 3, cells);
+    for (int i = 0; i < 3; ++i) {
+      cell.x[i] = f.x[i];
+      cell.y[i] = f.y[i];
+      cell.delta[i] = depth[i];
+      cell.middle[i] = -0.5 * depth[i];
+      cell.label[i] = half_edge(f, i);
+    }
+    cell.labels = 0b111;
+    cell.area =
+        0.5 * ((f.x[1] - f.x[0]) * (f.y[2] - f.y[0]) - (f.y[1] - f.y[0]) * (f.x[2] - f.x[0]));
+    return;
+  }
   Polygon polygon[2];
   polygon[0] = outline_of(f);
   int current = 0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace volcontact {
 namespace {
@@ -52,14 +53,11 @@ int sort_by_patch(PatchScratch& scratch) {
     if (number < 0) number = patches++;
   }
   scratch.order.resize(scratch.parent.size());
-  for (int i = 0; i < count; ++i) scratch.order[i] = i;
-  if (patches > 1) {
-    const auto patch_of = [&](int i) { return scratch.number[find(scratch.parent, i)]; };
-    std::sort(scratch.order.begin(), scratch.order.end(), [&](int i, int j) {
-      const int a = patch_of(i), b = patch_of(j);
-      return a != b ? a < b : i < j;
-    });
-  }
+  scratch.starts.assign(static_cast<std::size_t>(patches) + 1, 0);
+  const auto patch_of = [&](int i) { return scratch.number[find(scratch.parent, i)]; };
+  for (int i = 0; i < count; ++i) ++scratch.starts[patch_of(i) + 1];
+  std::partial_sum(scratch.starts.begin(), scratch.starts.end(), scratch.starts.begin());
+  for (int i = 0; i < count; ++i) scratch.order[scratch.starts[patch_of(i)]++] = i;
   return patches;
 }
 
@@ -127,7 +125,7 @@ bool find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& sc
   scratch.parent.resize(contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i) scratch.parent[i] = static_cast<int>(i);
   join_neighbors(contacts, scratch);
-  bool one_curve = true;
+  scratch.several.assign(contacts.size(), 0);
   // Until no two patches are near to each other.
   for (;;) {
     measure(contacts, scratch, sort_by_patch(scratch));
@@ -140,14 +138,14 @@ bool find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& sc
         if (find(scratch.parent, root_a) == find(scratch.parent, root_b)) continue;
         if (!near(a, b)) continue;
         join(scratch.parent, root_a, root_b);
+        scratch.several[find(scratch.parent, root_a)] = 1;
         joined = true;
       }
     }
     if (!joined) break;
-    one_curve = false;
   }
   for (ContactPatch& patch : scratch.patches) {
-    patch.one_curve = one_curve;
+    patch.one_curve = scratch.several[find(scratch.parent, scratch.order[patch.first])] == 0;
     patch.flux =
         flux_of(contacts, scratch.order.data() + patch.first, scratch.order.data() + patch.last);
   }

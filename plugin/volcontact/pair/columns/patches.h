@@ -31,8 +31,10 @@ struct PatchScratch {
   std::vector<std::uint64_t> keys;  ///< hash table of the ends of segments
   std::vector<int> contact_at;
   std::vector<int> parent;
-  std::vector<int> order;   ///< contacts, patch by patch
-  std::vector<int> number;  ///< of each root
+  std::vector<int> order;     ///< contacts, patch by patch
+  std::vector<int> number;    ///< of each root
+  std::vector<int> starts;    ///< of each patch in `order`
+  std::vector<char> several;  ///< of each root: whether patches were joined to it
   std::vector<ContactPatch> patches;
 };
 
