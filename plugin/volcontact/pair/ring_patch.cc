@@ -181,9 +181,12 @@ class PatchSearch {
 
   // Whether circles beyond an event have no arcs.
   bool ends_in_nothing(double event) const {
-    if (event == s_.events.back()) return !whole_;
-    const auto next = std::find(s_.events.begin(), s_.events.end(), event) + 1;
-    return count_between(event, *next) == 0;
+    const std::vector<double>& events = s_.events;
+    if (event == events.back()) return !whole_;
+    // A whole turn ends where it began.
+    const auto found = std::find(events.begin(), events.end(), event);
+    const auto here = found == events.end() ? events.begin() : found;
+    return here + 1 != events.end() && count_between(*here, *(here + 1)) == 0;
   }
 
   // One arc that comes from nothing and ends in nothing: as a function of t, see take_part, its

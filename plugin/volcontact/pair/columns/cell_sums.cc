@@ -75,8 +75,9 @@ class Summation {
   // A's face of a cell; its area vector and moment are those of its columns' lower ends.
   void add_surface_of_a(const ColumnCell& cell) {
     const double ax = cell.slope_f[0], ay = cell.slope_f[1];
-    sum_.moments.area += cell.sign_g * cell.area * std::sqrt(1.0 + ax * ax + ay * ay);
-    sum_.seen += cell.area;
+    const double steepness = 1.0 + ax * ax + ay * ay;
+    sum_.moments.area += cell.sign_g * cell.area * std::sqrt(steepness);
+    sum_.seen += cell.area * steepness;
   }
 
   // The upright walls of A on the edges of f. Across an edge with a cell on either side the surface
@@ -101,8 +102,9 @@ class Summation {
 
   void add_surface_of_b(const ColumnCell& cell) {
     const double gx = cell.slope_g[0], gy = cell.slope_g[1];
-    sum_.moments.counter_area -= cell.sign_f * cell.area * std::sqrt(1.0 + gx * gx + gy * gy);
-    sum_.seen += cell.area;
+    const double steepness = 1.0 + gx * gx + gy * gy;
+    sum_.moments.counter_area -= cell.sign_f * cell.area * std::sqrt(steepness);
+    sum_.seen += cell.area * steepness;
   }
 
   void add_walls_of_b(const ColumnCell& cell) {

@@ -12,7 +12,8 @@ struct CellSum {
   double energy = 0.0;           ///< int delta^2/2 over the cells [m^4]
   double low = 0.0, high = 0.0;  ///< extent along z [m]
   double absolute = 0.0;         ///< sum of the magnitudes of what was added to the volume [m^3]
-  double seen = 0.0;             ///< area of the cells [m^2]
+  double seen = 0.0;             ///< area of the cells, by the square of what their faces lose
+                                 ///< when seen along z [m^2]: by so much rounding counts
 
   CellSum& operator+=(const CellSum& other);
 };
