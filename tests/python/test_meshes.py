@@ -94,6 +94,22 @@ def test_any_overlap_of_any_meshes_is_that_of_manifold3d() -> None:
     assert touching > 300
 
 
+def test_slivers_of_faces_that_are_left_out_are_in_the_bound() -> None:
+    # A part of a face, 1e-10 of it, is taken for one that cancels out.
+    X_AB = np.eye(4)
+    X_AB[:3] = [
+        [-0.5256212403418481, 0.21167546937211076, -0.8239634745348813, 0.8205528566203023],
+        [-0.12072569006619946, -0.9773073832291783, -0.17405627378458888, 0.9697327510673108],
+        [-0.8421090306246201, 0.007985884536631002, 0.5392481860782012, 0.421259402879018],
+    ]
+    vertices, faces = arrays(SOLIDS["table"])
+    found = vc.interference(vc.Mesh(vertices, faces), vc.Mesh(vertices, faces), X_AB)
+    other = solid_of(vertices @ X_AB[:3, :3].T + X_AB[:3, 3], faces)
+    expected = (SOLIDS["table"] ^ other).volume()
+    assert abs(found.volume - expected) <= found.volume_error + 1e-14
+    assert found.volume_error <= 1e-8 * expected
+
+
 def test_mesh_tells_what_it_is() -> None:
     vertices, faces = arrays(SOLIDS["hollow ball"])
     mesh = vc.Mesh(vertices, faces)

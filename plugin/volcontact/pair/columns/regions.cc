@@ -219,6 +219,7 @@ int find_regions_below(const ObbTree& a, std::vector<ColumnCell>& cells, RegionS
 
 int find_regions(const ObbTree& a, const ObbTree* b, std::vector<ColumnCell>& cells,
                  RegionScratch& scratch) noexcept {
+  scratch.left_out = 0.0;
   if (b == nullptr && !is_layered(cells)) return find_regions_below(a, cells, scratch);
   const int count = static_cast<int>(cells.size());
   Joiner joiner(a, b, cells, scratch);
@@ -242,6 +243,7 @@ int find_regions(const ObbTree& a, const ObbTree* b, std::vector<ColumnCell>& ce
         mixed |= sign < 0;
       }
       const int value = net <= kNoArea * all ? 0 : mixed ? 2 : 1;
+      if (value == 0) scratch.left_out += std::abs(net);
       for (const int* i = first; i != last; ++i) {
         state[2 * *i + side.offset] = value;
         if (value == 2) joiner.join(2 * *first + side.offset, 2 * *i + side.offset);

@@ -30,6 +30,7 @@ struct RegionScratch {
   std::vector<unsigned char> solid;
   std::vector<CellRegion> region_of;
   std::vector<int> cell_of_slot;  ///< -1 between uses
+  double left_out = 0.0;  ///< net area of the faces whose cells nearly cancel each other [m^2]
 };
 
 /// Parts the cells into the connected regions of the overlap and marks the edges of cells across
