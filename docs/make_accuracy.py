@@ -24,6 +24,7 @@ LIMITS = {
     "closed_form": {"volume_worst": 1e-8, "moments": 1e-7, "areas": 1e-3, "noise": 1e-6},
     "clip": {"volume_worst": 1e-8, "moments": 1e-7, "areas": 1e-3, "noise": 1e-6},
     "lines": {"volume_worst": 1e-3, "moments": 5e-3, "areas": 1e-2, "noise": 1e-2},
+    "columns": {"volume_worst": 1e-3, "moments": 5e-3, "areas": 1e-2, "noise": 1e-2},
     "octree": {"volume_worst": 1e-2, "moments": 5e-2, "areas": 1e-1, "noise": 1e-1},
 }
 SPREADS = {
