@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "volcontact/pair/columns/contained.h"
+#include "volcontact/pair/columns/nearest_face.h"
 
 namespace volcontact {
 namespace {
@@ -89,33 +90,17 @@ class Columns {
   // What A's surface cuts off a convex B when it meets only one of its faces: a half-space would
   // lose as much. False when it meets others, or none.
   bool add_on_one_face() {
-    const std::vector<SurfacePlane>& planes = *b_->planes;
-    const Vec3 middle = X_BA_ * a_.bounds.center(), half = a_.bounds.half_sizes();
-    const SurfacePlane* face = nullptr;
-    double highest = -kInfinity, reach = 0.0;
-    for (const SurfacePlane& plane : planes) {
-      const double here = half.dot((X_BA_.rotation.transpose() * plane.normal).cwiseAbs());
-      const double low = plane.normal.dot(middle) - here - plane.offset;
-      if (low > highest) highest = low, reach = here, face = &plane;
+    Pose X_BC;
+    switch (nearest_face(a_.bounds, *b_, X_BA_, rounding_, scratch_.prism, X_BC)) {
+      case FaceReach::kApart:
+        return true;
+      case FaceReach::kWhole:
+        return false;
+      case FaceReach::kPart:
+        break;
     }
-    if (highest >= 0.0) return true;
-    if (highest + 2.0 * reach <= 0.0) return false;
-    const Pose X_BC{basis_with_z(face->normal), face->offset * face->normal};
-    const Pose X_CB = X_BC.inverse();
-    ColumnPrism& prism = scratch_.prism;
-    prism.margin = rounding_;
-    prism.sides.clear();
-    for (const SurfacePlane& plane : planes) {
-      if (&plane == face) continue;
-      const Vec3 normal = X_CB.rotation * plane.normal;
-      prism.sides.push_back({normal, plane.offset - plane.normal.dot(X_BC.translation)});
-    }
-    const Vec3 center = X_CB * b_->bounds.center(),
-               size = X_CB.rotation.cwiseAbs() * b_->bounds.half_sizes() +
-                      Vec3::Constant(2.0 * rounding_);
-    prism.bounds = {center - size, center + size};
-    const Pose X_CA = X_CB * X_BA_;
-    if (!make_cells_in_prism(*a_.tree, X_CA, prism, scratch_.cells)) return false;
+    const Pose X_CA = X_BC.inverse() * X_BA_;
+    if (!make_cells_in_prism(*a_.tree, X_CA, scratch_.prism, scratch_.cells)) return false;
     if (cells().empty()) return false;
     add_regions(X_CA, Pose{}, X_AB_ * X_BC, nullptr);
     return !out_.sites.empty();
@@ -151,33 +136,14 @@ class Columns {
     return true;
   }
 
-  // Axes of the columns through a patch in B's frame: z towards A, x along the patch, so that its
-  // window is no wider than it must be.
-  Mat3 columns_along(const ContactPatch& patch) const {
-    const Mat3 R_BC = basis_with_z(patch.flux.toward_a);
-    const Vec3 middle = 0.5 * (patch.low + patch.high);
-    double xx = 0.0, xy = 0.0, yy = 0.0;
-    for (int k = patch.first; k < patch.last; ++k) {
-      const TriangleContact& contact = scratch_.crossing.contacts[scratch_.patches.order[k]];
-      const Vec3 p = R_BC.transpose() * (0.5 * (contact.p + contact.q) - middle);
-      xx += p.x() * p.x();
-      xy += p.x() * p.y();
-      yy += p.y() * p.y();
-    }
-    const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);
-    Mat3 turned = R_BC;
-    turned.col(0) = std::cos(angle) * R_BC.col(0) + std::sin(angle) * R_BC.col(1);
-    turned.col(1) = R_BC.col(2).cross(turned.col(0));
-    return turned;
-  }
-
   // Columns from B to A through one patch alone: right when A does not reach below the window, nor
   // B above it, nor the overlap out of it at the sides, and when A's surface found inside of B is
   // the one that the curve of the patch bounds.
   bool add_patch(const ContactPatch& patch) {
     if (!patch.flux.closed || patch.flux.toward_a.isZero()) return false;
     const std::vector<TriangleContact>& contacts = scratch_.crossing.contacts;
-    const Pose X_BC{columns_along(patch), 0.5 * (patch.low + patch.high)};
+    const Pose X_BC{columns_along(contacts, scratch_.patches, patch),
+                    0.5 * (patch.low + patch.high)};
     const Mat3& R_BC = X_BC.rotation;
     const Pose X_CB = X_BC.inverse();
     const Pose X_CA = X_CB * X_BA_;

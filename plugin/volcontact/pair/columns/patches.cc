@@ -152,4 +152,23 @@ bool find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& sc
   return true;
 }
 
+Mat3 columns_along(const std::vector<TriangleContact>& contacts, const PatchScratch& scratch,
+                   const ContactPatch& patch) noexcept {
+  const Mat3 R_BC = basis_with_z(patch.flux.toward_a);
+  const Vec3 middle = 0.5 * (patch.low + patch.high);
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  for (int k = patch.first; k < patch.last; ++k) {
+    const TriangleContact& contact = contacts[scratch.order[k]];
+    const Vec3 p = R_BC.transpose() * (0.5 * (contact.p + contact.q) - middle);
+    xx += p.x() * p.x();
+    xy += p.x() * p.y();
+    yy += p.y() * p.y();
+  }
+  const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);
+  Mat3 turned = R_BC;
+  turned.col(0) = std::cos(angle) * R_BC.col(0) + std::sin(angle) * R_BC.col(1);
+  turned.col(1) = R_BC.col(2).cross(turned.col(0));
+  return turned;
+}
+
 }  // namespace volcontact

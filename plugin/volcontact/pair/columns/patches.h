@@ -42,6 +42,11 @@ struct PatchScratch {
 /// smaller width. False when there are too many for that to be quick, as where surfaces coincide.
 bool find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& scratch) noexcept;
 
+/// Axes of the columns through a patch, in B's frame: z towards A, x along the patch, so that a
+/// window around it is no wider than it must be.
+Mat3 columns_along(const std::vector<TriangleContact>& contacts, const PatchScratch& scratch,
+                   const ContactPatch& patch) noexcept;
+
 CurveFlux flux_of(const std::vector<TriangleContact>& contacts, const int* first, const int* last);
 
 }  // namespace volcontact
