@@ -18,21 +18,6 @@ constexpr int kMostContacts = 20000;  // of one query
 constexpr double kFlux = 1e-8;        // of the square of the length of a curve
 constexpr double kNoArea = 1e-8;      // of the largest cell: rounding has made it
 
-double size_of(const Aabb& bounds) {
-  return bounds.min.cwiseAbs().cwiseMax(bounds.max.cwiseAbs()).sum();
-}
-
-bool bounds_apart(const Aabb& a, const Aabb& b, const Pose& X_AB) {
-  const Vec3 p = X_AB * b.center() - a.center();
-  const Vec3 half_a = a.half_sizes(), half_b = b.half_sizes();
-  if ((p.cwiseAbs().array() > (half_a + X_AB.rotation.cwiseAbs() * half_b).array()).any()) {
-    return true;
-  }
-  const Vec3 q = X_AB.rotation.transpose() * p;
-  return (q.cwiseAbs().array() > (half_b + X_AB.rotation.transpose().cwiseAbs() * half_a).array())
-      .any();
-}
-
 class Columns {
  public:
   // Without b: the half-space z < 0 of B's frame.

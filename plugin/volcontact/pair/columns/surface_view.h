@@ -75,6 +75,12 @@ inline SurfaceView surface_of(const Box& solid, SurfaceStore& store) {
   return {&store.tree, nullptr, solid.bounds(), solid.own_metrics(), area, half, &store.planes};
 }
 
+/// About how large the coordinates in some bounds get [m].
+double size_of(const Aabb& bounds);
+
+/// Whether the bounds of A, and of B posed in A, have a side with nothing in common.
+bool bounds_apart(const Aabb& a, const Aabb& b, const Pose& X_AB);
+
 template <typename S>
 concept HasTriangles = requires(const S& solid, SurfaceStore& store) { surface_of(solid, store); };
 
