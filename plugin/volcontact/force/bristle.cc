@@ -68,6 +68,14 @@ Bristle::Bristle(const Params& params) : p_(validated<Bristle>(params)) {
               " [-] is below friction = " + std::to_string(p_.friction) + " [-]");
 }
 
+FrictionSlope Bristle::slope(const FrictionInput& in, const LawState& state) const noexcept {
+  evaluate(in, state);
+  const double dwell = state.pending[4];
+  return {p_.bristle_stiffness, p_.bristle_damping + p_.viscous_friction,
+          in.normal_force * (p_.friction + (p_.static_friction - p_.friction) * dwell),
+          p_.coupling == Coupling::kNone ? 0.0 : in.patch.gyration_radius};
+}
+
 FrictionOutput Bristle::evaluate(const FrictionInput& in, const LawState& state) const noexcept {
   const double r = p_.coupling == Coupling::kNone ? 0.0 : in.patch.gyration_radius;
   const double* before = state.committed;

@@ -54,6 +54,7 @@ class Bristle final : public Friction {
   std::span<const StateField> states() const noexcept override { return kStates; }
 
   FrictionOutput evaluate(const FrictionInput& in, const LawState& state) const noexcept override;
+  FrictionSlope slope(const FrictionInput& in, const LawState& state) const noexcept override;
 
  private:
   Params p_;

@@ -28,6 +28,15 @@ struct FrictionOutput {
   double spin_power = 0.0;    ///< dissipated by spinning [W]
 };
 
+/// Friction as a step sees it that is implicit in the contact. All three act on the 3-vector of
+/// the slip (v_x, v_y, r w_n) with r the lever of the spin: docs/theory.md, "Implicit step".
+struct FrictionSlope {
+  double stiffness = 0.0;  ///< per way along the patch, while it holds [N/m]
+  double damping = 0.0;    ///< per slip: the force that grows with the slip, over the slip [N s/m]
+  double strength = 0.0;   ///< most it can hold under this normal force [N]
+  double lever = 0.0;      ///< r, by which a spin is a slip; 0 for no torque [m]
+};
+
 /// Force that resists sliding and spinning. Const once made; what lasts is in LawState.
 class Friction {
  public:
@@ -37,6 +46,12 @@ class Friction {
   virtual std::span<const StateField> states() const noexcept { return {}; }
   virtual FrictionOutput evaluate(const FrictionInput& in,
                                   const LawState& state) const noexcept = 0;
+
+  /// What a step needs that is implicit in the contact. By default from differences of `evaluate`:
+  /// stiffness where the law keeps something; damping as force over slip; strength as the force
+  /// at the present slip, or at 1 m/s where that is more. `state.pending` is left as `evaluate` at
+  /// `in` leaves it.
+  virtual FrictionSlope slope(const FrictionInput& in, const LawState& state) const noexcept;
 
   int state_size() const noexcept { return size_of(states()); }
 };

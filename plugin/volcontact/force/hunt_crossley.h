@@ -54,6 +54,12 @@ class HuntCrossley final : public NormalForce {
     const double force = elastic * std::max(0.0, 1.0 + damping * in.approach_speed);
     return {force, elastic, p_.stiffness * in.depth_moment, p_.stiffness * damping};
   }
+  NormalSlope slope(const NormalInput& in, const LawState& state) const noexcept override {
+    const double damping = latches() ? latched_damping(in, state) : p_.damping;
+    const double raised = 1.0 + damping * in.approach_speed;
+    if (!(raised > 0.0)) return {};  // comes away faster than the layer follows
+    return {p_.stiffness * raised, p_.stiffness * in.volume * damping};
+  }
 
  private:
   bool latches() const { return damping_number_ > 0.0; }

@@ -20,6 +20,12 @@ struct NormalOutput {
   double rolling_damping = 0.0;
 };
 
+/// How a normal force changes with what it depends on; what would be negative is 0.
+struct NormalSlope {
+  double stiffness = 0.0;  ///< df/dV [N/m^3]
+  double damping = 0.0;    ///< df/dv_n [N s/m]
+};
+
 /// Magnitude of the force that keeps two bodies apart. Const once made; what lasts is in LawState.
 class NormalForce {
  public:
@@ -28,6 +34,11 @@ class NormalForce {
   /// What the law keeps for each contact site; a law that keeps nothing needs no override.
   virtual std::span<const StateField> states() const noexcept { return {}; }
   virtual NormalOutput evaluate(const NormalInput& in, const LawState& state) const noexcept = 0;
+
+  /// The derivatives at `in`, for steps that are implicit in the contact. By default from
+  /// differences of `evaluate`, at a fixed depth moment. `state.pending` is left as `evaluate` at
+  /// `in` leaves it.
+  virtual NormalSlope slope(const NormalInput& in, const LawState& state) const noexcept;
 
   int state_size() const noexcept { return size_of(states()); }
 };

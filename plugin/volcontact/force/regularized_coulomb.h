@@ -42,6 +42,14 @@ class RegularizedCoulomb final : public Friction {
     out.spin_power = -out.torque * in.spin;
     return out;
   }
+  FrictionSlope slope(const FrictionInput& in, const LawState&) const noexcept override {
+    const double lever = p_.coupling == Coupling::kNone ? 0.0 : in.patch.gyration_radius;
+    const double speed = std::hypot(in.slip.norm(), lever * in.spin);
+    const double strength = p_.friction * in.normal_force;
+    const double x = speed / p_.slip_speed;
+    return {0.0, x >= 1.0 ? strength / speed : strength * (1.5 - 0.5 * x * x) / p_.slip_speed,
+            strength, lever};
+  }
 
  private:
   // 0 at 0, 1 with zero slope from 1 on (Gonthier et al. 2004, direction regularisation).

@@ -27,6 +27,9 @@ class VolumeSpring final : public NormalForce {
     const double force = p_.stiffness * in.volume;
     return {force, force, p_.stiffness * in.depth_moment, 0.0};
   }
+  NormalSlope slope(const NormalInput&, const LawState&) const noexcept override {
+    return {p_.stiffness, 0.0};
+  }
 
  private:
   Params p_;
