@@ -63,12 +63,6 @@ void split_motion(const BodyMotion& motion, SiteReport& site) {
   site.slip = velocity + site.approach_speed * site.normal;
 }
 
-Patch patch_of(const VolumeMetrics& metrics, const Vec3& normal) {
-  const double polar = std::max(0.0, normal.dot(metrics.inertia * normal));
-  return {std::sqrt(polar / metrics.volume), metrics.volume, metrics.area_vector.norm(),
-          metrics.second_moment()};
-}
-
 void add_friction(const ContactLaws& laws, const CarriedSite& carried, const LawState& state,
                   SiteReport& site) {
   const Vec3& n = site.normal;
@@ -102,9 +96,15 @@ void add_site(SiteReport&& site, int pair, const BodyMotion& motion, ContactRepo
 
 }  // namespace
 
+Patch patch_of(const VolumeMetrics& metrics, const Vec3& normal) noexcept {
+  const double polar = std::max(0.0, normal.dot(metrics.inertia * normal));
+  return {std::sqrt(polar / metrics.volume), metrics.volume, metrics.area_vector.norm(),
+          metrics.second_moment()};
+}
+
 SiteReport evaluate_site(const VolumeMetrics& metrics_W, const BodyMotion& motion,
                          const ContactLaws& laws, const CarriedSite& carried, const LawState& state,
-                         const PressureField* field_W) noexcept {
+                         const PressureField* field_W, SiteInputs* inputs) noexcept {
   SiteReport site;
   site.metrics = metrics_W;
   const Push push = push_of(field_W, site);
@@ -114,8 +114,8 @@ SiteReport evaluate_site(const VolumeMetrics& metrics_W, const BodyMotion& motio
   const Vec3 rotation = motion.V_WA.angular - motion.V_WB.angular;
   site.spin = rotation.dot(site.normal);
 
-  const NormalOutput normal =
-      laws.normal->evaluate({push.size, push.energy, site.approach_speed}, slice(state, 0));
+  const NormalInput normal_in{push.size, push.energy, site.approach_speed};
+  const NormalOutput normal = laws.normal->evaluate(normal_in, slice(state, 0));
   site.normal_force = normal.magnitude;
   site.force_on_A = normal.magnitude * site.normal;
   site.elastic_energy = normal.elastic_energy;
@@ -129,7 +129,10 @@ SiteReport evaluate_site(const VolumeMetrics& metrics_W, const BodyMotion& motio
   site.power.normal = (normal.magnitude - normal.elastic) * site.approach_speed;
   site.taken = site.power;
   // The couple of a potential is elastic like the elastic part of the force.
-  if (push.size > 0.0) site.torque_on_A += normal.elastic / push.size * push.couple;
+  Vec3 elastic_torque = Vec3::Zero();
+  if (push.size > 0.0) elastic_torque = normal.elastic / push.size * push.couple;
+  if (push.size > 0.0) site.torque_on_A += elastic_torque;
+  if (inputs) *inputs = {normal_in, normal, elastic_torque, carried.travel, carried.rotation};
   if (laws.friction) add_friction(laws, carried, slice(state, laws.normal->state_size()), site);
   return site;
 }
@@ -165,6 +168,9 @@ void ContactModel::evaluate(const BodyMotion& motion, const SiteMemory& memory,
   report.bristle_energy = {};
   report.power = {};
   report.taken = {};
+  report.inputs.clear();
+  report.committed.clear();
+  report.elapsed = memory.elapsed;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     interference_W(pairs_[i], motion.X_WA, motion.X_WB, options_, workspace.engines,
                    workspace.interference);
@@ -182,9 +188,14 @@ void ContactModel::evaluate(const BodyMotion& motion, const SiteMemory& memory,
       PressureField field_W;
       const bool potential = laws_.formulation == Formulation::kPotential;
       if (potential) field_W = field_of(pairs_[i], motion, sites_W[k], workspace.pressure);
-      add_site(
-          evaluate_site(sites_W[k], motion, laws_, carried, state, potential ? &field_W : nullptr),
-          pair, motion, report);
+      SiteInputs* inputs = report.keeps_inputs ? &report.inputs.emplace_back() : nullptr;
+      if (inputs && row_size_ > 0) {
+        report.committed.insert(report.committed.end(), state.committed,
+                                state.committed + state_size());
+      }
+      add_site(evaluate_site(sites_W[k], motion, laws_, carried, state,
+                             potential ? &field_W : nullptr, inputs),
+               pair, motion, report);
     }
   }
 }

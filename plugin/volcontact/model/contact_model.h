@@ -35,13 +35,17 @@ struct ContactLaws {
   double share_of_a = 0.5;
 };
 
+/// The contact patch as friction laws see it.
+Patch patch_of(const VolumeMetrics& metrics_W, const Vec3& normal) noexcept;
+
 /// Forces of one contact site from its metrics (world frame), the motion of the bodies, and what
 /// was carried over. `state` has the numbers of both laws. docs/theory.md, "From metrics to
 /// wrench". Under `potential`, `field_W` is the pressure field of the site, in the world frame;
-/// else it is null.
+/// else it is null. `inputs`, where given, is filled.
 SiteReport evaluate_site(const VolumeMetrics& metrics_W, const BodyMotion& motion,
                          const ContactLaws& laws, const CarriedSite& carried, const LawState& state,
-                         const PressureField* field_W = nullptr) noexcept;
+                         const PressureField* field_W = nullptr,
+                         SiteInputs* inputs = nullptr) noexcept;
 
 /// The contact model container of the CSA paper: geometric pairs x normal law x friction law.
 /// Const once made; what lasts from one evaluation to the next is in rows that the caller keeps.
@@ -66,6 +70,9 @@ class ContactModel {
 
   /// Numbers kept for each contact site; 0 when the laws keep nothing.
   int row_size() const { return row_size_; }
+
+  /// Law states in a row.
+  int state_size() const { return row_size_ > 0 ? row_size_ - kSiteHead : 0; }
 
   /// Evaluates all pairs. `memory` has the rows that an earlier evaluation left in its report; none
   /// for bodies that were apart. Throws nothing, allocates nothing when warm.

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "volcontact/base/types.h"
+#include "volcontact/force/normal_force.h"
 #include "volcontact/metrics/volume_metrics.h"
 
 namespace volcontact {
@@ -42,6 +43,16 @@ struct SiteReport {
   ByChannel taken;  ///< power taken from the motion: dissipated, or put in bristles [W]
 };
 
+/// What the laws of a site were given and what the normal law made of it: enough to ask them again
+/// under another normal force, as an implicit step does.
+struct SiteInputs {
+  NormalInput normal_in;
+  NormalOutput normal_out;
+  Vec3 elastic_torque = Vec3::Zero();  ///< on A about the centroid, of the potential [N m]
+  Vec3 travel = Vec3::Zero();          ///< as in CarriedSite [m]
+  Vec3 rotation = Vec3::Zero();        ///< [rad]
+};
+
 /// What an evaluation of a contact model returns.
 struct ContactReport {
   std::vector<SiteReport> sites;  ///< empty when apart
@@ -53,6 +64,12 @@ struct ContactReport {
   ByChannel bristle_energy;       ///< [J]
   ByChannel power;                ///< dissipated [W]
   ByChannel taken;                ///< [W]
+
+  /// Set by the caller who wants the two lists below.
+  bool keeps_inputs = false;
+  std::vector<SiteInputs> inputs;  ///< of each site
+  std::vector<double> committed;   ///< of each site, the law states it was evaluated with
+  double elapsed = 0.0;            ///< since these [s]
 
   bool touching() const { return !sites.empty(); }
 };

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/model/site_tangent.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace volcontact {
+namespace {
+
+using Vec2 = Eigen::Vector2d;
+using Mat2 = Eigen::Matrix2d;
+
+// The mean of q q^T with q = (1, y, -x), which is how a point (x, y) of the plane moves along n.
+Mat3 mean_square(const Vec2& mean, const Mat2& spread) {
+  Mat3 m;
+  m << 1.0, mean.y(), -mean.x(),              //
+      mean.y(), spread(1, 1), -spread(0, 1),  //
+      -mean.x(), -spread(0, 1), spread(0, 0);
+  return m;
+}
+
+Mat6 in_world(const Mat3& axes, const Mat3& normal, double along, double about) {
+  const auto t = axes.leftCols<2>();
+  const Vec3 n = axes.col(2);
+  Mat6 m;
+  m.topLeftCorner<3, 3>() =
+      t * normal.bottomRightCorner<2, 2>() * t.transpose() + about * n * n.transpose();
+  m.topRightCorner<3, 3>() = t * normal.bottomLeftCorner<2, 1>() * n.transpose();
+  m.bottomLeftCorner<3, 3>() = m.topRightCorner<3, 3>().transpose();
+  m.bottomRightCorner<3, 3>() = normal(0, 0) * n * n.transpose() + along * t * t.transpose();
+  return m;
+}
+
+}  // namespace
+
+PatchMoments patch_moments(const VolumeMetrics& metrics_W, const Mat3& axes) noexcept {
+  PatchMoments patch;
+  patch.area = metrics_W.area_vector.norm();
+  if (!(patch.area > 0.0) || !(metrics_W.volume > 0.0)) return patch;
+  const auto t = axes.leftCols<2>();
+  const Vec3 n = axes.col(2);
+  // T about the centroid, per area: (r x n) of the patch's centre r, turned round.
+  const Vec3 turned =
+      (metrics_W.centroid.cross(metrics_W.area_vector) - metrics_W.area_moment) / patch.area;
+  patch.offset = t.transpose() * n.cross(turned);
+  patch.weighed = t.transpose() * metrics_W.second_moment() * t / metrics_W.volume;
+
+  // About the patch's centre the volume and the patch have the same second moments where the depth
+  // is linear. A smooth body pushed in has those of a paraboloid, 2/3 of an ellipse's; which of the
+  // two it is shows in the area.
+  const Mat2 square = patch.offset * patch.offset.transpose();
+  const Mat2 about_centre = patch.weighed + square;
+  const double ratio = kPi * std::sqrt(std::max(0.0, about_centre.determinant())) / patch.area;
+  const double paraboloid = std::clamp(12.0 * (0.25 - ratio), 0.0, 1.0);
+  patch.spread = 0.25 / (0.25 - paraboloid / 12.0) * about_centre + square;
+  return patch;
+}
+
+Mat6 SiteTangent::stiffness_W() const {
+  return in_world(axes, stiffness, friction.stiffness,
+                  friction.stiffness * friction.lever * friction.lever);
+}
+
+Mat6 SiteTangent::damping_W() const {
+  return in_world(axes, damping, friction.damping,
+                  friction.damping * friction.lever * friction.lever);
+}
+
+SiteTangent site_tangent(const VolumeMetrics& metrics_W, const Mat3& axes,
+                         const NormalSlope& normal, double rolling_damping,
+                         const FrictionSlope& friction) noexcept {
+  const PatchMoments patch = patch_moments(metrics_W, axes);
+  SiteTangent tangent;
+  tangent.axes = axes;
+  tangent.friction = friction;
+  tangent.stiffness = normal.stiffness * patch.area * mean_square(patch.offset, patch.spread);
+  tangent.damping = rolling_damping * metrics_W.volume * mean_square(Vec2::Zero(), patch.weighed);
+  tangent.damping(0, 0) = normal.damping;
+  return tangent;
+}
+
+}  // namespace volcontact
