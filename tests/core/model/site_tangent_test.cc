@@ -244,8 +244,9 @@ TEST(SiteTangent, HoldingFrictionIsInIt) {
   const std::vector<double> rows = report_of(model, motion).memory;
   ContactReport report = report_of(model, motion, rows, 1e-3);
   const SiteTangent tangent = SiteLaws(model, report, 0).tangent();
-  const Mat6 truth = damping_by_differences(model, motion, 1e-7, rows, 1e-3);
-  EXPECT_LT(difference(tangent.damping_W(), truth), 1e-6);
+  const Mat6 truth = damping_by_differences(model, motion, 1e-9, rows, 1e-3);
+  // Letting go begins with the square of the slip: mu f v / (v_s^2 sigma_1) is 7e-6 of it.
+  EXPECT_LT(difference(tangent.damping_W(), truth), 1e-5);
   EXPECT_EQ(tangent.friction.stiffness, 3e4);
   // About the normal: the same spring at the radius of gyration.
   const double square = (0.05 * 0.05 + 0.03 * 0.03) / 3.0;
