@@ -139,12 +139,14 @@ void SceneContact::add_pair(const mjModel* m, const GeomPair& geoms) {
   const SceneOptions& options = keys_.options;
   Engine engine = options.engine == Engine::kAuto ? engine_for(a, b) : options.engine;
   const int most_cells = options.engine == Engine::kOctree ? kMostCells : kMostCellsInStep;
-  require(options.formulation != Formulation::kPotential || has_pressure_field(a, b),
-          "volcontact/option/formulation/potential does not serve geoms '" +
-              label(m, mjOBJ_GEOM, geoms.a) + "' and '" + label(m, mjOBJ_GEOM, geoms.b) + "', " +
-              name_of(a) + " with " + name_of(b) +
-              ": it takes planes with anything, boxes and polytopes with each other, and spheres, "
-              "ellipsoids and capsules with each other; use formulation/gonthier, or exclude them");
+  if (options.formulation == Formulation::kPotential) {
+    const std::string reason = why_no_pressure_field(a, b, options.engine);
+    require(reason.empty(), "volcontact/option/formulation/potential does not serve geoms '" +
+                                label(m, mjOBJ_GEOM, geoms.a) + "' and '" +
+                                label(m, mjOBJ_GEOM, geoms.b) + "', " + name_of(a) + " with " +
+                                name_of(b) + ": " + reason +
+                                "; or use formulation/gonthier, or exclude them");
+  }
   if (!serves(engine, a, b)) {
     warn_once(std::string("engine ") + to_string(engine) + " does not serve " + name_of(a) +
               " with " + name_of(b) + "; auto serves them");

@@ -146,11 +146,11 @@ ContactModel::ContactModel(std::vector<GeometricPair> pairs, ContactLaws laws,
     require(serves(options_.engine, pair.a, pair.b),
             std::string("engine ") + to_string(options_.engine) + " does not serve the pair " +
                 name_of(pair.a) + " - " + name_of(pair.b) + "; use auto or octree");
-    require(laws_.formulation != Formulation::kPotential || has_pressure_field(pair.a, pair.b),
-            std::string("formulation potential does not serve the pair ") + name_of(pair.a) +
-                " - " + name_of(pair.b) +
-                ": it takes half-spaces with anything, boxes and polytopes with each other, and "
-                "spheres, ellipsoids and capsules with each other; use gonthier");
+    if (laws_.formulation != Formulation::kPotential) continue;
+    const std::string reason = why_no_pressure_field(pair.a, pair.b, options_.engine);
+    require(reason.empty(), std::string("formulation potential does not serve the pair ") +
+                                name_of(pair.a) + " - " + name_of(pair.b) + ": " + reason +
+                                "; or use gonthier");
   }
   require(laws_.share_of_a >= 0.0 && laws_.share_of_a <= 1.0,
           "contact_model: share_of_a = " + std::to_string(laws_.share_of_a) + " must be 0 to 1");
@@ -187,7 +187,7 @@ void ContactModel::evaluate(const BodyMotion& motion, const SiteMemory& memory,
       }
       PressureField field_W;
       const bool potential = laws_.formulation == Formulation::kPotential;
-      if (potential) field_W = field_of(pairs_[i], motion, sites_W[k], workspace.pressure);
+      if (potential) field_W = field_of(pairs_[i], motion, k, workspace);
       SiteInputs* inputs = report.keeps_inputs ? &report.inputs.emplace_back() : nullptr;
       if (inputs && row_size_ > 0) {
         report.committed.insert(report.committed.end(), state.committed,
@@ -201,10 +201,18 @@ void ContactModel::evaluate(const BodyMotion& motion, const SiteMemory& memory,
 }
 
 PressureField ContactModel::field_of(const GeometricPair& pair, const BodyMotion& motion,
-                                     const VolumeMetrics& site_W, PressureScratch& scratch) const {
+                                     std::size_t site, Workspace& workspace) const {
   const Pose X_Wa = motion.X_WA * pair.X_Aa, X_aW = X_Wa.inverse();
-  const PressureField field = pressure_field(pair.a, pair.b, X_aW * (motion.X_WB * pair.X_Bb),
-                                             transformed(site_W, X_aW), laws_.share_of_a, scratch);
+  std::vector<VolumeMetrics>& sites_a = workspace.sites_a;
+  if (site == 0) {
+    sites_a.clear();
+    for (const VolumeMetrics& site_W : workspace.interference.sites) {
+      sites_a.push_back(transformed(site_W, X_aW));
+    }
+  }
+  const PressureField field =
+      pressure_field(pair.a, pair.b, X_aW * (motion.X_WB * pair.X_Bb),
+                     {sites_a, site, laws_.share_of_a, options_}, workspace.pressure);
   return {field.energy, X_Wa.rotation * field.force, X_Wa.rotation * field.couple};
 }
 

@@ -57,6 +57,7 @@ class ContactModel {
     Interference interference;
     SiteCarrier carrier;
     PressureScratch pressure;
+    std::vector<VolumeMetrics> sites_a;  ///< of a pair, in the frame of its solid on A
   };
 
   /// Throws std::invalid_argument without pairs or normal law, or when a forced engine does not
@@ -82,8 +83,8 @@ class ContactModel {
  private:
   double* new_row(int pair, const VolumeMetrics& metrics_W, const BodyMotion& motion,
                   ContactReport& report) const;
-  PressureField field_of(const GeometricPair& pair, const BodyMotion& motion,
-                         const VolumeMetrics& site_W, PressureScratch& scratch) const;
+  PressureField field_of(const GeometricPair& pair, const BodyMotion& motion, std::size_t site,
+                         Workspace& workspace) const;
 
   std::vector<GeometricPair> pairs_;
   ContactLaws laws_;

@@ -17,7 +17,7 @@ constexpr double kFirstReach = 2.0;  // spreads from the centroid to the rim, as
 
 class ColumnField {
  public:
-  ColumnField(const LayerView& a, const LayerView& b, const Pose& X_AB, const VolumeMetrics& site,
+  ColumnField(const Ellipsoid& a, const Ellipsoid& b, const Pose& X_AB, const VolumeMetrics& site,
               double share_of_a)
       : a_(a), b_(b), X_BA_(X_AB.inverse()), c_(site.centroid) {
     stiffness_a_ = share_of_a > 0.0 ? 1.0 / share_of_a : kInfinity;
@@ -102,7 +102,7 @@ class ColumnField {
 
   // psi of A's layer over that of B's.
   double lead(const Vec3& x) const {
-    return stiffness_a_ * a_.depth(x).value - stiffness_b_ * b_.depth(X_BA_ * x).value;
+    return stiffness_a_ * depth_in(a_, x).value - stiffness_b_ * depth_in(b_, X_BA_ * x).value;
   }
 
   void add_column(const Column& at) {
@@ -144,9 +144,9 @@ class ColumnField {
     for (int i = 0; i < 5; ++i) {
       const Vec3 x = at.foot + (from + Rule::kNodes[i] * (to - from)) * t_;
       const double weight = weight_ * Rule::kWeights[i] * (to - from);
-      const Depth in_a = a_.depth(x);
+      const Depth in_a = depth_in(a_, x);
       const double psi_a = stiffness_a_ * std::max(0.0, in_a.value);
-      const double psi_b = stiffness_b_ * std::max(0.0, b_.depth(X_BA_ * x).value);
+      const double psi_b = stiffness_b_ * std::max(0.0, depth_in(b_, X_BA_ * x).value);
       sum_.energy += weight * std::min(psi_a, psi_b);
       if (!(psi_a < psi_b)) continue;
       const Vec3 force = weight * stiffness_a_ * in_a.gradient;
@@ -155,8 +155,8 @@ class ColumnField {
     }
   }
 
-  const LayerView& a_;
-  const LayerView& b_;
+  const Ellipsoid& a_;
+  const Ellipsoid& b_;
   Pose X_BA_;
   Vec3 c_;
   double stiffness_a_, stiffness_b_;  // of the layers, per k_v
@@ -179,7 +179,7 @@ Depth depth_in(const Ellipsoid& solid, const Vec3& x) {
   return {d, -(normal + d * grad_m) / root};
 }
 
-PressureField pressure_columns(const LayerView& a, const LayerView& b, const Pose& X_AB,
+PressureField pressure_columns(const Ellipsoid& a, const Ellipsoid& b, const Pose& X_AB,
                                const VolumeMetrics& site, double share_of_a) noexcept {
   return ColumnField(a, b, X_AB, site, share_of_a).integrate();
 }

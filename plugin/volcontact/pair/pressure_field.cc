@@ -5,18 +5,35 @@
 
 #include "volcontact/pair/pressure_cells.h"
 #include "volcontact/pair/pressure_columns.h"
+#include "volcontact/pair/pressure_layers.h"
+#include "volcontact/shape/parallel_solid.h"
 
 namespace volcontact {
 namespace {
 
 template <typename S>
 constexpr bool is_half_space = std::is_same_v<S, HalfSpace>;
-// Round everywhere: depth and columns are smooth enough for a fixed rule.
-template <typename S>
-constexpr bool is_smooth =
-    std::is_same_v<S, Sphere> || std::is_same_v<S, Ellipsoid> || std::is_same_v<S, Capsule>;
 template <typename S>
 constexpr bool is_flat = std::is_same_v<S, Box> || std::is_same_v<S, ConvexPolytope>;
+template <typename S>
+constexpr bool is_ellipsoid = std::is_same_v<S, Ellipsoid>;
+
+enum class Method { kNone, kPlane, kCells, kColumns, kLayers };
+
+Method method_of(const Shape& a, const Shape& b) {
+  return std::visit(
+      [&](const auto& solid_a, const auto& solid_b) {
+        using A = std::decay_t<decltype(solid_a)>;
+        using B = std::decay_t<decltype(solid_b)>;
+        if constexpr (is_half_space<A> && is_half_space<B>) return Method::kNone;
+        if constexpr (is_half_space<A> || is_half_space<B>) return Method::kPlane;
+        if constexpr (is_flat<A> && is_flat<B>) return Method::kCells;
+        if constexpr (is_ellipsoid<A> && is_ellipsoid<B>) return Method::kColumns;
+        const bool layers = has_parallel_solids(a) || has_parallel_solids(b);
+        return layers ? Method::kLayers : Method::kNone;
+      },
+      a, b);
+}
 
 // Depth below a plane: Archimedes. `up` is its normal, out of the half-space.
 PressureField below_plane(const Vec3& up, const Vec3& point, const VolumeMetrics& site,
@@ -27,49 +44,63 @@ PressureField below_plane(const Vec3& up, const Vec3& point, const VolumeMetrics
   return field;
 }
 
-template <typename A, typename B>
-PressureField field_of(const A& a, const B& b, const Pose& X_AB, const VolumeMetrics& site,
-                       double share_of_a, PressureScratch& scratch) {
-  if constexpr (is_half_space<A> && is_half_space<B>) {
-    return {};
-  } else if constexpr (is_half_space<A>) {
+PressureField on_plane(const Shape& a, const Pose& X_AB, const VolumeMetrics& site) {
+  if (std::holds_alternative<HalfSpace>(a)) {
     return below_plane(Vec3::UnitZ(), Vec3::Zero(), site, true);
-  } else if constexpr (is_half_space<B>) {
-    return below_plane(X_AB.rotation.col(2), X_AB.translation, site, false);
-  } else if constexpr (is_flat<A> && is_flat<B>) {
-    return pressure_cells(a, b, X_AB, site.centroid, share_of_a, scratch);
-  } else if constexpr (is_smooth<A> && is_smooth<B>) {
-    return pressure_columns(LayerView(a), LayerView(b), X_AB, site, share_of_a);
-  } else {
-    return {};
   }
+  return below_plane(X_AB.rotation.col(2), X_AB.translation, site, false);
+}
+
+PressureField in_cells(const Shape& a, const Shape& b, const Pose& X_AB, const PressureSite& site,
+                       PressureScratch& scratch) {
+  return std::visit(
+      [&](const auto& solid_a, const auto& solid_b) -> PressureField {
+        using A = std::decay_t<decltype(solid_a)>;
+        using B = std::decay_t<decltype(solid_b)>;
+        if constexpr (is_flat<A> && is_flat<B>) {
+          return pressure_cells(solid_a, solid_b, X_AB, site.metrics().centroid, site.share_of_a,
+                                scratch);
+        }
+        return {};
+      },
+      a, b);
 }
 
 }  // namespace
 
-bool has_pressure_field(const Shape& a, const Shape& b) {
-  return std::visit(
-      [](const auto& solid_a, const auto& solid_b) {
-        using A = std::decay_t<decltype(solid_a)>;
-        using B = std::decay_t<decltype(solid_b)>;
-        if constexpr (is_half_space<A> || is_half_space<B>) {
-          return !(is_half_space<A> && is_half_space<B>);
-        } else {
-          return (is_flat<A> && is_flat<B>) || (is_smooth<A> && is_smooth<B>);
-        }
-      },
-      a, b);
+std::string why_no_pressure_field(const Shape& a, const Shape& b, Engine engine) {
+  switch (method_of(a, b)) {
+    case Method::kNone:
+      return "neither has layers: at least one must be a half-space, sphere, capsule, cylinder, "
+             "frustum, box or torus";
+    case Method::kLayers:
+      if (engine == Engine::kAuto && engine_for(a, b) == Engine::kOctree) {
+        return "only the octree serves it, which takes about a second for each evaluation; choose "
+               "the engine octree to have it nevertheless";
+      }
+      return {};
+    default:
+      return {};
+  }
 }
 
 PressureField pressure_field(const Shape& a, const Shape& b, const Pose& X_AB,
-                             const VolumeMetrics& site, double share_of_a,
-                             PressureScratch& scratch) noexcept {
-  if (!site.touching()) return {};
-  return std::visit(
-      [&](const auto& solid_a, const auto& solid_b) {
-        return field_of(solid_a, solid_b, X_AB, site, share_of_a, scratch);
-      },
-      a, b);
+                             const PressureSite& site, PressureScratch& scratch) noexcept {
+  if (!site.metrics().touching()) return {};
+  switch (method_of(a, b)) {
+    case Method::kPlane:
+      return on_plane(a, X_AB, site.metrics());
+    case Method::kCells:
+      return in_cells(a, b, X_AB, site, scratch);
+    case Method::kColumns:
+      return pressure_columns(std::get<Ellipsoid>(a), std::get<Ellipsoid>(b), X_AB, site.metrics(),
+                              site.share_of_a);
+    case Method::kLayers:
+      return pressure_layers(a, b, X_AB, site, scratch);
+    case Method::kNone:
+      break;
+  }
+  return {};
 }
 
 }  // namespace volcontact

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "volcontact/metrics/volume_metrics.h"
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
 #include "volcontact/pair/clip.h"
-#include "volcontact/shape/shapes.h"
+#include "volcontact/pair/interference.h"
 
 namespace volcontact {
 
@@ -29,19 +33,35 @@ struct PressureScratch {
   ClipScratch clip;
   CutPolytope overlap;
   std::vector<Layer> layers;
+  // Of deeper levels: the solids under the layers and their overlap.
+  Shape inner_a = Sphere({}), inner_b = Sphere({});
+  std::unique_ptr<InterferenceWorkspace> engines;  ///< made when first wanted
+  Interference level;
 };
 
-/// Whether the field of this pair can be integrated: a half-space with anything, boxes and
-/// polytopes with each other, and spheres, ellipsoids and capsules with each other.
-bool has_pressure_field(const Shape& a, const Shape& b);
+/// The site asked for, among all sites of the pair.
+struct PressureSite {
+  std::span<const VolumeMetrics> sites;  ///< in A's frame
+  std::size_t index = 0;
+  /// s_A, from 0 (A is rigid) to 1 [-], where both solids can carry a layer. A half-space carries
+  /// the whole field, and a solid beside one without layers does.
+  double share_of_a = 0.5;
+  InterferenceOptions options;  ///< of the overlap
 
-/// The field of one site of the pair, whose metrics are `site`, in A's frame.
-/// `share_of_a` [-] is s_A, from 0 (A is rigid) to 1. Of a pair with a half-space that one carries
-/// the whole field, whatever the share. Exact for half-spaces, boxes and polytopes; a quadrature
-/// for round solids, to 1e-5 of the force without capsules, whose seams leave 2e-3. Zero where
-/// has_pressure_field() is false.
+  const VolumeMetrics& metrics() const { return sites[index]; }
+};
+
+/// Whether the field of this pair can be integrated with this engine, and if not, why: a sentence
+/// for a message, empty where it can.
+std::string why_no_pressure_field(const Shape& a, const Shape& b, Engine engine = Engine::kAuto);
+inline bool has_pressure_field(const Shape& a, const Shape& b, Engine engine = Engine::kAuto) {
+  return why_no_pressure_field(a, b, engine).empty();
+}
+
+/// The field of one site of the pair, in A's frame. Exact for half-spaces, boxes and polytopes;
+/// for others a rule whose wrench is the gradient of its energy. Zero where has_pressure_field()
+/// is false.
 PressureField pressure_field(const Shape& a, const Shape& b, const Pose& X_AB,
-                             const VolumeMetrics& site, double share_of_a,
-                             PressureScratch& scratch) noexcept;
+                             const PressureSite& site, PressureScratch& scratch) noexcept;
 
 }  // namespace volcontact

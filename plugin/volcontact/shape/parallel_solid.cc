@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/shape/parallel_solid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace volcontact {
+namespace {
+
+// A solid about the z axis moves along it when its ends do.
+struct Inner {
+  Shape shape;
+  double shift = 0.0;  // along z
+};
+
+std::optional<Inner> inside(const Sphere& solid, double depth) {
+  if (!(solid.radius() > depth)) return {};
+  return Inner{Sphere({.radius = solid.radius() - depth})};
+}
+
+std::optional<Inner> inside(const Capsule& solid, double depth) {
+  if (!(solid.radius() > depth)) return {};
+  return Inner{Capsule({.radius = solid.radius() - depth, .half_length = solid.half_length()})};
+}
+
+std::optional<Inner> inside(const Cylinder& solid, double depth) {
+  if (!(std::min(solid.radius(), solid.half_length()) > depth)) return {};
+  return Inner{
+      Cylinder({.radius = solid.radius() - depth, .half_length = solid.half_length() - depth})};
+}
+
+std::optional<Inner> inside(const Box& solid, double depth) {
+  if (!(solid.half_sizes().minCoeff() > depth)) return {};
+  return Inner{Box({.half_sizes = solid.half_sizes() - Vec3::Constant(depth)})};
+}
+
+std::optional<Inner> inside(const Torus& solid, double depth) {
+  if (!(solid.minor_radius() > depth)) return {};
+  return Inner{Torus(
+      {.major_radius = solid.major_radius(), .minor_radius = solid.minor_radius() - depth})};
+}
+
+// The wall moves in at right angles to itself; where it meets the axis first, the end is an apex.
+std::optional<Inner> inside(const Frustum& solid, double depth) {
+  const auto& p = solid.params();
+  if (!(p.half_length > depth)) return {};
+  const double slope = (p.top_radius - p.bottom_radius) / (2.0 * p.half_length);
+  const double middle =
+      0.5 * (p.bottom_radius + p.top_radius) - depth * std::sqrt(1.0 + slope * slope);
+  double low = depth - p.half_length, high = p.half_length - depth;
+  if (middle + slope * low < 0.0) low = -middle / slope;
+  if (middle + slope * high < 0.0) high = -middle / slope;
+  if (!(high > low) || !(std::max(middle + slope * low, middle + slope * high) > 0.0)) return {};
+  return Inner{Frustum({.bottom_radius = std::max(0.0, middle + slope * low),
+                        .top_radius = std::max(0.0, middle + slope * high),
+                        .half_length = 0.5 * (high - low)}),
+               0.5 * (high + low)};
+}
+
+template <typename S>
+constexpr bool kHasInside = requires(const S& solid, double depth) { inside(solid, depth); };
+
+double depth_of(const Sphere& solid) { return solid.radius(); }
+double depth_of(const Capsule& solid) { return solid.radius(); }
+double depth_of(const Cylinder& solid) { return std::min(solid.radius(), solid.half_length()); }
+double depth_of(const Box& solid) { return solid.half_sizes().minCoeff(); }
+double depth_of(const Torus& solid) { return solid.minor_radius(); }
+// Of the ball that touches the wall and the wide end.
+double depth_of(const Frustum& solid) {
+  const auto& p = solid.params();
+  const double slope = std::abs(p.top_radius - p.bottom_radius) / (2.0 * p.half_length);
+  const double wide = std::max(p.bottom_radius, p.top_radius);
+  return std::min(p.half_length, wide / (slope + std::sqrt(1.0 + slope * slope)));
+}
+
+double area_of(const Sphere& solid) { return 4.0 * kPi * solid.radius() * solid.radius(); }
+double area_of(const Capsule& solid) {
+  return 4.0 * kPi * solid.radius() * (solid.radius() + solid.half_length());
+}
+double area_of(const Cylinder& solid) {
+  return 2.0 * kPi * solid.radius() * (solid.radius() + 2.0 * solid.half_length());
+}
+double area_of(const Box& solid) {
+  const Vec3& h = solid.half_sizes();
+  return 8.0 * (h.x() * h.y() + h.y() * h.z() + h.z() * h.x());
+}
+double area_of(const Torus& solid) {
+  return 4.0 * kPi * kPi * solid.major_radius() * solid.minor_radius();
+}
+double area_of(const Frustum& solid) {
+  const auto& p = solid.params();
+  const double r = p.bottom_radius, q = p.top_radius;
+  return kPi * ((r + q) * std::hypot(r - q, 2.0 * p.half_length) + r * r + q * q);
+}
+
+}  // namespace
+
+bool has_parallel_solids(const Shape& solid) {
+  return std::visit([](const auto& s) { return kHasInside<std::decay_t<decltype(s)>>; }, solid);
+}
+
+double greatest_depth(const Shape& solid) {
+  return std::visit(
+      [](const auto& s) -> double {
+        if constexpr (kHasInside<std::decay_t<decltype(s)>>) return depth_of(s);
+        return kInfinity;
+      },
+      solid);
+}
+
+bool parallel_solid(const Shape& solid, double depth, Shape& inner, Pose& X_SI) noexcept {
+  return std::visit(
+      [&](const auto& s) {
+        if constexpr (kHasInside<std::decay_t<decltype(s)>>) {
+          const std::optional<Inner> found = inside(s, depth);
+          if (!found) return false;
+          inner = found->shape;
+          X_SI = {Mat3::Identity(), Vec3(0.0, 0.0, found->shift)};
+          return true;
+        }
+        return false;
+      },
+      solid);
+}
+
+double surface_area(const Shape& solid) {
+  return std::visit(
+      [](const auto& s) -> double {
+        if constexpr (kHasInside<std::decay_t<decltype(s)>>) return area_of(s);
+        return 0.0;
+      },
+      solid);
+}
+
+}  // namespace volcontact
