@@ -10,6 +10,7 @@ import numpy as np
 from case import Bounds, Case, Curve, Figure, Plot, crossings, load, simulate
 
 BORE, RADIUS = 1.0, 0.1
+NO_BORE = "no bore: it falls through"
 
 
 def place(data: mujoco.MjData) -> tuple[float, float, float]:
@@ -40,9 +41,14 @@ def measure() -> Case:
     run = simulate(fall, 0.39065, gap, every=1, setup=let_go)
     touch = crossings(run.rows[:, 0], run.rows[:, 1])[0]
     case.figures += [
-        Figure("first touch", "s", 0.390596, 1e-5, touch),
+        Figure("first touch", "s", 0.390596, 1e-5, touch, NO_BORE),
         Figure(
-            "speed then", "m/s", 3.83174, 1e-5, np.interp(touch, run.rows[:, 0], run.rows[:, 3])
+            "speed then",
+            "m/s",
+            3.83174,
+            1e-5,
+            np.interp(touch, run.rows[:, 0], run.rows[:, 3]),
+            NO_BORE,
         ),
     ]
     swing = load("ball_in_cylinder/scene.xml", pair__ball__stiffness=1e9, pair__ball__damping=0.0)
@@ -57,7 +63,7 @@ def measure() -> Case:
 
     small = simulate(swing, 6.0, lambda _, d: place(d), every=50, setup=hang)
     period = 2.0 * float(np.mean(np.diff(crossings(small.rows[:, 0], small.rows[:, 1]))))
-    case.figures.append(Figure("period of small swings", "s", 2.25180, 5e-3, period))
+    case.figures.append(Figure("period of small swings", "s", 2.25180, 5e-3, period, NO_BORE))
     case.closures += [run.closure, small.closure]
 
     # The whole scene, thrown along the bore and spinning.
@@ -71,10 +77,10 @@ def measure() -> Case:
     time, speed = rest.rows[:, 0], rest.rows[:, 4]
     fast = speed > 1e-3
     case.figures += [
-        Bounds("slower than 1 mm/s and 1 mrad/s from", "s", 5.0, 28.0, float(time[fast][-1])),
-        Bounds("speed after 30 s", "m/s, rad/s", 0.0, 1e-4, float(speed[-1])),
-        Bounds("dissipated by rolling", "J", 0.1, 10.0, float(rest.dissipated[1])),
-        Bounds("dissipated by spinning", "J", 0.01, 10.0, float(rest.dissipated[3])),
+        Bounds("slower than 1 mm/s and 1 mrad/s from", "s", 5.0, 28.0, time[fast][-1], NO_BORE),
+        Bounds("speed after 30 s", "m/s, rad/s", 0.0, 1e-4, speed[-1], NO_BORE),
+        Bounds("dissipated by rolling", "J", 0.1, 10.0, rest.dissipated[1], NO_BORE),
+        Bounds("dissipated by spinning", "J", 0.01, 10.0, rest.dissipated[3], NO_BORE),
     ]
     case.plots += [
         Plot(

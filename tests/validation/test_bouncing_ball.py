@@ -74,7 +74,8 @@ def measure() -> Case:
         case.figures.append(
             Figure(f"speed after bounce {n}", "m/s", speed, 1e-3, launches[n - 1], native[n - 1])
         )
-    case.figures.append(Figure("time in the air", "s", 4.06371, 1e-3, flight_time(launches)))
+    times = flight_time(launches), flight_time(native)
+    case.figures.append(Figure("time in the air", "s", 4.06371, 1e-3, *times))
     case.plots.append(
         Plot(
             "height",

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from case import Bounds, Case
+from case import NO_FIELD, Bounds, Case
 
 import volcontact as vc
 
@@ -43,8 +43,8 @@ def measure() -> Case:
             work += step * report.force_on_A[2] * -0.004 * math.sin(s)
             work += step * report.torque_on_A[1] * 0.12 * math.cos(s)
             stored = max(stored, report.elastic_energy)
-        figure = Bounds(f"{name}: |work| over stored energy", "-", 0.0, 1e-6, abs(work) / stored)
-        case.figures.append(figure)
+        name = f"{name}: work over stored energy"
+        case.figures.append(Bounds(name, "-", 0.0, 1e-6, abs(work) / stored, NO_FIELD))
     return case
 
 

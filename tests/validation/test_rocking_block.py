@@ -104,11 +104,19 @@ def measure() -> Case:
     fall = rock(FLAT, 1e10, 10.0, 2.5e-6, 0.1235)
     native = rock(FLAT, 1e10, 10.0, 1e-4, 0.62, native=True)
     feet = rock(FEET, 1e9, 10.0, 5e-6, 0.62)
+    native_feet = rock(FEET, 1e9, 10.0, 1e-4, 0.62, native=True)
     flat = rock(FLAT, 1e9, 10.0, 5e-6, 0.62)
     case.closures += [fall.closure, feet.closure, flat.closure]
     case.figures += [
         Figure("period", "s", PERIOD, 1e-3, period(fall), period(native)),
-        Figure("two feet: rate after over before", "-", RATE_RATIO, 0.05, rate_ratio(feet)),
+        Figure(
+            "two feet: rate after over before",
+            "-",
+            RATE_RATIO,
+            0.05,
+            rate_ratio(feet),
+            rate_ratio(native_feet),
+        ),
         Bounds(
             "flat base: rate after over before",
             "-",

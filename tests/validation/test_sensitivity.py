@@ -104,7 +104,7 @@ def measure() -> Case:
         for engine, state in others:
             name = f"{scene}, {engine} for {own}: difference"
             error = difference(state, expected)
-            case.figures.append(Figure(name, "-", 0.0, STATE_TOLERANCE, error))
+            case.figures.append(Figure(name, "-", 0.0, STATE_TOLERANCE, error, "one engine"))
     return case
 
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
-from case import Case, Curve, Figure, Plot, Run, load, simulate
+from case import NO_ACCOUNT, Case, Curve, Figure, Plot, Run, load, simulate
 
 RADIUS = 0.05
 # Time [s] and way [m] until rest; independent integrations of the motion with the elliptic
@@ -51,12 +51,13 @@ def measure() -> Case:
         "lets it slide on further than plain Coulomb friction would, and ends both at once with v "
         "= 0.653 R w; the ellipsoid is an approximation of that.",
     )
-    native = slide("quadrature", native=True)
+    native, native_fast = slide("none", native=True), slide("none", 40.0, native=True)
+    own = rest(native.rows, spins=True), native.rows[-1, 3]  # whatever the coupling
+    fast_own = rest(native_fast.rows, spins=True), native_fast.rows[-1, 3]
     curves = []
     for coupling, (time, way, tolerance) in EXPECTED.items():
         run = slide(coupling)
         case.closures.append(run.closure)
-        of_native = coupling == "quadrature"
         case.figures += [
             Figure(
                 f"{coupling}: rest",
@@ -64,7 +65,7 @@ def measure() -> Case:
                 time,
                 tolerance,
                 rest(run.rows, spins=coupling != "none"),
-                rest(native.rows, spins=True) if of_native else None,
+                own[0],
             ),
             Figure(
                 f"{coupling}: way",
@@ -72,27 +73,31 @@ def measure() -> Case:
                 way,
                 tolerance,
                 run.rows[-1, 3],
-                native.rows[-1, 3] if of_native else None,
+                own[1],
             ),
         ]
-        if of_native:  # m v^2 / 2 and I w^2 / 2 of the start, each through its own channel
+        if (
+            coupling == "quadrature"
+        ):  # m v^2 / 2 and I w^2 / 2 of the start, each through its own channel
             case.figures += [
-                Figure("dissipated by sliding", "J", 0.5, 1e-6, float(run.dissipated[2])),
-                Figure("dissipated by spinning", "J", 0.25, 1e-6, float(run.dissipated[3])),
+                Figure(f"dissipated by {kind}", "J", energy, 1e-6, float(spent), NO_ACCOUNT)
+                for kind, energy, spent in (
+                    ("sliding", 0.5, run.dissipated[2]),
+                    ("spinning", 0.25, run.dissipated[3]),
+                )
             ]
         curves.append(Curve(coupling, run.rows[:, 0], run.rows[:, 1]))
-    fast = slide("quadrature", 40.0)
-    case.closures.append(fast.closure)
-    case.figures += [
-        Figure("quadrature, 40 rad/s: rest", "s", 0.64669, 3e-3, rest(fast.rows, spins=True)),
-        Figure("quadrature, 40 rad/s: way", "m", 0.33418, 3e-3, fast.rows[-1, 3]),
-    ]
-    fast = slide("ellipsoid", 40.0)
-    case.closures.append(fast.closure)
-    case.figures += [
-        Figure("ellipsoid, 40 rad/s: rest", "s", 0.58853, 1e-3, rest(fast.rows, spins=True)),
-        Figure("ellipsoid, 40 rad/s: way", "m", 0.29427, 1e-3, fast.rows[-1, 3]),
-    ]
+    for coupling, time, way, tolerance in (
+        ("quadrature", 0.64669, 0.33418, 3e-3),
+        ("ellipsoid", 0.58853, 0.29427, 1e-3),
+    ):
+        fast = slide(coupling, 40.0)
+        case.closures.append(fast.closure)
+        ends, name = rest(fast.rows, spins=True), f"{coupling}, 40 rad/s"
+        case.figures += [
+            Figure(f"{name}: rest", "s", time, tolerance, ends, fast_own[0]),
+            Figure(f"{name}: way", "m", way, tolerance, fast.rows[-1, 3], fast_own[1]),
+        ]
     curves.append(Curve("native", native.rows[:, 0], native.rows[:, 1], "--"))
     case.plots.append(Plot("speed", "time [s]", "speed [m/s]", tuple(curves)))
     return case

@@ -8,7 +8,19 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from case import Bounds, Case, Curve, Figure, Plot, Run, crossings, depth_of_ball, load, simulate
+from case import (
+    ONE_FRICTION,
+    Bounds,
+    Case,
+    Curve,
+    Figure,
+    Plot,
+    Run,
+    crossings,
+    depth_of_ball,
+    load,
+    simulate,
+)
 
 BODY, STEM = 15e-3, 5e-3  # radii [m]
 TO_BODY, TO_STEM = 3e-3, 16e-3  # centres of the spheres on the axis [m]
@@ -85,21 +97,37 @@ def measure() -> Case:
     top = spin(5e8, "quadrature")
     native = spin(5e8, "quadrature", native=True)
     finer = spin(5e8, "quadrature", step=2e-5, duration=1.7)
+    native_finer = spin(5e8, "quadrature", step=2e-5, duration=1.7, native=True)
     plain = spin(5e8, "none", slip_speed=2e-4, step=2e-5)
     case.closures += [top.run.closure, finer.run.closure, plain.run.closure]
     case.figures += [
         Bounds("upright", "s", 0.14, 0.23, top.upright, native.upright),
         Bounds("tilt when upright", "rad", 0.0, 0.02, top.least_tilt, native.least_tilt),
         Bounds("stem touches", "s", 1.3, 1.75, top.touch, native.touch),
-        Bounds("beyond 150 degrees after that", "s", 0.0, 0.3, top.beyond_150 - top.touch),
+        Bounds(
+            "beyond 150 degrees after that",
+            "s",
+            0.0,
+            0.3,
+            top.beyond_150 - top.touch,
+            native.beyond_150 - native.touch,
+        ),
         Bounds("falls", "s", 3.5, 8.0, top.falls, native.falls),
-        Figure("touch at half the step, over that", "-", 1.0, 1e-2, finer.touch / top.touch),
+        Figure(
+            "touch at half the step, over that",
+            "-",
+            1.0,
+            1e-2,
+            finer.touch / top.touch,
+            native_finer.touch / native.touch,
+        ),
         Bounds(
             "largest tilt without coupling",
             "degree",
             0.0,
             90.0,
             math.degrees(plain.run.rows[:, 1].max()),
+            ONE_FRICTION,
         ),
     ]
     curves = [
