@@ -10,20 +10,30 @@ namespace {
 
 using testing::ModelPointer;
 
-TEST(Formulation, PotentialRefusesAPairByItsGeoms) {
-  const auto scene = [](const std::string& size) {
-    return "<mujoco><worldbody><geom name='table' type='box' size='1 1 1'/><body pos='0 0 1.1'>"
-           "<freejoint/><geom name='thing' " +
-           size + "/></body></worldbody>" +
-           testing::numeric("volcontact/option/formulation/potential", "1") + "</mujoco>";
-  };
-  const ModelPointer boxes = testing::load(scene("type='box' size='.1 .1 .1'"));
-  EXPECT_EQ(SceneContact(boxes.get()).pairs()[0].laws.laws.formulation, Formulation::kPotential);
-  const ModelPointer ball = testing::compile(scene("type='sphere' size='.1'"));
-  const std::string message = testing::message_of([&] { SceneContact{ball.get()}; });
+std::string scene(const std::string& table, const std::string& thing) {
+  return "<mujoco><asset><mesh name='tetrahedron' vertex='0 0 0  1 0 0  0 1 0  0 0 1'/></asset>"
+         "<worldbody><geom name='table' " +
+         table + "/><body pos='0 0 1.1'><freejoint/><geom name='thing' " + thing +
+         " mass='1'/></body></worldbody>" +
+         testing::numeric("volcontact/option/formulation/potential", "1") + "</mujoco>";
+}
+
+TEST(Formulation, PotentialServesPairsWithALayer) {
+  for (const char* thing : {"type='box' size='.1 .1 .1'", "type='ellipsoid' size='.1 .2 .1'",
+                            "type='mesh' mesh='tetrahedron'"}) {
+    const ModelPointer m = testing::load(scene("type='box' size='1 1 1'", thing));
+    EXPECT_EQ(SceneContact(m.get()).pairs()[0].laws.laws.formulation, Formulation::kPotential);
+  }
+}
+
+TEST(Formulation, PotentialRefusesAPairByItsGeomsAndSaysWhy) {
+  const ModelPointer m = testing::compile(
+      scene("type='ellipsoid' size='1 1 1'", "type='mesh' mesh='tetrahedron'"));
+  const std::string message = testing::message_of([&] { SceneContact{m.get()}; });
   EXPECT_NE(message.find("formulation/potential does not serve geoms 'table' and 'thing'"),
             std::string::npos)
       << message;
+  EXPECT_NE(message.find("neither has layers"), std::string::npos) << message;
 }
 
 TEST(Formulation, SoftBodyTakesTheLargerShareOfTheCompliance) {

@@ -102,7 +102,8 @@ def breakaway(rest: float, rate: float, case: Case, *, native: bool = False) -> 
     if not native:
         case.closures.append(run.closure)
     acceleration = np.gradient(run.rows[:, 2], run.rows[:, 0])
-    pulled = run.rows[:, 3] > 0.1 * MASS * GRAVITY  # when it has settled
+    # When it has settled, until it is away.
+    pulled = (run.rows[:, 3] > 0.1 * MASS * GRAVITY) & (run.rows[:, 1] < 1e-3)
     friction = (run.rows[:, 3] - MASS * acceleration)[pulled]
     return float(friction.max() / (MASS * GRAVITY))
 
