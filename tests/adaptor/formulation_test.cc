@@ -27,8 +27,8 @@ TEST(Formulation, PotentialServesPairsWithALayer) {
 }
 
 TEST(Formulation, PotentialRefusesAPairByItsGeomsAndSaysWhy) {
-  const ModelPointer m = testing::compile(
-      scene("type='ellipsoid' size='1 1 1'", "type='mesh' mesh='tetrahedron'"));
+  const ModelPointer m =
+      testing::compile(scene("type='ellipsoid' size='1 1 1'", "type='mesh' mesh='tetrahedron'"));
   const std::string message = testing::message_of([&] { SceneContact{m.get()}; });
   EXPECT_NE(message.find("formulation/potential does not serve geoms 'table' and 'thing'"),
             std::string::npos)

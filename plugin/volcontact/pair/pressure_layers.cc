@@ -12,7 +12,10 @@ namespace {
 // Asked of the overlap at each level; of lines more, which work twice as long then at most.
 constexpr double kTolerance = 1e-5;
 constexpr double kTighter = 1e-8;
-constexpr int kMostCellsOfLevel = 500;  // where lines leave a pose to the octree
+// Where another engine leaves a pose to the octree, every level must be cheap. Columns over round
+// solids count their triangles against the same budget.
+constexpr int kMostCellsOfLevel = 500;
+constexpr int kMostTrianglesOfLevel = 3000;
 constexpr double kNearTop = 1e-6;     // where the search for the top ends, per height
 constexpr int kMostSteps = 12;        // of that search
 constexpr double kFirstStep = 0.9;    // of the least distance to the top
@@ -22,9 +25,9 @@ constexpr double kMostPower = 3.0;    // V^(1/3) is concave between convex solid
 /// The overlap of the solids under the layers.
 struct Level {
   double volume = 0.0;
-  double fall = 0.0;           ///< -d volume / d t
-  Vec3 shift = Vec3::Zero();   ///< d volume / d x_A
-  Vec3 turn = Vec3::Zero();    ///< d volume / d theta_A, about A's origin
+  double fall = 0.0;          ///< -d volume / d t
+  Vec3 shift = Vec3::Zero();  ///< d volume / d x_A
+  Vec3 turn = Vec3::Zero();   ///< d volume / d theta_A, about A's origin
 
   /// Nearly (top - t) over the power with which the volume vanishes there.
   double reach() const { return volume / fall; }
@@ -44,7 +47,9 @@ class LayerSum {
       const bool composed = std::holds_alternative<Csg>(a) || std::holds_alternative<Csg>(b);
       const bool tighter = engine == Engine::kLines && !composed;
       options_.tolerance = std::min(options_.tolerance, tighter ? kTighter : kTolerance);
-      if (composed) options_.most_cells = std::min(options_.most_cells, kMostCellsOfLevel);
+      if (composed) limit_cells(kMostCellsOfLevel);
+      const bool clipped = std::holds_alternative<Box>(a) || std::holds_alternative<Box>(b);
+      if (engine == Engine::kColumns && !clipped) limit_cells(kMostTrianglesOfLevel);
     }
     ceiling_ = std::min(share_a_ > 0.0 ? greatest_depth(a) / share_a_ : kInfinity,
                         share_b_ > 0.0 ? greatest_depth(b) / share_b_ : kInfinity);
@@ -79,10 +84,15 @@ class LayerSum {
   }
 
  private:
+  void limit_cells(int most) { options_.most_cells = std::min(options_.most_cells, most); }
+
   // Where the last of the overlap vanishes.
   double find_top() {
     Level low = level(0.0);
     if (!(low.volume > 0.0)) return 0.0;
+    if (options_.engine != Engine::kOctree && s_.level.engine == Engine::kOctree) {
+      limit_cells(kMostCellsOfLevel);
+    }
     double t_low = 0.0, t = low.fall > 0.0 ? kFirstStep * low.reach() : kInfinity;
     t = std::min(t, 0.5 * ceiling_);
     double above = ceiling_, top = ceiling_;  // certainly above it; where it seems to be

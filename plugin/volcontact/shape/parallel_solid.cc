@@ -37,8 +37,8 @@ std::optional<Inner> inside(const Box& solid, double depth) {
 
 std::optional<Inner> inside(const Torus& solid, double depth) {
   if (!(solid.minor_radius() > depth)) return {};
-  return Inner{Torus(
-      {.major_radius = solid.major_radius(), .minor_radius = solid.minor_radius() - depth})};
+  return Inner{
+      Torus({.major_radius = solid.major_radius(), .minor_radius = solid.minor_radius() - depth})};
 }
 
 // The wall moves in at right angles to itself; where it meets the axis first, the end is an apex.
