@@ -11,12 +11,14 @@
 #include "volcontact/pair/closed_form/half_space_torus.h"
 #include "volcontact/pair/closed_form/sphere_sphere.h"
 #include "volcontact/pair/columns.h"
+#include "volcontact/pair/composed_columns.h"
 #include "volcontact/pair/composed_lines.h"
 #include "volcontact/pair/octree.h"
 #include "volcontact/pair/ring_composed.h"
 #include "volcontact/pair/ring_lines.h"
 #include "volcontact/pair/ring_pair.h"
 #include "volcontact/pair/round_columns.h"
+#include "volcontact/pair/torus_columns.h"
 
 namespace volcontact {
 
@@ -28,6 +30,8 @@ struct InterferenceWorkspace::Scratch {
   RingPairScratch ring_pair;
   ColumnsScratch columns;
   RoundColumnsScratch round_columns;
+  TorusColumnsScratch torus_columns;
+  ComposedColumnsScratch composed_columns;
   OctreeScratch octree;
 };
 
@@ -62,9 +66,17 @@ constexpr bool has_composed_lines =
     (is_composed<A> && (is_composed<B> || HasFaces<B>)) || (HasFaces<A> && is_composed<B>);
 template <typename S>
 constexpr bool is_mesh = std::is_same_v<S, Mesh>;
+// Columns for composed solids serve every surface of triangles, lines only few faces in a bore.
+template <typename A, typename B>
+constexpr bool has_composed_columns = HasTriangles<A> && is_composed<B>;
+// Columns come first then, and lines where they do not reach.
+template <typename A, typename B>
+constexpr bool prefers_columns = (std::is_same_v<A, ConvexPolytope> && is_composed<B>) ||
+                                 (is_composed<A> && std::is_same_v<B, ConvexPolytope>);
 template <typename A, typename B>
 constexpr bool has_columns =
-    is_mesh<A> && (HasTriangles<B> || std::is_same_v<B, HalfSpace> || HasRoundFaces<B>);
+    has_composed_columns<A, B> || (is_mesh<A> && (HasTriangles<B> || std::is_same_v<B, HalfSpace> ||
+                                                  HasRoundFaces<B> || std::is_same_v<B, Torus>));
 template <typename A, typename B>
 constexpr bool both_unbounded = std::is_same_v<A, HalfSpace> && std::is_same_v<B, HalfSpace>;
 
@@ -94,6 +106,12 @@ bool serves_pair(Engine engine, const A& a, const B& b) {
   if constexpr (has_composed_lines<A, B>) {
     if (engine == Engine::kLines) return has_lines_pieces(a) && has_lines_pieces(b);
   }
+  if constexpr (has_composed_columns<A, B>) {
+    if (engine == Engine::kColumns) return has_columns_pieces(b);
+  }
+  if constexpr (has_composed_columns<B, A>) {
+    if (engine == Engine::kColumns) return has_columns_pieces(a);
+  }
   if constexpr (has_ring_composed<A, B>) {
     if (engine == Engine::kLines) return has_lines_pieces(b);
   }
@@ -105,6 +123,9 @@ bool serves_pair(Engine engine, const A& a, const B& b) {
 
 template <typename A, typename B>
 Engine engine_for_pair(const A& a, const B& b) {
+  if constexpr (prefers_columns<A, B>) {
+    if (serves_pair(Engine::kColumns, a, b)) return Engine::kColumns;
+  }
   for (Engine engine :
        {Engine::kClosedForm, Engine::kClip, Engine::kLines, Engine::kColumns, Engine::kOctree}) {
     if (serves_pair(engine, a, b)) return engine;
@@ -185,11 +206,16 @@ bool columns(const A& a, const B& b, const Pose& X_AB, const InterferenceOptions
              InterferenceWorkspace::Scratch& scratch, Interference& out) {
   if constexpr (has_columns<A, B>) {
     const SurfaceView surface_a = surface_of(a, scratch.columns.store[0]);
-    if constexpr (HasTriangles<B>) {
+    if constexpr (is_composed<B>) {
+      return composed_columns(surface_a, b, X_AB, options, scratch.columns, scratch.round_columns,
+                              scratch.composed_columns, out);
+    } else if constexpr (HasTriangles<B>) {
       columns_interference(surface_a, surface_of(b, scratch.columns.store[1]), X_AB, options,
                            scratch.columns, out);
     } else if constexpr (HasRoundFaces<B>) {
       return round_columns(surface_a, ConvexView(b), X_AB, options, scratch.round_columns, out);
+    } else if constexpr (std::is_same_v<B, Torus>) {
+      return torus_columns(surface_a, b, X_AB, options, scratch.torus_columns, out);
     } else {
       columns_interference(surface_a, b, X_AB, options, scratch.columns, out);
     }
@@ -248,6 +274,15 @@ void interference(const Shape& a, const Shape& b, const Pose& X_AB,
       if (out.engine == Engine::kClip) {
         out.total = clip_metrics(solid_a, solid_b, X_AB, workspace.scratch().clip);
         return set_one_site(out);
+      }
+    }
+    if constexpr (prefers_columns<A, B>) {
+      if (out.engine == Engine::kColumns && !wanted) {
+        if (columns(solid_a, solid_b, X_AB, options, workspace.scratch(), out) &&
+            is_finite(out.total) && out.total.status != Status::kApproximate) {
+          return;
+        }
+        out.engine = Engine::kLines;
       }
     }
     if constexpr (serves_pair<A, B>(Engine::kLines)) {

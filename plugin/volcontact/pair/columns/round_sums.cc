@@ -4,25 +4,13 @@
 #include <cmath>
 
 #include "volcontact/base/fields.h"
+#include "volcontact/pair/columns/triangle_rule.h"
 
 namespace volcontact {
 namespace {
 
-// Seven points in a triangle, exact to degree 5: Radon, "Zur mechanischen Kubatur", Monatshefte
-// fuer Mathematik 52, 1948. A corner's share, and that of the sum of all corners.
-constexpr double kOuter = 0.10128650732345633, kOuterCorner = 1.0 - 3.0 * kOuter;
-constexpr double kInner = 0.47014206410511505, kInnerCorner = 1.0 - 3.0 * kInner;
-constexpr double kMiddleWeight = 0.225, kOuterWeight = 0.12593918054482717,
-                 kInnerWeight = 0.13239415278850619;
-// The middle and the outer three alone, exact to degree 2.
-constexpr double kOuterSquare = (1.0 - 2.0 * kOuter) * (1.0 - 2.0 * kOuter) + 2.0 * kOuter * kOuter;
-constexpr double kRoughOuterWeight = (1.0 / 18.0) / (kOuterSquare / 3.0 - 1.0 / 9.0) / 3.0;
-constexpr double kRoughMiddleWeight = 1.0 - 3.0 * kRoughOuterWeight;
+using namespace triangle_rule;
 
-// The rule of degree 5 is better than that of degree 2 by what makes the latter good, nearly.
-constexpr double kRuleGain = 10.0;
-
-constexpr double kSliverShare = 0.4;     // of a sliver, a parabola, with the depth at its chord
 constexpr double kOffArc = 1e-6;         // of the way from the arc to the chord
 constexpr double kLeastSquare = 1e-300;  // of a direction mapped
 constexpr double kLeastCosine = 1e-3;
