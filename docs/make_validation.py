@@ -17,6 +17,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure as Canvas
 from performance_plots import STYLE
+from validation_peers import number, peers
 
 from volcontact.report.palette import NATIVE, VOLUMETRIC
 
@@ -46,6 +47,7 @@ ORDER = (
     "painleve_rod",
     "rocking_block",
     "peg",
+    "stiff_contact",
     "sensitivity",
 )
 INTRODUCTION = """\
@@ -76,62 +78,8 @@ def render() -> str:
         parts.append(_section(name, case))
         if name == "tippe_top":
             parts.append(_tippe_top_table(module))
-    parts.append(_peers(cases))
+    parts.append(peers(cases))
     return "\n".join(parts)
-
-
-# What other engines make of some of these: title, their figure, our case, our figure of it.
-PEERS = (
-    (
-        "creep at 0.9 of the friction cone",
-        "Drake SAP 1e-3 mm/s; MuJoCo 2.5 mm/s",
-        "incline",
-        "creep in 60 s at 0.9 of the cone",
-    ),
-    (
-        "tumbling box without dissipation, relative error of energy",
-        "OpenSim 1e-5; MuJoCo 12 %",
-        "tumbling_box",
-        "error of energy, step 0.0001 s",
-    ),
-    (
-        "the same, box on edges of boxes",
-        "Drake's hydroelastic cubes gain energy (its issue 18241)",
-        "potential",
-        "grate, potential: error of energy",
-    ),
-    (
-        "rotational stiffness of a flat patch over Winkler's",
-        "Drake 0.67; MuJoCo 3.0",
-        "flat_patch",
-        "tilt stiffness over Winkler's",
-    ),
-    (
-        "disc that slides and spins: time to rest over the exact 0.45542 s",
-        "Drake 1.003",
-        "spinning_disc",
-        "quadrature: rest",
-    ),
-)
-
-
-def _peers(cases: dict[str, Case]) -> str:
-    """The table of other engines."""
-    lines = [
-        "## Beside other engines\n",
-        "Figures of the others as measured for this project's design, on their releases of then; "
-        "ours as above. Times are in [performance.md](performance.md).\n",
-        "| what | others | here |",
-        "| --- " * 3 + "|",
-    ]
-    for title, others, name, figure_name in PEERS:
-        figure = next(f for f in cases[name].figures if f.name == figure_name)
-        value = figure.measured
-        if "over the exact" in title and isinstance(figure, Figure):
-            value /= figure.expected
-        unit = "" if figure.unit in ("-", "s") else f" {figure.unit}"
-        lines.append(f"| {title} | {others} | {_number(value)}{unit} |")
-    return "\n".join(lines) + "\n"
 
 
 def _section(name: str, case: Case) -> str:
@@ -152,19 +100,15 @@ def _section(name: str, case: Case) -> str:
 
 
 def _row(figure: Figure | Bounds) -> str:
-    native = figure.native if isinstance(figure.native, str) else _number(figure.native)
+    native = figure.native if isinstance(figure.native, str) else number(figure.native)
     if isinstance(figure, Bounds):
-        expected, error = f"{_number(figure.low)} to {_number(figure.high)}", ""
+        expected, error = f"{number(figure.low)} to {number(figure.high)}", ""
         asked = "inside"
     else:
-        expected, error = _number(figure.expected), f"{figure.error:.1g}"
+        expected, error = number(figure.expected), f"{figure.error:.1g}"
         asked = f"{figure.tolerance:.1g}"
-    cells = (figure.name, figure.unit, expected, _number(figure.measured), error, asked, native)
+    cells = (figure.name, figure.unit, expected, number(figure.measured), error, asked, native)
     return f"| {' | '.join(cells)} |"
-
-
-def _number(value: float) -> str:
-    return "none" if math.isnan(value) else f"{value:.6g}"
 
 
 def _tippe_top_table(module: ModuleType) -> str:
