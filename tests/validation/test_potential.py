@@ -117,7 +117,7 @@ def measure() -> Case:
         ("cylinder", vc.Cylinder(radius=0.08, half_length=0.06), 5e-5),
         ("torus", vc.Torus(major_radius=0.07, minor_radius=0.03), 1e-5),
     ):
-        work = loop_work("potential", solid, 300)
+        work = loop_work("potential", solid, 500)
         case.figures.append(Bounds(f"loop, potential: {name}", "-", 0.0, most, work, NO_FIELD))
     # Native contact counts no elastic energy, and dissipates by default.
     other = simulate(
