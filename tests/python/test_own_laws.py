@@ -16,6 +16,7 @@ from typing import ClassVar
 import mujoco
 import numpy as np
 import pytest
+from scenes import over_floor
 
 import volcontact as vc
 
@@ -165,28 +166,22 @@ def test_laws_are_made_by_name():
 
 # A user's project, built as a user builds it against the build tree of this checkout.
 
-SCENE = """
-<mujoco>
-  <option timestep="1e-5" gravity="0 0 0"/>
-  <worldbody>
-    <geom name="floor" type="plane" size="1 1 .1"/>
-    <body name="ball" pos="0 0 0.0501">
-      <freejoint/><geom name="ball" type="sphere" size="0.05" mass="1"/>
-    </body>
-  </worldbody>
-  <keyframe><key name="start" qpos="0 0 0.0501 1 0 0 0" qvel="0 0 -1 0 0 0"/></keyframe>
-  <custom>
-    <numeric name="volcontact/pair/p/normal_law/crushable" data="1"/>
-    <numeric name="volcontact/pair/p/stiffness" data="1e9"/>
-    <numeric name="volcontact/pair/p/loss" data="{loss}"/>
-    <numeric name="volcontact/pair/p/yield_speed" data="{yield_speed}"/>
-    <numeric name="volcontact/pair/p/friction" data="0"/>
-    <tuple name="volcontact/pair/p">
-      <element objtype="geom" objname="ball"/><element objtype="geom" objname="floor"/>
-    </tuple>
-  </custom>
-</mujoco>
-"""
+
+def crushable(yield_speed: float) -> str:
+    """A ball that hits a floor at 1 m/s under the project's law."""
+    return over_floor(
+        'size="0.05"',
+        height=0.0501,
+        step=1e-5,
+        speed=1.0,
+        normal_law__crushable=1,
+        stiffness=1e9,
+        loss=1.0,
+        yield_speed=yield_speed,
+        friction=0.0,
+    )
+
+
 PROGRAM = """
 import sys
 import mujoco
@@ -223,9 +218,8 @@ def own_plugin(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize(("yield_speed", "speed"), [(0.0, math.sqrt(0.6)), (2.0, 1.0)])
 def test_own_law_in_a_scene(own_plugin: Path, yield_speed: float, speed: float):
     environment = {**os.environ, "VOLCONTACT_ADAPTOR": str(own_plugin)}
-    text = SCENE.format(loss=1.0, yield_speed=yield_speed)
     run = subprocess.run(
-        [sys.executable, "-c", PROGRAM, text],
+        [sys.executable, "-c", PROGRAM, crushable(yield_speed)],
         capture_output=True,
         text=True,
         check=False,
@@ -240,4 +234,4 @@ def test_own_law_in_a_scene(own_plugin: Path, yield_speed: float, speed: float):
 
 def test_scene_without_the_own_plugin_names_the_laws_there_are():
     with pytest.raises(ValueError, match="one of hunt_crossley, volume_spring"):
-        vc.load(SCENE.format(loss=1.0, yield_speed=0.0))
+        vc.load(crushable(0.0))

@@ -20,6 +20,7 @@ from case import (
     load,
     simulate,
 )
+from scenes import over_floor
 
 KINETIC, STATIC = 0.3, 0.4
 
@@ -64,33 +65,22 @@ def slide(*, native: bool = False) -> Run:
     return simulate(model, 1.0, lambda _, d: (d.qpos[0], d.qvel[0]), every=50, native=native)
 
 
-BALL = """
-<mujoco>
-  <option timestep="1e-4" integrator="RK4"/>
-  <worldbody>
-    <geom name="floor" type="plane" size="5 1 0.1" friction="0.3 0 0"/>
-    <body pos="0 0 {height!r}"><freejoint/>
-      <geom name="ball" size="0.05" mass="1" friction="0.3 0 0"/></body>
-  </worldbody>
-  <custom>
-    <numeric name="volcontact/pair/ball/stiffness" data="1e12"/>
-    <numeric name="volcontact/pair/ball/damping" data="0"/>
-    <numeric name="volcontact/pair/ball/friction_law/bristle" data="1"/>
-    <numeric name="volcontact/pair/ball/friction" data="0.3"/>
-    <numeric name="volcontact/pair/ball/bristle_stiffness" data="1e6"/>
-    <numeric name="volcontact/pair/ball/bristle_damping" data="500"/>
-    <tuple name="volcontact/pair/ball">
-      <element objtype="geom" objname="ball"/><element objtype="geom" objname="floor"/>
-    </tuple>
-  </custom>
-</mujoco>"""
-
-
 def slip_of_ball(degrees: float, case: Case, *, native: bool = False) -> float:
     """Rate of slip of a ball over its acceleration, in the second quarter of a second [-]."""
     angle = math.radians(degrees)
     depth = depth_of_ball(GRAVITY * math.cos(angle), 0.05, 1e12)
-    model = load(BALL.format(height=0.05 - depth))
+    scene = over_floor(
+        'size="0.05"',
+        height=0.05 - depth,
+        step=1e-4,
+        surface='friction="0.3 0 0"',
+        stiffness=1e12,
+        damping=0.0,
+        friction_law__bristle=1,
+        bristle_stiffness=1e6,
+        bristle_damping=500.0,
+    )
+    model = load(scene)
     model.opt.gravity[:] = GRAVITY * np.array([math.sin(angle), 0.0, -math.cos(angle)])
     run = simulate(model, 0.5, lambda _, d: (d.qvel[0], d.qvel[4]), every=100, native=native)
     if not native:

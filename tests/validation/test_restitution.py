@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-import mujoco
 from case import Case, Figure, load, simulate
+from scenes import over_floor
 
 # a v_i with e, from ln((1 + A)/(1 - e A)) = A (1 + e): docs/theory.md, "Restitution".
 TABLE = {
@@ -18,34 +18,14 @@ TABLE = {
     5.0: 0.196980,
     10.0: 0.099982,
 }
-SCENE = """
-<mujoco>
-  <option timestep="1e-5" integrator="RK4" gravity="0 0 0"/>
-  <worldbody>
-    <geom name="floor" type="plane" size="1 1 0.1"/>
-    <body pos="0 0 0.0500001"><freejoint/><geom name="ball" size="0.05" mass="1"/></body>
-  </worldbody>
-  <custom>
-    <numeric name="volcontact/pair/ball/stiffness" data="1e9"/>
-    {damping}
-    <tuple name="volcontact/pair/ball">
-      <element objtype="geom" objname="ball"/><element objtype="geom" objname="floor"/>
-    </tuple>
-  </custom>
-</mujoco>"""
 
 
 def rebound(key: str, value: float, speed: float, case: Case, *, native: bool = False) -> float:
     """Speed after the impact over that before it [-]."""
-    damping = f'<numeric name="volcontact/pair/ball/{key}" data="{value}"/>'
-    model = load(SCENE.format(damping=damping))
-
-    def throw(_: mujoco.MjModel, data: mujoco.MjData) -> None:
-        data.qvel[2] = -speed
-
-    run = simulate(
-        model, 0.06, lambda m, d: (d.qvel[2], d.qpos[2]), every=50, setup=throw, native=native
+    scene = over_floor(
+        'size="0.05"', height=0.0500001, step=1e-5, speed=speed, stiffness=1e9, **{key: value}
     )
+    run = simulate(load(scene), 0.06, lambda m, d: (d.qvel[2], d.qpos[2]), every=50, native=native)
     assert native or run.rows[-1, 2] > 0.05, "still in contact"
     if not native:
         case.closures.append(run.closure)

@@ -5,27 +5,11 @@ from __future__ import annotations
 
 import math
 
-import mujoco
 from case import GRAVITY, NO_STIFFNESS, Case, Figure, crossings, load, simulate
+from scenes import over_floor
 
 import volcontact as vc
 
-SCENE = """
-<mujoco>
-  <option timestep="{step!r}" integrator="RK4" gravity="0 0 {gravity!r}"/>
-  <worldbody>
-    <geom name="floor" type="plane" size="1 1 0.1"/>
-    <body pos="0 0 {height!r}"><freejoint/>
-      <geom name="body" {shape} mass="1"/></body>
-  </worldbody>
-  <custom>
-    <numeric name="volcontact/pair/body/stiffness" data="{stiffness!r}"/>
-    <numeric name="volcontact/pair/body/damping" data="{damping!r}"/>
-    <tuple name="volcontact/pair/body">
-      <element objtype="geom" objname="body"/><element objtype="geom" objname="floor"/>
-    </tuple>
-  </custom>
-</mujoco>"""
 SHAPES = {
     "sphere": 'type="sphere" size="0.05"',
     "cylinder": 'type="cylinder" size="0.05 0.05"',
@@ -36,13 +20,8 @@ SHAPES = {
 
 def depth_at_rest(shape: str, stiffness: float, *, native: bool = False) -> float:
     """How deep a body of 1 kg sinks [m]."""
-    scene = SCENE.format(
-        step=2e-4,
-        gravity=-GRAVITY,
-        height=0.05,
-        shape=SHAPES[shape],
-        stiffness=stiffness,
-        damping=20.0,
+    scene = over_floor(
+        SHAPES[shape], height=0.05, step=2e-4, gravity=GRAVITY, stiffness=stiffness, damping=20.0
     )
     run = simulate(load(scene), 1.5, lambda _, d: (d.qpos[2],), every=100, native=native)
     return 0.05 - float(run.rows[-1, 1])
@@ -51,13 +30,9 @@ def depth_at_rest(shape: str, stiffness: float, *, native: bool = False) -> floa
 def bounce_frequency(case: Case, *, native: bool = False) -> float:
     """Of a ball that sinks by 0.79 mm, in a vibration of a micrometre [Hz]."""
     depth = 0.7923638796e-3
-    scene = SCENE.format(
-        step=1e-4,
-        gravity=-GRAVITY,
-        height=0.05 - depth + 1e-6,
-        shape=SHAPES["sphere"],
-        stiffness=1e8,
-        damping=0.0,
+    height = 0.05 - depth + 1e-6
+    scene = over_floor(
+        SHAPES["sphere"], height=height, step=1e-4, gravity=GRAVITY, stiffness=1e8, damping=0.0
     )
     watch = lambda _, d: (d.qpos[2] - 0.05 + depth,)  # noqa: E731
     run = simulate(load(scene), 1.0, watch, native=native)
@@ -72,23 +47,15 @@ def bounce_frequency(case: Case, *, native: bool = False) -> float:
 def impact_constant(shape: str, case: Case, *, native: bool = False) -> float:
     """Time in contact times speed over greatest depth, without gravity or damping [-]."""
     step, speed = 1e-6, 0.2
-    scene = SCENE.format(
-        step=step,
-        gravity=0.0,
-        height=0.05 + 1e-9,
-        shape=SHAPES[shape],
-        stiffness=1e9,
-        damping=0.0,
+    height = 0.05 + 1e-9
+    scene = over_floor(
+        SHAPES[shape], height=height, step=step, speed=speed, stiffness=1e9, damping=0.0
     )
-
-    def throw(_: mujoco.MjModel, data: mujoco.MjData) -> None:
-        data.qvel[2] = -speed
-
     model = load(scene)
     duration, watch = 0.02, lambda _, d: (d.qpos[2] - 0.05,)
     if native:  # that lasts longer
         model.opt.timestep, duration = 1e-5, 0.2
-    run = simulate(model, duration, watch, every=10, setup=throw, native=native)
+    run = simulate(model, duration, watch, every=10, native=native)
     if not native:
         case.closures.append(run.closure)
     touch, leave = (*crossings(run.rows[:, 0], run.rows[:, 1]), math.nan, math.nan)[:2]
