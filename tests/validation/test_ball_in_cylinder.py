@@ -10,7 +10,7 @@ import numpy as np
 from case import Bounds, Case, Curve, Figure, Plot, crossings, load, simulate
 
 BORE, RADIUS = 1.0, 0.1
-NO_BORE = "no bore: it falls through"
+NO_BORE = "no bore"
 
 
 def place(data: mujoco.MjData) -> tuple[float, float, float]:
