@@ -29,7 +29,8 @@ Method method_of(const Shape& a, const Shape& b) {
         if constexpr (is_half_space<A> || is_half_space<B>) return Method::kPlane;
         if constexpr (is_flat<A> && is_flat<B>) return Method::kCells;
         if constexpr (is_ellipsoid<A> && is_ellipsoid<B>) return Method::kColumns;
-        const bool layers = has_parallel_solids(a) || has_parallel_solids(b);
+        const bool layers = has_parallel_solids(a) || has_parallel_solids(b) ||
+                            has_composed_parallels(a) || has_composed_parallels(b);
         return layers ? Method::kLayers : Method::kNone;
       },
       a, b);
@@ -72,7 +73,7 @@ std::string why_no_pressure_field(const Shape& a, const Shape& b, Engine engine)
   switch (method_of(a, b)) {
     case Method::kNone:
       return "neither has layers: at least one must be a half-space, sphere, capsule, cylinder, "
-             "frustum, box or torus";
+             "frustum, box or torus, or composed of these";
     case Method::kLayers:
       if (engine == Engine::kAuto && engine_for(a, b) == Engine::kOctree) {
         return "only the octree serves it, which takes about a second for each evaluation; choose "

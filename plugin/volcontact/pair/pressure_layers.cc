@@ -38,7 +38,10 @@ class LayerSum {
   LayerSum(const Shape& a, const Shape& b, const Pose& X_AB, const PressureSite& site,
            PressureScratch& scratch)
       : a_(a), b_(b), X_AB_(X_AB), site_(site), s_(scratch), options_(site.options) {
-    const bool layer_a = has_parallel_solids(a), layer_b = has_parallel_solids(b);
+    bool layer_a = has_parallel_solids(a), layer_b = has_parallel_solids(b);
+    if (!layer_a && !layer_b) {
+      layer_a = has_composed_parallels(a), layer_b = has_composed_parallels(b);
+    }
     share_a_ = layer_a && layer_b ? site.share_of_a : layer_a ? 1.0 : 0.0;
     share_b_ = 1.0 - share_a_;
     // Octrees are not asked for more than they can do in a step.
@@ -47,7 +50,7 @@ class LayerSum {
       const bool composed = std::holds_alternative<Csg>(a) || std::holds_alternative<Csg>(b);
       const bool tighter = engine == Engine::kLines && !composed;
       options_.tolerance = std::min(options_.tolerance, tighter ? kTighter : kTolerance);
-      if (composed) limit_cells(kMostCellsOfLevel);
+      if (composed && engine == Engine::kLines) limit_cells(kMostCellsOfLevel);
       const bool clipped = std::holds_alternative<Box>(a) || std::holds_alternative<Box>(b);
       if (engine == Engine::kColumns && !clipped) limit_cells(kMostTrianglesOfLevel);
     }

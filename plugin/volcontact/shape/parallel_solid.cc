@@ -58,8 +58,63 @@ std::optional<Inner> inside(const Frustum& solid, double depth) {
                0.5 * (high + low)};
 }
 
+std::optional<Inner> inside(const HalfSpace& solid, double depth) { return Inner{solid, -depth}; }
+
 template <typename S>
 constexpr bool kHasInside = requires(const S& solid, double depth) { inside(solid, depth); };
+template <typename S>
+constexpr bool kIsLayered = kHasInside<S> && !std::is_same_v<S, HalfSpace>;
+
+// The part of a composed solid that is deeper than a depth; what is taken away grows by it.
+class ComposedInside {
+ public:
+  explicit ComposedInside(const Csg& solid) : solid_(solid), next_(solid.steps().size()) {}
+
+  std::optional<Csg> make(double depth) {
+    const Csg::Step step = solid_.steps()[--next_];
+    if (step.member >= 0) return member(solid_.members()[step.member], depth);
+    const bool taken = step.operation == Csg::Operation::kDifference;
+    // The steps are in postfix order: the last operand comes first.
+    const std::optional<Csg> b = make(taken ? -depth : depth), a = make(depth);
+    const bool both_needed = step.operation == Csg::Operation::kIntersection;
+    if (a && b) return Csg(step.operation, *a, *b);
+    if (both_needed) return {};
+    return a || taken ? a : b;
+  }
+
+ private:
+  static std::optional<Csg> member(const Csg::Member& member, double depth) {
+    return std::visit(
+        [&](const auto& shape) -> std::optional<Csg> {
+          if constexpr (kHasInside<std::decay_t<decltype(shape)>>) {
+            const std::optional<Inner> inner = inside(shape, depth);
+            if (!inner) return {};
+            const Pose X_MI{Mat3::Identity(), Vec3(0.0, 0.0, inner->shift)};
+            return std::visit(
+                [&](const auto& s) -> std::optional<Csg> {
+                  if constexpr (std::is_constructible_v<SimpleShape, decltype(s)>) {
+                    return Csg(SimpleShape(s), member.X_SM * X_MI);
+                  }
+                  return {};
+                },
+                inner->shape);
+          }
+          return {};
+        },
+        member.shape);
+  }
+
+  const Csg& solid_;
+  std::size_t next_;
+};
+
+bool has_insides(const Csg& solid) {
+  const auto has = [](const Csg::Member& member) {
+    return std::visit([](const auto& s) { return kHasInside<std::decay_t<decltype(s)>>; },
+                      member.shape);
+  };
+  return std::all_of(solid.members().begin(), solid.members().end(), has);
+}
 
 double depth_of(const Sphere& solid) { return solid.radius(); }
 double depth_of(const Capsule& solid) { return solid.radius(); }
@@ -97,13 +152,22 @@ double area_of(const Frustum& solid) {
 }  // namespace
 
 bool has_parallel_solids(const Shape& solid) {
-  return std::visit([](const auto& s) { return kHasInside<std::decay_t<decltype(s)>>; }, solid);
+  return std::visit([](const auto& s) { return kIsLayered<std::decay_t<decltype(s)>>; }, solid);
+}
+
+bool has_composed_parallels(const Shape& solid) {
+  const Csg* composed = std::get_if<Csg>(&solid);
+  return composed && has_insides(*composed);
 }
 
 double greatest_depth(const Shape& solid) {
   return std::visit(
       [](const auto& s) -> double {
-        if constexpr (kHasInside<std::decay_t<decltype(s)>>) return depth_of(s);
+        using S = std::decay_t<decltype(s)>;
+        if constexpr (kIsLayered<S>) return depth_of(s);
+        if constexpr (std::is_same_v<S, Csg>) {
+          return has_insides(s) ? s.bounds().half_sizes().minCoeff() : kInfinity;
+        }
         return kInfinity;
       },
       solid);
@@ -112,11 +176,19 @@ double greatest_depth(const Shape& solid) {
 bool parallel_solid(const Shape& solid, double depth, Shape& inner, Pose& X_SI) noexcept {
   return std::visit(
       [&](const auto& s) {
-        if constexpr (kHasInside<std::decay_t<decltype(s)>>) {
+        using S = std::decay_t<decltype(s)>;
+        if constexpr (kIsLayered<S>) {
           const std::optional<Inner> found = inside(s, depth);
           if (!found) return false;
           inner = found->shape;
           X_SI = {Mat3::Identity(), Vec3(0.0, 0.0, found->shift)};
+          return true;
+        } else if constexpr (std::is_same_v<S, Csg>) {
+          if (!has_insides(s)) return false;
+          const std::optional<Csg> found = ComposedInside(s).make(depth);
+          if (!found) return false;
+          inner = *found;
+          X_SI = {};
           return true;
         }
         return false;
@@ -127,7 +199,7 @@ bool parallel_solid(const Shape& solid, double depth, Shape& inner, Pose& X_SI) 
 double surface_area(const Shape& solid) {
   return std::visit(
       [](const auto& s) -> double {
-        if constexpr (kHasInside<std::decay_t<decltype(s)>>) return area_of(s);
+        if constexpr (kIsLayered<std::decay_t<decltype(s)>>) return area_of(s);
         return 0.0;
       },
       solid);

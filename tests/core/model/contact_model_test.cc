@@ -262,7 +262,7 @@ TEST(ContactModel, PotentialGivesBackWhatItTook) {
 
 TEST(ContactModel, RefusesAPairWithoutPressureField) {
   const Shape egg = Ellipsoid({.semi_axes = {0.1, 0.2, 0.15}});
-  const GeometricPair pair{composed(Box({.half_sizes = {0.1, 0.2, 0.15}})), egg, {}, {}};
+  const GeometricPair pair{composed(egg), egg, {}, {}};
   EXPECT_THROW(ContactModel({pair}, potential(0.0, 0.5)), std::invalid_argument);
   EXPECT_THROW(ContactModel({{Sphere({.radius = 1.0}), HalfSpace(), {}, {}}}, potential(0.0, 1.5)),
                std::invalid_argument);

@@ -186,6 +186,23 @@ TEST(PressureLayers, MeshesAreServedByColumns) {
   EXPECT_LT(loop_work(mesh, kBox, corner), 1e-6);
 }
 
+TEST(PressureLayers, ComposedSolidsShareLikeTheirMembers) {
+  // A rod with a small bore that the other one does not reach is the rod, but for its layer there.
+  const Shape plain = testing::tube(.06, .08), block = testing::box(.1, .08, .06);
+  const Pose corner{test::turn({1.0, 0.3, -0.4}, 0.9), Vec3(0.1, 0.08, 0.1)};
+  const Sum one = sum_of(block, plain, corner), other = sum_of(kBox, kRod, corner);
+  const double size = other.field.force.norm();
+  ASSERT_GT(size, 0.0);
+  EXPECT_NEAR(one.field.energy, other.field.energy, kSlope * other.field.energy);
+  EXPECT_LT((one.field.force - other.field.force).norm(), 10.0 * kSlope * size);
+  // The other one rigid: an ellipsoid on a face far from the bore is on a box.
+  const Pose on_top{Mat3::Identity(), Vec3(0.1, 0.1, 0.148)};
+  const Shape block_top = Box({.half_sizes = {.15, .15, .1}});
+  const Sum bored = sum_of(kBored, kEgg, on_top), solid = sum_of(block_top, kEgg, on_top);
+  ASSERT_GT(solid.field.energy, 0.0);
+  EXPECT_NEAR(bored.field.energy, solid.field.energy, kSlope * solid.field.energy);
+}
+
 TEST(PressureLayers, PegInABoreHasTwoSites) {
   const Shape peg = Cylinder({.radius = 0.049, .half_length = 0.12});
   const Pose X{test::turn({0.0, 1.0, 0.0}, 0.02), Vec3(0.0001, 0.0, 0.0)};

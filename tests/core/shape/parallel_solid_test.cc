@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/support/csg_solids.h"
 #include "core/support/random.h"
 
 namespace volcontact {
@@ -48,6 +49,34 @@ TEST(ParallelSolid, HoldsWhatIsDeeper) {
   }
 }
 
+TEST(ParallelSolid, ComposedOneHoldsWhatIsDeeper) {
+  // Members far from each other's edges: outside of a corner the depth is to the nearest face.
+  using testing::at, testing::box, testing::tube, testing::ball;
+  const Csg bored = box(.5, .4, .3) - tube(.1, .9) - ball(.1, at(.3, .2, .3));
+  const Csg cut = box(.5, .4, .3) & Csg(HalfSpace(), testing::turned({1, 2, 3}, .4, {0, 0, .1}));
+  const Csg kept = box(.5, .4, .3) - (tube(.2, .9) - tube(.1, .9));
+  const Csg pair = box(.2, .2, .2) + ball(.2, at(.3, 0, 0));
+  Random random(4);
+  for (const Csg& solid : {bored, cut, kept, pair}) {
+    ASSERT_TRUE(has_composed_parallels(solid));
+    EXPECT_FALSE(has_parallel_solids(solid));
+    constexpr double kDepth = 0.04;
+    Shape inner = solid;
+    Pose X_SI;
+    ASSERT_TRUE(parallel_solid(solid, kDepth, inner, X_SI));
+    int deeper = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const Vec3 p = random.in_box(0.6);
+      const double below = signed_distance(solid, p) + kDepth;
+      if (std::abs(below) < 1e-12) continue;
+      EXPECT_EQ(below < 0.0, signed_distance(inner, X_SI.inverse() * p) < 0.0);
+      deeper += below < 0.0;
+    }
+    EXPECT_GT(deeper, 20);
+    EXPECT_FALSE(parallel_solid(solid, 1.01 * greatest_depth(solid), inner, X_SI));
+  }
+}
+
 TEST(ParallelSolid, EndsAtTheGreatestDepth) {
   for (const Shape& solid : kSolids) {
     Shape inner = solid;
@@ -76,6 +105,7 @@ TEST(ParallelSolid, OthersHaveNone) {
   Pose X_SI;
   EXPECT_FALSE(has_parallel_solids(egg));
   EXPECT_FALSE(has_parallel_solids(HalfSpace()));
+  EXPECT_FALSE(has_composed_parallels(composed(egg)));
   EXPECT_EQ(greatest_depth(egg), kInfinity);
   EXPECT_EQ(surface_area(egg), 0.0);
   EXPECT_FALSE(parallel_solid(egg, 0.0, inner, X_SI));
