@@ -260,6 +260,34 @@ TEST(ContactModel, PotentialGivesBackWhatItTook) {
   EXPECT_NEAR(power, -rate, 1e-6 * std::abs(rate));
 }
 
+TEST(ContactModel, PotentialOfTwoSitesGivesBackWhatItTook) {
+  // A peg that is tilted in its bore, whose two sites are pushed apart, and turned back.
+  const Csg bored(Csg::Operation::kDifference, Csg(Box({.half_sizes = {0.15, 0.15, 0.1}})),
+                  Csg(Cylinder({.radius = 0.05, .half_length = 0.2})));
+  const GeometricPair pair{bored, Cylinder({.radius = 0.049, .half_length = 0.12}), {}, {}};
+  ContactLaws laws = potential(0.0, 0.5);
+  laws.friction = nullptr;
+  const ContactModel model({pair}, laws);
+  ContactModel::Workspace workspace;
+  ContactReport report;
+  BodyMotion motion;
+  const Vec3 spin(0.1, 0.7, 0.2), speed(1e-3, 2e-3, -1e-3);
+  const auto energy_after = [&](double time) {
+    motion.X_WB = {
+        pose(time * spin, Vec3::Zero()).rotation * pose({0.0, 0.02, 0.0}, Vec3::Zero()).rotation,
+        Vec3(1e-4, 0.0, 0.0) + time * speed};
+    model.evaluate(motion, {}, workspace, report);
+    return report.elastic_energy;
+  };
+  constexpr double kStep = 1e-6;
+  const double rate = (energy_after(kStep) - energy_after(-kStep)) / (2.0 * kStep);
+  energy_after(0.0);
+  ASSERT_EQ(report.sites.size(), 2u);
+  EXPECT_LT(report.sites[0].force_on_A.dot(report.sites[1].force_on_A), 0.0);
+  const double power = report.wrench_on_B.force.dot(speed) + report.wrench_on_B.torque.dot(spin);
+  EXPECT_NEAR(power, -rate, 1e-3 * std::abs(rate));
+}
+
 TEST(ContactModel, RefusesAPairWithoutPressureField) {
   const Shape egg = Ellipsoid({.semi_axes = {0.1, 0.2, 0.15}});
   const GeometricPair pair{composed(egg), egg, {}, {}};
