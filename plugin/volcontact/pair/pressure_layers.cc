@@ -2,6 +2,7 @@
 #include "volcontact/pair/pressure_layers.h"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "volcontact/pair/outer_rule.h"
 #include "volcontact/shape/parallel_solid.h"
@@ -12,6 +13,7 @@ namespace {
 // Asked of the overlap at each level; of lines more, which work twice as long then at most.
 constexpr double kTolerance = 1e-5;
 constexpr double kTighter = 1e-8;
+constexpr double kColumnTolerance = 1e-4;  // over round solids, which are better than they say
 // Where another engine leaves a pose to the octree, every level must be cheap. Columns over round
 // solids count their triangles against the same budget.
 constexpr int kMostCellsOfLevel = 500;
@@ -46,14 +48,7 @@ class LayerSum {
     share_b_ = 1.0 - share_a_;
     // Octrees are not asked for more than they can do in a step.
     const Engine engine = options_.engine == Engine::kAuto ? engine_for(a, b) : options_.engine;
-    if (engine != Engine::kOctree) {
-      const bool composed = std::holds_alternative<Csg>(a) || std::holds_alternative<Csg>(b);
-      const bool tighter = engine == Engine::kLines && !composed;
-      options_.tolerance = std::min(options_.tolerance, tighter ? kTighter : kTolerance);
-      if (composed && engine == Engine::kLines) limit_cells(kMostCellsOfLevel);
-      const bool clipped = std::holds_alternative<Box>(a) || std::holds_alternative<Box>(b);
-      if (engine == Engine::kColumns && !clipped) limit_cells(kMostTrianglesOfLevel);
-    }
+    if (engine != Engine::kOctree) ask_of_levels(engine);
     ceiling_ = std::min(share_a_ > 0.0 ? greatest_depth(a) / share_a_ : kInfinity,
                         share_b_ > 0.0 ? greatest_depth(b) / share_b_ : kInfinity);
   }
@@ -87,15 +82,28 @@ class LayerSum {
   }
 
  private:
+  void ask_of_levels(Engine engine) {
+    const auto one_is = [&]<typename S>(std::type_identity<S>) {
+      return std::holds_alternative<S>(a_) || std::holds_alternative<S>(b_);
+    };
+    const bool composed = one_is(std::type_identity<Csg>{});
+    const bool clipped = one_is(std::type_identity<Box>{});
+    double tolerance = kTolerance;
+    if (engine == Engine::kLines && !composed) tolerance = kTighter;
+    if (engine == Engine::kLines && composed) limit_cells(kMostCellsOfLevel);
+    if (engine == Engine::kColumns && !clipped) {
+      tolerance = kColumnTolerance;
+      limit_cells(kMostTrianglesOfLevel);
+    }
+    options_.tolerance = std::min(options_.tolerance, tolerance);
+  }
+
   void limit_cells(int most) { options_.most_cells = std::min(options_.most_cells, most); }
 
   // Where the last of the overlap vanishes.
   double find_top() {
     Level low = level(0.0);
     if (!(low.volume > 0.0)) return 0.0;
-    if (options_.engine != Engine::kOctree && s_.level.engine == Engine::kOctree) {
-      limit_cells(kMostCellsOfLevel);
-    }
     double t_low = 0.0, t = low.fall > 0.0 ? kFirstStep * low.reach() : kInfinity;
     t = std::min(t, 0.5 * ceiling_);
     double above = ceiling_, top = ceiling_;  // certainly above it; where it seems to be
@@ -129,6 +137,10 @@ class LayerSum {
       b = &s_.inner_b;
     }
     interference(*a, *b, X_AI.inverse() * X_AB_ * X_BJ, options_, *s_.engines, s_.level);
+    // Left to the octree, without having chosen it.
+    if (options_.engine != Engine::kOctree && s_.level.engine == Engine::kOctree) {
+      limit_cells(kMostCellsOfLevel);
+    }
     if (s_.level.total.status == Status::kContained) return inside(*a, *b);
     if (site_.sites.size() < 2) return level_of(transformed(s_.level.total, X_AI));
     Level sum;
