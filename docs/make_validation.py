@@ -48,6 +48,7 @@ ORDER = (
     "rocking_block",
     "peg",
     "stiff_contact",
+    "implicit_contact",
     "sensitivity",
 )
 INTRODUCTION = """\

@@ -23,6 +23,11 @@ inline void apply_beside_user(const UserdataBlock& block, int count, const doubl
   block.set_ledger_valid();
 }
 
+/// What the user wants in entry i of the array, before our force of this evaluation is added.
+inline double user_share(const UserdataBlock& block, int i, const double* array) noexcept {
+  return block.ledger_is_valid() && array[i] == block.left()[i] ? block.base()[i] : array[i];
+}
+
 /// Takes our part out of the array again and forgets it: what remains is the user's.
 inline void release_to_user(const UserdataBlock& block, int count, double* array) noexcept {
   if (!block.is_ours() || !block.ledger_is_valid()) return;

@@ -22,6 +22,20 @@ inline EnergyAccount accounted(const EnergyAccount& before, const ByChannel& mea
   return now;
 }
 
+/// The same where one of the two is of an implicit step: the forces of `before` acted all the time,
+/// and all that they took from the motion counts, less what is stored now more than then.
+inline EnergyAccount accounted_whole(const EnergyAccount& before, double elapsed,
+                                     const EnergyAccount& now) {
+  ByChannel taken = before.taken;
+  taken.normal += before.stored;
+  EnergyAccount out = accounted(before, taken, elapsed, now);
+  const auto of_volumes = [](const EnergyAccount& e) {
+    return e.elastic - e.slide_energy - e.spin_energy;
+  };
+  out.dissipated.normal -= of_volumes(now) - of_volumes(before);
+  return out;
+}
+
 /// (1 - weight) a + weight b
 inline ByChannel between(const ByChannel& a, const ByChannel& b, double weight) {
   const auto mix = [weight](double x, double y) { return (1.0 - weight) * x + weight * y; };
@@ -63,7 +77,9 @@ class AccountKeeper {
       now = accounted(start, between(ends, middle.taken, 2.0 / 3.0), 2.0 * elapsed_, now);
     } else {
       const EnergyAccount before = block_.slot(1).energy();
-      now = accounted(before, between(before.taken, now.taken, 0.5), elapsed_, now);
+      now = before.implicit || now.implicit
+                ? accounted_whole(before, elapsed_, now)
+                : accounted(before, between(before.taken, now.taken, 0.5), elapsed_, now);
     }
     slot.set_energy(now);
   }

@@ -49,6 +49,21 @@ inline std::string flags_that_skip_passive(const mjModel* m) {
 #endif
 }
 
+/// Whether the integrator takes the damping of the degrees of freedom implicitly: divides by
+/// M + h B.
+inline bool damps_implicitly(const mjModel* m) {
+  if (m->opt.integrator == mjINT_RK4) return false;
+#if mjVERSION_HEADER <= 335
+  if (m->opt.disableflags & mjDSBL_PASSIVE) return false;
+#else
+  if (m->opt.disableflags & mjDSBL_DAMPER) return false;
+#endif
+#if mjVERSION_HEADER >= 300
+  if (m->opt.integrator == mjINT_EULER && (m->opt.disableflags & mjDSBL_EULERDAMP)) return false;
+#endif
+  return std::any_of(m->dof_damping, m->dof_damping + m->nv, [](double b) { return b > 0.0; });
+}
+
 /// Whether bodies may fall asleep; volumetric contact would never wake them.
 inline bool sleep_enabled([[maybe_unused]] const mjModel* m) {
 #if mjVERSION_HEADER >= 340

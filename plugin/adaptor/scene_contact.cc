@@ -113,7 +113,9 @@ SceneContact::SceneContact(const mjModel* m, const SceneContact* before)
   }
   pairs_.reserve(geom_pairs_.size());
   for (const GeomPair& pair : geom_pairs_) add_pair(m, pair);
+  check_integrator(m);
   if (sites_.row_size > 0) sites_.rows = rows_for(geom_pairs_);
+  if (options().implicit != Implicit::kNever) solved_rows_ = rows_for(geom_pairs_);
 }
 
 void SceneContact::warn_once(const std::string& warning) {
@@ -155,7 +157,8 @@ void SceneContact::add_pair(const mjModel* m, const GeomPair& geoms) {
   ContactModel model({{a, b, Pose{}, Pose{}}}, laws.laws,
                      {options.tolerance, engine, kInnerThreads, most_cells});
   sites_.row_size = std::max(sites_.row_size, model.row_size());
-  pairs_.push_back({geoms, engine, std::move(laws), std::move(model)});
+  const double rate = largest_rate(m, geoms, laws);
+  pairs_.push_back({geoms, engine, std::move(laws), std::move(model), rate});
 }
 
 void SceneContact::warn_about_model(const mjModel* m) {
@@ -190,7 +193,7 @@ UserdataLayout SceneContact::layout(const mjModel* m) const {
   const int channels = keys_.options.target == Target::kApplied ? static_cast<int>(m->nv)
                        : keys_.options.target == Target::kXfrc  ? 6 * static_cast<int>(m->nbody)
                                                                 : 0;
-  return {sites_.size(), channels};
+  return {sites_.size(), channels, solved_rows_};
 }
 
 UserdataBlock SceneContact::block(const mjModel* m, const mjData* d) const {
@@ -236,12 +239,14 @@ void SceneContact::evaluate_one(const mjModel* m, const mjData* d, const Before&
     memory = SitePool<const double>(before.committed, sites_).rows_of(pair_index, before.elapsed);
   }
   ContactReport& report = scratch.reports[index];
+  report.keeps_inputs = before.keeps_inputs;
   pair.model.evaluate(motion, memory, workspace, report);
   scratch.invalid[index] =
       workspace.interference.total.status == Status::kInvalid || !is_finite(report);
   if (!scratch.invalid[index]) return;
   report.sites.clear();
   report.memory.clear();
+  report.inputs.clear();
   report.elastic_energy = 0.0;
   report.bristle_energy = {};
   report.power = {};
@@ -337,13 +342,21 @@ void SceneContact::step(const mjModel* m, mjData* d, Scratch& scratch) const noe
   our.claim();
   const AccountKeeper account(our, d->time, m->opt.timestep, m->opt.integrator == mjINT_RK4);
   const double* committed = account.continues() ? our.slot(1).states() : nullptr;
-  evaluate(m, d, {committed, account.elapsed()}, scratch);
+  const bool may_be_implicit = this->may_be_implicit(m);
+  evaluate(m, d, {committed, account.elapsed(), may_be_implicit}, scratch);
+  EnergyAccount now;
+  now.implicit = may_be_implicit && is_stiff(m, scratch);
+  our.set_solved(0);
+  if (now.implicit) {
+    solve_implicit(m, d, scratch);
+    keep_solved(our, scratch);
+  }
   if (!keep_sites(our.slot(0).states(), scratch)) our.forgotten() += 1.0;
 
-  EnergyAccount now;
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const ContactReport& report = scratch.reports[k];
     now.elastic += report.elastic_energy;
+    if (!now.implicit) now.stored += stored_power(report);
     now.power += report.power;
     now.taken += report.taken;
     now.slide_energy += report.bristle_energy.slide;
@@ -362,6 +375,7 @@ bool SceneContact::revisit(const mjModel* m, const mjData* d, Scratch& scratch) 
     before = {our.slot(1).states(), our.slot(0).time() - our.slot(1).time()};
   }
   evaluate(m, d, before, scratch);
+  recall_solved(our, scratch);
   return true;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "adaptor/body_forces.h"
+#include "adaptor/implicit_step.h"
 #include "adaptor/pair_list.h"
 #include "adaptor/scene_keys.h"
 #include "adaptor/site_pool.h"
@@ -20,6 +21,8 @@ struct PairContact {
   Engine engine;  ///< the one that will serve
   PairLaws laws;
   ContactModel model;
+  /// k/m of a patch as large as the smaller solid's box against a displacement [1/s^2].
+  double largest_rate;
 };
 
 /// Volumetric contact of one scene. Const once made: what lasts from step to step is in
@@ -34,6 +37,8 @@ class SceneContact {
     std::vector<int> order;              ///< of `near`, as worked off: the long pairs first
     std::vector<ContactModel::Workspace> workspaces;  ///< one per OpenMP thread
     BodyForces forces;
+    ImplicitStep implicit;
+    std::vector<double> user_qfrc, user_xfrc, known;
   };
 
   /// Reads the scene. Throws std::invalid_argument with a message for the author of the scene.
@@ -68,6 +73,14 @@ class SceneContact {
   /// impact speed of the rest began anew.
   double forgotten(const mjModel* m, const mjData* d) const noexcept;
 
+  /// Whether and from which patch on steps are implicit in the contact of a pair.
+  struct ImplicitUse {
+    bool is_possible = false;     ///< for `auto`
+    double largest_number = 0.0;  ///< h^2 k/m of a patch as large as the smaller solid's box [-]
+    double least_area = 0.0;      ///< of a patch that `auto` makes implicit [m^2]
+  };
+  ImplicitUse implicit_use(const mjModel* m, const PairContact& pair) const;
+
   /// Takes our part out of the force array of the target.
   void release(const mjModel* m, mjData* d) const noexcept;
 
@@ -85,16 +98,24 @@ class SceneContact {
 
   void add_pair(const mjModel* m, const GeomPair& geoms);
   void warn_about_model(const mjModel* m);
+  void check_integrator(const mjModel* m);
+  double largest_rate(const mjModel* m, const GeomPair& geoms, const PairLaws& laws) const;
   void warn_once(const std::string& warning);
   // The sites that the evaluation before left, of which `committed` is null when there was none.
   struct Before {
     const double* committed = nullptr;
     double elapsed = 0.0;
+    bool keeps_inputs = false;
   };
   void evaluate(const mjModel* m, const mjData* d, const Before& before,
                 Scratch& scratch) const noexcept;
   void evaluate_one(const mjModel* m, const mjData* d, const Before& before, int k,
                     ContactModel::Workspace& workspace, Scratch& scratch) const noexcept;
+  bool may_be_implicit(const mjModel* m) const noexcept;
+  bool is_stiff(const mjModel* m, const Scratch& scratch) const noexcept;
+  void solve_implicit(const mjModel* m, mjData* d, Scratch& scratch) const noexcept;
+  void keep_solved(const UserdataBlock& our, const Scratch& scratch) const noexcept;
+  void recall_solved(const UserdataBlock& our, Scratch& scratch) const noexcept;
   bool keep_sites(double* states, const Scratch& scratch) const noexcept;
   void write_forces(const mjModel* m, mjData* d, Scratch& scratch) const noexcept;
 
@@ -105,6 +126,7 @@ class SceneContact {
   std::vector<PairContact> pairs_;
   Cull cull_;
   SitePoolLayout sites_;
+  int solved_rows_ = 0;
   std::vector<std::string> warnings_;
 };
 

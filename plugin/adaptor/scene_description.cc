@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adaptor/scene_description.h"
 
+#include <cstdio>
 #include <set>
 
 #include "adaptor/json_text.h"
@@ -28,6 +29,7 @@ void write_options(const SceneOptions& options, JsonText& json) {
   json.member("pairs", kPairRuleWords[static_cast<int>(options.pairs)]);
   json.member("mesh", kMeshFormWords[static_cast<int>(options.mesh)]);
   json.member("formulation", kFormulationWords[static_cast<int>(options.formulation)]);
+  json.member("implicit", kImplicitWords[static_cast<int>(options.implicit)]);
   json.member("threads", options.threads);
   json.end_object();
 }
@@ -109,7 +111,20 @@ void write_solids(const mjModel* m, const SceneContact& contact, JsonText& json)
   json.end_array();
 }
 
-void write_pair(const mjModel* m, const PairContact& pair, int index, JsonText& json) {
+// Whether steps are implicit in the contact of the pair, in words.
+std::string implicit_text(const mjModel* m, const SceneContact& contact, const PairContact& pair) {
+  if (contact.options().implicit == Implicit::kNever || m->opt.integrator == mjINT_RK4)
+    return "off";
+  if (contact.options().implicit == Implicit::kAlways) return "on";
+  const SceneContact::ImplicitUse use = contact.implicit_use(m, pair);
+  if (!use.is_possible) return "not needed";
+  char text[64];
+  std::snprintf(text, sizeof text, "from a patch of %.2g m^2 on", use.least_area);
+  return text;
+}
+
+void write_pair(const mjModel* m, const SceneContact& contact, const PairContact& pair, int index,
+                JsonText& json) {
   json.begin_object();
   json.member("pair", index);
   json.member("geom_a", label(m, mjOBJ_GEOM, pair.geoms.a));
@@ -118,6 +133,7 @@ void write_pair(const mjModel* m, const PairContact& pair, int index, JsonText& 
   json.member("id_b", pair.geoms.b);
   json.member("because", kPairOriginWords[static_cast<int>(pair.geoms.origin)]);
   json.member("engine", to_string(pair.engine));
+  json.member("implicit", implicit_text(m, contact, pair));
   json.member("normal_law", pair.laws.normal_law);
   json.member("friction_law", pair.laws.friction_law);
   json.member("rolling", pair.laws.laws.rolling ? "on" : kOff);
@@ -143,7 +159,7 @@ std::string describe(const mjModel* m, const SceneContact& contact) {
   write_solids(m, contact, json);
   json.name("pairs").begin_array();
   for (std::size_t i = 0; i < contact.pairs().size(); ++i) {
-    write_pair(m, contact.pairs()[i], static_cast<int>(i), json);
+    write_pair(m, contact, contact.pairs()[i], static_cast<int>(i), json);
   }
   json.end_array();
   json.name("warnings").begin_array();

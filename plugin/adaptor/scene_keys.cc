@@ -293,6 +293,7 @@ class KeyReader {
       for (const Engine engine : kEngines) made["engine"].emplace_back(to_string(engine));
       made["target"] = {std::begin(kTargetWords), std::end(kTargetWords)};
       made["pairs"] = {std::begin(kPairRuleWords), std::end(kPairRuleWords)};
+      made["implicit"] = {std::begin(kImplicitWords), std::end(kImplicitWords)};
       made["mesh"] = {std::begin(kMeshFormWords), std::end(kMeshFormWords)};
       made["formulation"] = {std::begin(kFormulationWords), std::end(kFormulationWords)};
       return made;
@@ -360,6 +361,7 @@ class KeyReader {
     if (engine != options_.end()) options.engine = engine_from(engine->second.word);
     set_choice("target", kTargetWords, options.target);
     set_choice("pairs", kPairRuleWords, options.pairs);
+    set_choice("implicit", kImplicitWords, options.implicit);
     set_choice("mesh", kMeshFormWords, options.mesh);
     set_choice("formulation", kFormulationWords, options.formulation);
   }

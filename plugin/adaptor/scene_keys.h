@@ -34,6 +34,14 @@ enum class MeshForm : int {
 };
 inline constexpr const char* kMeshFormWords[] = {"exact", "hull"};
 
+/// Whether steps are implicit in the contact forces.
+enum class Implicit : int {
+  kAuto = 0,    ///< where a patch is too stiff for an explicit step, in its stiff directions
+  kAlways = 1,  ///< always, in all directions
+  kNever = 2,
+};
+inline constexpr const char* kImplicitWords[] = {"auto", "on", "off"};
+
 /// The options that are numbers.
 struct OptionNumbers {
   static constexpr const char* kName = "volcontact/option";
@@ -57,6 +65,7 @@ struct SceneOptions {
   Target target = Target::kApplied;
   PairRule pairs = PairRule::kNative;
   MeshForm mesh = MeshForm::kExact;
+  Implicit implicit = Implicit::kAuto;
   Formulation formulation = Formulation::kGonthier;
 };
 

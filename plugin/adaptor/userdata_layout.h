@@ -11,7 +11,7 @@
 //
 // Our block is the end of userdata; what comes before it belongs to the user:
 //
-//   [ user's numbers | slots: kSlots x (kSlotHead + states) | ledger | header: kHeader ]
+//   [ user's numbers | solved | slots: kSlots x (kSlotHead + states) | ledger | header: kHeader ]
 //
 // Ledger and header keep their place when the number of law states changes. All zero, as mjData is
 // made and reset, means "never evaluated".
@@ -20,19 +20,24 @@ namespace volcontact::adaptor {
 
 /// Sizes of the block, in numbers.
 struct UserdataLayout {
-  static constexpr int kVersion = 2;
+  static constexpr int kVersion = 3;
   static constexpr int kHeader = 9;
   /// A Runge-Kutta step and the one before it, which a step that is redone needs.
   static constexpr int kSlots = 5;
-  /// Time, step, stage, elastic energy, dissipated x4, power x4, taken x4, bristle energy x2.
-  static constexpr int kSlotHead = 18;
+  /// Time, step, stage, elastic energy, dissipated x4, power x4, taken x4, bristle energy x2,
+  /// power into the elastic energy, whether the step is implicit.
+  static constexpr int kSlotHead = 20;
+  /// Of a site that an implicit step solved: normal force, force, torque.
+  static constexpr int kSolvedRow = 7;
 
-  int states = 0;    ///< numbers in which the sites of all pairs are kept
-  int channels = 0;  ///< forces in the ledger: nv for applied, 6 nbody for xfrc, 0 for passive
+  int states = 0;       ///< numbers in which the sites of all pairs are kept
+  int channels = 0;     ///< forces in the ledger: nv for applied, 6 nbody for xfrc, 0 for passive
+  int solved_rows = 0;  ///< sites whose solved forces are kept, of the newest evaluation
 
   int slot_size() const { return kSlotHead + states; }
   int ledger_size() const { return 2 * channels; }
-  int size() const { return kSlots * slot_size() + ledger_size() + kHeader; }
+  int solved_size() const { return solved_rows > 0 ? 1 + kSolvedRow * solved_rows : 0; }
+  int size() const { return solved_size() + kSlots * slot_size() + ledger_size() + kHeader; }
 };
 
 /// Energies of one evaluation.
@@ -43,6 +48,10 @@ struct EnergyAccount {
   ByChannel taken;            ///< dissipated, or put into bristles, at the evaluation [W]
   double slide_energy = 0.0;  ///< of the bristles [J]
   double spin_energy = 0.0;   ///< [J]
+  double stored = 0.0;        ///< power into the elastic energy of the volumes, where `taken`
+                              ///< has it not in it [W]
+  bool implicit = false;      ///< `taken` is the mean over the step that follows, with what goes
+                              ///< into elastic energy in its normal channel
 };
 
 /// What an evaluation was for the integrator.
@@ -65,7 +74,7 @@ class Slot {
   void set_stage(Stage stage) const { p_[2] = static_cast<int>(stage); }
 
   EnergyAccount energy() const {
-    return {p_[3], channels(4), channels(8), channels(12), p_[16], p_[17]};
+    return {p_[3], channels(4), channels(8), channels(12), p_[16], p_[17], p_[18], p_[19] != 0.0};
   }
   void set_energy(const EnergyAccount& e) const {
     p_[3] = e.elastic;
@@ -74,6 +83,8 @@ class Slot {
     set_channels(12, e.taken);
     p_[16] = e.slide_energy;
     p_[17] = e.spin_energy;
+    p_[18] = e.stored;
+    p_[19] = e.implicit ? 1.0 : 0.0;
   }
 
  private:
@@ -139,6 +150,15 @@ class UserdataBlock {
   double* base() const { return header_ - layout_.ledger_size(); }
   double* left() const { return base() + layout_.channels; }
 
+  /// How many sites the newest evaluation solved by an implicit step, and the row of one of them.
+  int solved() const { return layout_.solved_rows > 0 ? static_cast<int>(*solved_block()) : 0; }
+  void set_solved(int count) const {
+    if (layout_.solved_rows > 0) *solved_block() = std::min(count, layout_.solved_rows);
+  }
+  double* solved_row(int i) const {
+    return solved_block() + 1 + static_cast<std::ptrdiff_t>(i) * UserdataLayout::kSolvedRow;
+  }
+
   /// Evaluations in which a force was no number and was left out.
   double& dropped() const { return header_[7]; }
 
@@ -148,6 +168,10 @@ class UserdataBlock {
  private:
   static constexpr double kMagic = 860310740.0;
 
+  double* solved_block() const {
+    return header_ - layout_.ledger_size() - UserdataLayout::kSlots * layout_.slot_size() -
+           layout_.solved_size();
+  }
   int newest() const { return static_cast<int>(header_[5]); }
 
   UserdataLayout layout_;

@@ -53,6 +53,7 @@ TEST(SceneKeys, SceneWithoutKeysHasDefaults) {
   EXPECT_EQ(keys.options.target, Target::kApplied);
   EXPECT_EQ(keys.options.pairs, PairRule::kNative);
   EXPECT_EQ(keys.options.formulation, Formulation::kGonthier);
+  EXPECT_EQ(keys.options.implicit, Implicit::kAuto);
   EXPECT_TRUE(keys.materials.empty());
   EXPECT_EQ(keys.material_of_geom, (std::vector<int>{-1, -1, -1, -1}));
 }
@@ -62,13 +63,15 @@ TEST(SceneKeys, ReadsOptions) {
       read(numeric("volcontact/option/tolerance", "1e-5") +
            numeric("volcontact/option/threads", "3") + numeric("volcontact/option/engine/octree") +
            numeric("volcontact/option/target/xfrc") + numeric("volcontact/option/pairs/listed") +
-           numeric("volcontact/option/formulation/potential"));
+           numeric("volcontact/option/formulation/potential") +
+           numeric("volcontact/option/implicit/on"));
   EXPECT_EQ(keys.options.tolerance, 1e-5);
   EXPECT_EQ(keys.options.threads, 3);
   EXPECT_EQ(keys.options.engine, Engine::kOctree);
   EXPECT_EQ(keys.options.target, Target::kXfrc);
   EXPECT_EQ(keys.options.pairs, PairRule::kListed);
   EXPECT_EQ(keys.options.formulation, Formulation::kPotential);
+  EXPECT_EQ(keys.options.implicit, Implicit::kAlways);
 }
 
 TEST(SceneKeys, ChoiceWithDataZeroIsNotChosen) {

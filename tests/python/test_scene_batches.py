@@ -14,6 +14,7 @@ import volcontact as vc
 
 def test_changed_numbers_act_at_once():
     model = vc.load(ball(0.049))
+    model.opt.timestep = 1e-4  # explicit: the force is k V
     data = mujoco.MjData(model)
     with vc.attach(model) as contact:
         mujoco.mj_forward(model, data)
@@ -89,6 +90,7 @@ def test_simulations_of_a_batch_may_have_materials_of_their_own():
     from mujoco.batch import Batch
 
     model = vc.load(ball(0.049))
+    model.opt.timestep = 1e-4  # explicit: the force is k V
     with vc.attach(model):
         batch = Batch(model, nsim=4, nthread=2)
         numbers = batch.expand("numeric_data")

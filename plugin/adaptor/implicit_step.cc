@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/implicit_step.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace volcontact::adaptor {
+namespace {
+
+using ConstVector = Eigen::Map<const Eigen::VectorXd>;
+constexpr int kRows = ContactSpace::kRows;
+
+std::size_t size(int count) { return static_cast<std::size_t>(count); }
+
+// What lies below this bound is left to the explicit force; in between it is shared.
+constexpr double kSoftNumber = 0.2 * kStiffNumber;
+
+double implicit_share(double stiffness_number) {
+  return std::clamp((stiffness_number - kSoftNumber) / (kStiffNumber - kSoftNumber), 0.0, 1.0);
+}
+
+// Numerical damping, as a share of h K, of a point that comes out of the overlap at `speed` where
+// free motion changes speeds by `fall` in a step: what is as slow as a few of these settles.
+double settling(double speed, double fall) {
+  constexpr double kSettles = 5.0, kBounces = 10.0;
+  if (!(fall > 0.0)) return 0.0;
+  return std::clamp((kBounces - speed / fall) / (kBounces - kSettles), 0.0, 1.0);
+}
+
+}  // namespace
+
+void ImplicitStep::clear() noexcept {
+  sites_.clear();
+  places_.clear();
+}
+
+void ImplicitStep::add(const ContactModel& model, ContactReport& report, std::size_t site,
+                       int body_a, int body_b) noexcept {
+  const SiteLaws laws(model, report, site);
+  sites_.push_back({laws, &model, &report, site, laws.tangent()});
+  places_.push_back(
+      {body_a, body_b, report.sites[site].metrics.centroid, sites_.back().tangent.axes});
+}
+
+// The points of a patch and what each bears: f = f_0 - D (u' - u) - h K u', with the damping's
+// share of f_0 taken out again, so that the constant is what a motionless contact would bear.
+void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& falling,
+                                double resting, ImplicitParts parts, double step) noexcept {
+  using Vec2 = Eigen::Vector2d;
+  const SiteReport& report = site.report->sites[site.index];
+  const SiteTangent& tangent = site.tangent;
+  const double k = tangent.stiffness(0, 0), damping = tangent.damping(0, 0);
+  const double force = report.normal_force - damping * report.approach_speed;
+  const Vec3 torque = tangent.axes.transpose() * site.report->inputs[site.index].elastic_torque;
+  // The patch's centre and spread, back from the stiffness: k (1, y, -x) (1, y, -x)'.
+  Vec2 centre = Vec2::Zero();
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  if (k > 0.0) {
+    centre = Vec2(-tangent.stiffness(0, 2), tangent.stiffness(0, 1)) / k;
+    spread << tangent.stiffness(2, 2), -tangent.stiffness(1, 2), -tangent.stiffness(1, 2),
+        tangent.stiffness(1, 1);
+    spread = spread / k - centre * centre.transpose();
+  }
+  // Where the force acts, times the force.
+  const Vec2 moment(-torque[1], torque[0]);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal(spread);
+  const double number = step * step * k;
+  const double share = parts == ImplicitParts::kAll ? 1.0 : implicit_share(number * mobility(0, 0));
+
+  Vec2 place = Vec2::Zero();  // of all points together
+  if (force > 0.0) place = moment / force;
+  double reach[2] = {0.0, 0.0}, lean[2] = {0.0, 0.0};
+  bool split[2] = {false, false};
+  for (int i = 0; i < 2; ++i) {
+    const Vec2 axis = principal.eigenvectors().col(i);
+    const double square = std::max(0.0, principal.eigenvalues()[i]);
+    const Vec2 turn(axis[1], -axis[0]);
+    const double turn_number =
+        number * square * turn.dot(mobility.bottomRightCorner<2, 2>() * turn);
+    split[i] = square > 0.0 && (parts == ImplicitParts::kAll || turn_number > kSoftNumber);
+    if (!split[i]) continue;
+    reach[i] = std::sqrt(square);
+    const double at = axis.dot(centre);
+    place += (at - axis.dot(place)) * axis;
+    lean[i] = (axis.dot(moment) - force * at) / reach[i];
+  }
+  const int count = (split[0] ? 2 : 1) * (split[1] ? 2 : 1);
+  site.point_count = 0;
+  double sum = 0.0;
+  for (const double s0 : {-1.0, 1.0}) {
+    if (!split[0] && s0 > 0.0) continue;
+    for (const double s1 : {-1.0, 1.0}) {
+      if (!split[1] && s1 > 0.0) continue;
+      const Vec2 at = place + s0 * reach[0] * principal.eigenvectors().col(0) +
+                      s1 * reach[1] * principal.eigenvectors().col(1);
+      Point& point = site.points[size(site.point_count++)];
+      point.motion = {1.0, at.y(), -at.x()};
+      point.constant = std::max(0.0, (force + s0 * lean[0] + s1 * lean[1]) / count);
+      sum += point.constant;
+    }
+  }
+  for (int i = 0; i < site.point_count; ++i) {
+    Point& point = site.points[size(i)];
+    if (sum > 0.0) point.constant *= std::max(0.0, force) / sum;
+    const double weight = force > 0.0 ? point.constant / force : 1.0 / count;
+    const double depth = k > 0.0 ? point.constant * count / k : 0.0;
+    const double fall = std::max(std::abs(point.motion.dot(falling)), resting);
+    point.slope =
+        step * share * (1.0 + settling(depth / step, fall)) * k / count + damping * weight;
+  }
+  // Damping of turns about the axes along which there is one point only.
+  site.rolls.setZero();
+  for (int i = 0; i < 2; ++i) {
+    if (split[i]) continue;
+    const Vec2 axis = principal.eigenvectors().col(i);
+    const Vec3 turn(0.0, axis[1], -axis[0]);
+    const double about = turn.dot(tangent.damping * turn);
+    site.rolls.col(1 + i) = std::sqrt(std::max(0.0, about)) * turn;
+  }
+}
+
+void ImplicitStep::make_points(ImplicitParts parts, double step, double resting) noexcept {
+  for (std::size_t i = 0; i < sites_.size(); ++i) {
+    const Eigen::Index first = static_cast<Eigen::Index>(i) * kRows;
+    const Vec3 falling = (space_.free_velocity() - space_.velocity()).segment<3>(first);
+    place_points(sites_[i], space_.mobility(i).topLeftCorner<3, 3>(), falling, resting, parts,
+                 step);
+  }
+}
+
+// The linear model of the sites as they are now: whether points push, how friction acts.
+void ImplicitStep::solve_once(bool with_friction, double step) noexcept {
+  std::vector<double>& constants = equations_.constant;
+  std::vector<ContactEquations::Column>& columns = equations_.columns;
+  constants.assign(size(space_.rows()), 0.0);
+  columns.clear();
+  for (std::size_t i = 0; i < sites_.size(); ++i) {
+    const Site& site = sites_[i];
+    if (!site.pushes()) continue;
+    const int first = static_cast<int>(i) * kRows;
+    Eigen::Map<Vec3> constant(&constants[size(first)]);
+    for (int k = 0; k < site.point_count; ++k) {
+      const Point& point = site.points[size(k)];
+      if (!point.pushes) continue;
+      constant += point.constant * point.motion;
+      columns.push_back({std::sqrt(point.slope) * point.motion, first});
+    }
+    for (int k = 1; k < 3; ++k) {
+      if (!site.rolls.col(k).isZero(0.0)) columns.push_back({site.rolls.col(k), first});
+    }
+    if (!with_friction) continue;
+    std::copy_n(site.held.data(), 3, &constants[size(first + 3)]);
+    if (!(site.rub > 0.0)) continue;
+    const double root = std::sqrt(site.rub);
+    columns.push_back({Vec3(root, 0.0, 0.0), first + 3});
+    columns.push_back({Vec3(0.0, root, 0.0), first + 3});
+    const double lever = site.tangent.friction.lever;
+    if (lever > 0.0) columns.push_back({Vec3(0.0, 0.0, root * lever), first + 3});
+  }
+  equations_.solve(space_, step, force_, velocity_);
+}
+
+// Leaves out the points that would pull, until none does.
+void ImplicitStep::solve_active(bool with_friction, double step) noexcept {
+  constexpr int kRounds = 12;
+  for (Site& site : sites_) {
+    for (Point& point : site.points) point.pushes = true;
+  }
+  for (int round = 0; round < kRounds; ++round) {
+    solve_once(with_friction, step);
+    bool changed = false;
+    for (std::size_t i = 0; i < sites_.size(); ++i) {
+      const Vec3 motion = Eigen::Map<const Vec3>(&velocity_[i * size(kRows)]);
+      for (int k = 0; k < sites_[i].point_count; ++k) {
+        Point& point = sites_[i].points[size(k)];
+        const bool pushes = point.constant - point.slope * point.motion.dot(motion) > 0.0;
+        // Who was left out comes back where it is needed, in the first rounds: else it might go on.
+        if (point.pushes == pushes || (pushes && round >= kRounds / 2)) continue;
+        point.pushes = pushes;
+        changed = true;
+      }
+    }
+    if (!changed) return;
+  }
+}
+
+// Slip as the friction law sees it: along t_1, along t_2, lever times about n.
+Vec3 ImplicitStep::slip_of(const Site& site, const std::vector<double>& u,
+                           std::size_t i) const noexcept {
+  const double* at = &u[i * size(kRows) + 3];
+  return {at[0], at[1], site.tangent.friction.lever * at[2]};
+}
+
+// Friction under the normal forces of the last solution and at its slip: a spring and a damper
+// while it holds, Coulomb's where it would have to hold more.
+void ImplicitStep::set_friction(double step) noexcept {
+  for (std::size_t i = 0; i < sites_.size(); ++i) {
+    Site& site = sites_[i];
+    if (!site.laws.has_friction()) continue;
+    const double normal_force = this->normal_force(i);
+    const Vec3 slip = slip_of(site, velocity_, i);
+    const Mat3& axes = site.tangent.axes;
+    const Vec3 along = axes.leftCols<2>() * slip.head<2>();
+    const double spin = velocity_[i * size(kRows) + 5];
+    const FrictionOutput still = site.laws.friction(normal_force, Vec3::Zero(), 0.0);
+    const FrictionSlope slope = site.laws.friction_slope(normal_force, along, spin);
+    site.tangent.friction = slope;
+    site.strength = slope.strength;
+    const double lever = slope.lever;
+    const Vec3 held(axes.col(0).dot(still.force), axes.col(1).dot(still.force),
+                    lever > 0.0 ? still.torque / lever : 0.0);
+    // What acts at present, after the last solution, and how much a force slows the slip.
+    const double* f = &force_[i * size(kRows) + 3];
+    const Vec3 acting(f[0], f[1], lever > 0.0 ? f[2] / lever : 0.0);
+    const Vec3 wanted = held - (slope.damping + step * slope.stiffness) * slip;
+    const double speed = slip.norm();
+    const Vec3 direction = speed > 0.0 ? Vec3(slip / speed) : Vec3::UnitX();
+    const Vec3 scaled(direction[0], direction[1], lever * direction[2]);
+    const double mobility = scaled.dot(space_.mobility(i).bottomRightCorner<3, 3>() * scaled);
+    // The speed at which Coulomb's friction leaves it, when what acts now is replaced by it.
+    const double left = speed - step * mobility * (site.strength + acting.dot(direction));
+    site.slides = wanted.norm() > site.strength && left > 0.0;
+    if (site.slides) {
+      site.held.setZero();
+      site.rub = site.strength / left;
+    } else {
+      site.held = {held[0], held[1], lever * held[2]};
+      site.rub = slope.damping + step * slope.stiffness;
+    }
+  }
+}
+
+// Shortens what friction was solved to hold to what it can hold.
+void ImplicitStep::bound_friction() noexcept {
+  for (std::size_t i = 0; i < sites_.size(); ++i) {
+    const Site& site = sites_[i];
+    if (!site.laws.has_friction()) continue;
+    double* f = &force_[i * size(kRows)];
+    const double normal_force = this->normal_force(i);
+    const Vec3 slip = slip_of(site, velocity_, i);
+    const Vec3 along = site.tangent.axes.leftCols<2>() * slip.head<2>();
+    const FrictionSlope slope =
+        site.laws.friction_slope(normal_force, along, velocity_[i * size(kRows) + 5]);
+    const double size_of_it = std::hypot(f[3], f[4], slope.lever > 0.0 ? f[5] / slope.lever : 0.0);
+    if (!(size_of_it > slope.strength)) continue;
+    const double share = slope.strength / size_of_it;
+    for (int k = 3; k < kRows; ++k) f[k] *= share;
+  }
+}
+
+// The reports get the forces, the power they take from the motion, and what friction keeps under
+// the normal force that acts.
+void ImplicitStep::write_results() noexcept {
+  space_.move(force_, velocity_);
+  const ConstVector u(velocity_.data(), space_.rows());
+  const auto before = space_.velocity();
+  for (std::size_t i = 0; i < sites_.size(); ++i) {
+    const Site& site = sites_[i];
+    SiteReport& report = site.report->sites[site.index];
+    const SiteInputs& inputs = site.report->inputs[site.index];
+    const Mat3& axes = site.tangent.axes;
+    const Eigen::Index first = static_cast<Eigen::Index>(i) * kRows;
+    const ContactSpace::Block mean = 0.5 * (before.segment<kRows>(first) + u.segment<kRows>(first));
+    const double* f = &force_[size(static_cast<int>(first))];
+    report.normal_force = f[0];
+    report.force_on_A = f[0] * axes.col(2) + f[3] * axes.col(0) + f[4] * axes.col(1);
+    report.torque_on_A = f[1] * axes.col(0) + f[2] * axes.col(1) + f[5] * axes.col(2);
+    const double elastic = inputs.normal_out.elastic_energy;
+    if (site.laws.has_friction()) {
+      const FrictionOutput friction = site.laws.friction(f[0], report.slip, report.spin);
+      report.bristle_energy.slide = friction.slide_energy;
+      report.bristle_energy.spin = friction.spin_energy;
+    }
+    report.elastic_energy = elastic + report.bristle_energy.sum();
+    report.taken = {};
+    const Eigen::Vector2d turning = mean.segment<2>(1);
+    report.taken.roll = turning.dot(site.tangent.damping.bottomRightCorner<2, 2>() * turning);
+    report.taken.normal = -(f[0] * mean[0] + f[1] * mean[1] + f[2] * mean[2]) - report.taken.roll;
+    report.taken.slide = -(f[3] * mean[3] + f[4] * mean[4]);
+    report.taken.spin = -f[5] * mean[5];
+    report.power = report.taken;
+    report.power.normal += inputs.normal_out.elastic * mean[0];
+  }
+}
+
+// Whether the last pass changed nothing that counts.
+bool ImplicitStep::is_settled() const noexcept {
+  constexpr double kChange = 1e-9;
+  const ConstVector now(force_.data(), space_.rows()), before(before_.data(), space_.rows());
+  return (now - before).lpNorm<Eigen::Infinity>() <= kChange * now.lpNorm<Eigen::Infinity>();
+}
+
+void ImplicitStep::solve(const mjModel* m, mjData* d, ImplicitParts parts,
+                         const double* known) noexcept {
+  constexpr int kFrictionPasses = 3;
+  const double step = m->opt.timestep;
+  space_.build(m, d, places_, known);
+  force_.resize(size(space_.rows()));
+  velocity_.resize(size(space_.rows()));
+  make_points(parts, step, step * Eigen::Map<const Vec3>(m->opt.gravity).norm());
+  solve_active(false, step);
+  const bool rubs = std::any_of(sites_.begin(), sites_.end(),
+                                [](const Site& site) { return site.laws.has_friction(); });
+  for (int pass = 0; rubs && pass < kFrictionPasses; ++pass) {
+    before_ = force_;
+    set_friction(step);
+    solve_active(true, step);
+    if (is_settled()) break;
+  }
+  if (rubs) bound_friction();
+  write_results();
+}
+
+ContactSpace::Block ImplicitStep::constant(std::size_t site) const noexcept {
+  return ConstVector(&equations_.constant[site * size(kRows)], kRows);
+}
+
+Eigen::Matrix<double, 6, 6> ImplicitStep::slope(std::size_t site) const noexcept {
+  Eigen::Matrix<double, 6, 6> out = Eigen::Matrix<double, 6, 6>::Zero();
+  const int first = static_cast<int>(site) * kRows;
+  for (const ContactEquations::Column& column : equations_.columns) {
+    if (column.first != first && column.first != first + 3) continue;
+    const int at = column.first - first;
+    out.block<3, 3>(at, at) += column.numbers * column.numbers.transpose();
+  }
+  return out;
+}
+
+}  // namespace volcontact::adaptor

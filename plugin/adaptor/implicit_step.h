@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "adaptor/contact_equations.h"
+#include "volcontact/model/site_laws.h"
+
+namespace volcontact::adaptor {
+
+/// What a step makes implicit.
+enum class ImplicitParts : int {
+  kStiff = 0,  ///< directions in which the patch is too stiff for an explicit step
+  kAll = 1,
+};
+
+/// An explicit step holds a spring up to h^2 k/m = 4, and keeps its energy where this is small:
+/// `auto` makes implicit what lies above this bound.
+inline constexpr double kStiffNumber = 0.05;
+
+/// Pairs whose patch, were it as large as the smaller solid, stays below this are always left to
+/// the explicit force.
+inline constexpr double kPossibleNumber = 0.5;
+
+/// Power that goes into the elastic energy of the volumes of a report that keeps its inputs [W].
+inline double stored_power(const ContactReport& report) noexcept {
+  double power = 0.0;
+  for (std::size_t i = 0; i < report.inputs.size(); ++i) {
+    power += report.inputs[i].normal_out.elastic * report.sites[i].approach_speed;
+  }
+  return power;
+}
+
+/// One step of the contact forces that is implicit in them, to first order: docs/theory.md,
+/// "Implicit step". For each site f = e - C u', with u' the relative motion at the end of the step;
+/// all sites of all pairs at once, none pulling, friction within what the solved normal force
+/// holds. Memory is reused from step to step.
+class ImplicitStep {
+ public:
+  void clear() noexcept;
+
+  /// A site that takes part. The report keeps its inputs.
+  void add(const ContactModel& model, ContactReport& report, std::size_t site, int body_a,
+           int body_b) noexcept;
+
+  bool empty() const noexcept { return sites_.empty(); }
+
+  /// Solves, with the known forces of contact_space.h, and puts the results into the reports: the
+  /// forces, and as `taken` the power that the contact takes from the motion over the step.
+  void solve(const mjModel* m, mjData* d, ImplicitParts parts, const double* known) noexcept;
+
+  // For tests: the linear model of site i, f = e - C u', as last solved, and the solution.
+  ContactSpace::Block constant(std::size_t site) const noexcept;
+  Eigen::Matrix<double, 6, 6> slope(std::size_t site) const noexcept;
+  const ContactSpace& space() const noexcept { return space_; }
+  const std::vector<double>& forces() const noexcept { return force_; }
+
+ private:
+  // A patch is borne at up to four points, which have its area and moments; none of them pulls.
+  struct Point {
+    Vec3 motion = Vec3::Zero();  // of the point along n, by the normal coordinates: (1, y, -x)
+    double constant = 0.0;       // f = constant - slope * speed
+    double slope = 0.0;
+    bool pushes = true;
+  };
+  struct Site {
+    SiteLaws laws;
+    const ContactModel* model;
+    ContactReport* report;
+    std::size_t index;
+    SiteTangent tangent;
+    std::array<Point, 4> points{};
+    int point_count = 0;
+    Mat3 rolls = Mat3::Zero();  // L of L L', the damping of turns where the points have none
+
+    bool pushes() const {
+      return std::any_of(points.begin(), points.begin() + point_count,
+                         [](const Point& point) { return point.pushes; });
+    }
+    // Friction: force = held - rub * slip, or `rub` alone where it slides; as (t_1, t_2, about n).
+    Vec3 held = Vec3::Zero();
+    double rub = 0.0;
+    double strength = 0.0;
+    bool slides = false;
+  };
+  void make_points(ImplicitParts parts, double step, double resting) noexcept;
+  void place_points(Site& site, const Mat3& mobility, const Vec3& falling, double resting,
+                    ImplicitParts parts, double step) noexcept;
+  double normal_force(std::size_t i) const noexcept { return std::max(0.0, force_[6 * i]); }
+  void solve_active(bool with_friction, double step) noexcept;
+  void solve_once(bool with_friction, double step) noexcept;
+  void set_friction(double step) noexcept;
+  void bound_friction() noexcept;
+  bool is_settled() const noexcept;
+  void write_results() noexcept;
+
+  Vec3 slip_of(const Site& site, const std::vector<double>& u, std::size_t i) const noexcept;
+
+  std::vector<Site> sites_;
+  std::vector<ContactPlace> places_;
+  ContactSpace space_;
+  ContactEquations equations_;
+  std::vector<double> force_, velocity_;  // f and u'
+  std::vector<double> before_;            // f of the pass before
+};
+
+}  // namespace volcontact::adaptor

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// What SceneContact does where a step is implicit in the contact forces.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "adaptor/applied_ledger.h"
+#include "adaptor/scene_contact.h"
+#include "volcontact/base/check.h"
+
+namespace volcontact::adaptor {
+namespace {
+
+// The sums of a report whose sites have changed.
+void total_up(ContactReport& report) {
+  report.elastic_energy = 0.0;
+  report.bristle_energy = {};
+  report.power = {};
+  report.taken = {};
+  for (const SiteReport& site : report.sites) {
+    report.elastic_energy += site.elastic_energy;
+    report.bristle_energy += site.bristle_energy;
+    report.power += site.power;
+    report.taken += site.taken;
+  }
+}
+
+// Inverse of the mass that two bodies have against displacements, and against turns, as MuJoCo
+// knows it at the first pose.
+struct InverseMass {
+  double along;
+  double about;
+};
+InverseMass inverse_mass(const mjModel* m, const GeomPair& geoms) {
+  const int a = m->geom_bodyid[geoms.a], b = m->geom_bodyid[geoms.b];
+  return {m->body_invweight0[2 * a] + m->body_invweight0[2 * b],
+          m->body_invweight0[2 * a + 1] + m->body_invweight0[2 * b + 1]};
+}
+
+// Of the solid's box, its largest face [m^2].
+double largest_face(const Shape& solid) {
+  const auto bounds = bounds_of(solid);
+  std::array<double, 3> sides{};
+  for (int i = 0; i < 3; ++i) sides[static_cast<std::size_t>(i)] = bounds.max[i] - bounds.min[i];
+  std::sort(sides.begin(), sides.end());
+  return sides[1] * sides[2];
+}
+
+// k_v [N/m^3]; a law of the user's own may have no such field.
+double stiffness_of(const PairLaws& laws) {
+  for (const PairField& field : laws.fields) {
+    if (field.name == "stiffness") return field.value[0];
+  }
+  return HUGE_VAL;
+}
+
+}  // namespace
+
+double SceneContact::largest_rate(const mjModel* m, const GeomPair& geoms,
+                                  const PairLaws& laws) const {
+  const double face = std::min(largest_face(solids_[static_cast<std::size_t>(geoms.a)]),
+                               largest_face(solids_[static_cast<std::size_t>(geoms.b)]));
+  return stiffness_of(laws) * face * inverse_mass(m, geoms).along;
+}
+
+SceneContact::ImplicitUse SceneContact::implicit_use(const mjModel* m,
+                                                     const PairContact& pair) const {
+  const double square = m->opt.timestep * m->opt.timestep;
+  const double number = square * pair.largest_rate;
+  const double per_area = square * stiffness_of(pair.laws) * inverse_mass(m, pair.geoms).along;
+  return {number >= kPossibleNumber, number, kStiffNumber / per_area};
+}
+
+void SceneContact::check_integrator(const mjModel* m) {
+  if (m->opt.integrator != mjINT_RK4 || options().implicit == Implicit::kNever) return;
+  require(options().implicit != Implicit::kAlways,
+          "volcontact/option/implicit/on does not go with integrator=\"RK4\", whose stages are "
+          "explicit; use Euler, implicit or implicitfast, or implicit/off");
+  constexpr double kLimit = 8.0;  // of an undamped spring under RK4
+  for (const PairContact& pair : pairs_) {
+    if (implicit_use(m, pair).largest_number < kLimit) continue;
+    warn_once("geoms '" + label(m, mjOBJ_GEOM, pair.geoms.a) + "' and '" +
+              label(m, mjOBJ_GEOM, pair.geoms.b) +
+              "' may touch too stiffly for integrator=\"RK4\" at this time step, which no "
+              "implicit contact helps: use Euler, implicit or implicitfast");
+    return;
+  }
+}
+
+bool SceneContact::may_be_implicit(const mjModel* m) const noexcept {
+  return options().implicit != Implicit::kNever && m->opt.integrator != mjINT_RK4;
+}
+
+// Whether an explicit step could not hold some site: by h^2 k/m of its patch against displacements
+// and turns, with the mass that MuJoCo knows of each body at its first pose.
+bool SceneContact::is_stiff(const mjModel* m, const Scratch& scratch) const noexcept {
+  if (options().implicit == Implicit::kAlways) return true;
+  const double h = m->opt.timestep;
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    const ContactReport& report = scratch.reports[k];
+    if (report.sites.empty()) continue;
+    const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
+    if (h * h * pair.largest_rate < kPossibleNumber) continue;
+    const GeomPair& geoms = pair.geoms;
+    const InverseMass inverse = inverse_mass(m, geoms);
+    for (std::size_t i = 0; i < report.sites.size(); ++i) {
+      const VolumeMetrics& metrics = report.sites[i].metrics;
+      const double k_v = report.inputs[i].normal_out.elastic / metrics.volume;
+      const double spread = 0.5 * metrics.inertia.trace() / metrics.volume;
+      const double stiffness = k_v * metrics.area_vector.norm();
+      if (h * h * stiffness * (inverse.along + spread * inverse.about) > kStiffNumber) return true;
+    }
+  }
+  return false;
+}
+
+void SceneContact::solve_implicit(const mjModel* m, mjData* d, Scratch& scratch) const noexcept {
+  ImplicitStep& implicit = scratch.implicit;
+  implicit.clear();
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
+    ContactReport& report = scratch.reports[k];
+    for (std::size_t i = 0; i < report.sites.size(); ++i) {
+      if (report.sites[i].normal.isZero(0.0)) continue;
+      implicit.add(pair.model, report, i, m->geom_bodyid[pair.geoms.a],
+                   m->geom_bodyid[pair.geoms.b]);
+    }
+  }
+  if (implicit.empty()) return;
+  const UserdataBlock our = block(m, d);
+  const auto share = [&](Target target, int count, const double* array, std::vector<double>& out) {
+    out.resize(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) {
+      out[static_cast<std::size_t>(i)] =
+          options().target == target ? user_share(our, i, array) : array[i];
+    }
+  };
+  share(Target::kApplied, static_cast<int>(m->nv), d->qfrc_applied, scratch.user_qfrc);
+  share(Target::kXfrc, 6 * static_cast<int>(m->nbody), d->xfrc_applied, scratch.user_xfrc);
+  known_forces(m, d, scratch.user_qfrc.data(), scratch.user_xfrc.data(), scratch.known);
+  implicit.solve(
+      m, d, options().implicit == Implicit::kAlways ? ImplicitParts::kAll : ImplicitParts::kStiff,
+      scratch.known.data());
+  for (const int pair : scratch.order) total_up(scratch.reports[static_cast<std::size_t>(pair)]);
+}
+
+// The forces of a solved step cannot be had from positions and velocities alone.
+void SceneContact::keep_solved(const UserdataBlock& our, const Scratch& scratch) const noexcept {
+  int count = 0;
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    for (const SiteReport& site : scratch.reports[k].sites) {
+      if (count == solved_rows_) break;
+      double* row = our.solved_row(count++);
+      row[0] = site.normal_force;
+      Eigen::Map<Vec3>(row + 1) = site.force_on_A;
+      Eigen::Map<Vec3>(row + 4) = site.torque_on_A;
+    }
+  }
+  our.set_solved(count);
+}
+
+void SceneContact::recall_solved(const UserdataBlock& our, Scratch& scratch) const noexcept {
+  const int count = our.solved();
+  int i = 0;
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    for (SiteReport& site : scratch.reports[k].sites) {
+      if (i == count) return;
+      const double* row = our.solved_row(i++);
+      site.normal_force = row[0];
+      site.force_on_A = Eigen::Map<const Vec3>(row + 1);
+      site.torque_on_A = Eigen::Map<const Vec3>(row + 4);
+    }
+  }
+}
+
+}  // namespace volcontact::adaptor
