@@ -47,8 +47,7 @@ class BoreRun {
         places.begin(), places.end(), [](const Place& p, const Place& q) { return p.rho < q.rho; });
     if (farthest->rho <= 1.0) return true;  // all of it in the bore
     if (nearest->rho <= 1.0) return each_lobe();
-    outside_all_round();
-    return true;
+    return outside_all_round();
   }
 
  private:
@@ -98,13 +97,11 @@ class BoreRun {
   }
 
   // All of the outline lies outside of the bore: the overlap goes round it, or misses it.
-  void outside_all_round() {
+  bool outside_all_round() {
     set_bore_frame(outline_.places()[0].point);
-    if (goes_round_axis()) {
-      integrate(-kPi, kPi, false);
-    } else {
-      add_lines_region(a_, b_, X_AB_, options_, s_, regions_);
-    }
+    if (!goes_round_axis()) return add_lines_region(a_, b_, X_AB_, options_, s_, regions_);
+    integrate(-kPi, kPi, false);
+    return true;
   }
 
   // Whether the axis pierces the outline, a convex curve: then it crosses the ray along -u, in the

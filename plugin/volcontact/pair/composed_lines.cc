@@ -42,7 +42,7 @@ class ComposedRun {
     if (!find_bores(a, b, X)) return false;
     const std::size_t before = s_.regions.size();
     if (s_.bores.empty()) {
-      add_lines_region(a.body, b.body, X, options_, lines_, s_.regions);
+      if (!add_lines_region(a.body, b.body, X, options_, lines_, s_.regions)) return false;
     } else if (!bored_lines(a.body, b.body, X, s_.bores[0].bore, s_.bores[0].owner, options_,
                             lines_, s_.bore, s_.regions)) {
       return false;

@@ -18,6 +18,7 @@
 #include "volcontact/pair/ring_lines.h"
 #include "volcontact/pair/ring_pair.h"
 #include "volcontact/pair/round_columns.h"
+#include "volcontact/pair/shell.h"
 #include "volcontact/pair/torus_columns.h"
 
 namespace volcontact {
@@ -28,6 +29,7 @@ struct InterferenceWorkspace::Scratch {
   ComposedScratch composed;
   RingScratch ring;
   RingPairScratch ring_pair;
+  ShellScratch shell;
   ColumnsScratch columns;
   RoundColumnsScratch round_columns;
   TorusColumnsScratch torus_columns;
@@ -100,23 +102,14 @@ constexpr bool serves_pair(Engine engine) {
   return false;
 }
 
-// Not every composed solid can be written as the pieces that lines need.
+// Not every composed solid can be written as the pieces that columns need.
 template <typename A, typename B>
 bool serves_pair(Engine engine, const A& a, const B& b) {
-  if constexpr (has_composed_lines<A, B>) {
-    if (engine == Engine::kLines) return has_lines_pieces(a) && has_lines_pieces(b);
-  }
   if constexpr (has_composed_columns<A, B>) {
     if (engine == Engine::kColumns) return has_columns_pieces(b);
   }
   if constexpr (has_composed_columns<B, A>) {
     if (engine == Engine::kColumns) return has_columns_pieces(a);
-  }
-  if constexpr (has_ring_composed<A, B>) {
-    if (engine == Engine::kLines) return has_lines_pieces(b);
-  }
-  if constexpr (has_ring_composed<B, A>) {
-    if (engine == Engine::kLines) return has_lines_pieces(a);
   }
   return serves_pair<A, B>(engine);
 }
@@ -168,36 +161,42 @@ void mirror_sites(const Pose& X_AB, Interference& out) {
   for (VolumeMetrics& site : out.sites) site = mirrored(site);
 }
 
-// False when the pose is beyond the engine.
+// By columns through the overlap. False when the solids or the pose are beyond that.
 template <typename A, typename B>
-bool lines(const A& a, const B& b, const Pose& X_AB, const InterferenceOptions& options,
-           InterferenceWorkspace::Scratch& scratch, Interference& out) {
+bool inner_lines(const A& a, const B& b, const Pose& X_AB, const InterferenceOptions& options,
+                 InterferenceWorkspace::Scratch& scratch, Interference& out) {
   if constexpr (has_lines<A, B>) {
-    if (!lines_interference(ConvexView(a), ConvexView(b), X_AB, options, scratch.lines, out)) {
-      return false;
-    }
+    return lines_interference(ConvexView(a), ConvexView(b), X_AB, options, scratch.lines, out);
   } else if constexpr (both_rings<A, B>) {
-    if (!ring_pair(a, b, X_AB, options, scratch.ring_pair, out)) return false;
+    return ring_pair(a, b, X_AB, options, scratch.ring_pair, out);
   } else if constexpr (has_ring_composed<A, B>) {
+    if (!has_lines_pieces(b)) return false;
     scratch.composed.pieces[1].clear();
     add_lines_pieces(b, scratch.composed.pieces[1]);
-    if (!ring_composed(a, X_AB, options, scratch.ring, scratch.composed, out)) return false;
-  } else if constexpr (has_ring_composed<B, A>) {
-    if (!lines(b, a, X_AB.inverse(), options, scratch, out)) return false;
-    mirror_sites(X_AB, out);
+    return ring_composed(a, X_AB, options, scratch.ring, scratch.composed, out);
   } else if constexpr (has_ring<A, B>) {
     ring_interference(a, ConvexView(b), X_AB, options, scratch.ring, scratch.composed.regions, out);
-  } else if constexpr (has_ring<B, A>) {
-    ring_interference(b, ConvexView(a), X_AB.inverse(), options, scratch.ring,
-                      scratch.composed.regions, out);
+    return true;
+  } else if constexpr (has_ring_composed<B, A> || has_ring<B, A>) {
+    if (!inner_lines(b, a, X_AB.inverse(), options, scratch, out)) return false;
     mirror_sites(X_AB, out);
+    return true;
   } else {
+    if (!has_lines_pieces(a) || !has_lines_pieces(b)) return false;
     for (auto& pieces : scratch.composed.pieces) pieces.clear();
     add_lines_pieces(a, scratch.composed.pieces[0]);
     add_lines_pieces(b, scratch.composed.pieces[1]);
-    if (!composed_lines(X_AB, options, scratch.lines, scratch.composed, out)) return false;
+    return composed_lines(X_AB, options, scratch.lines, scratch.composed, out);
   }
-  return is_finite(out.total);
+}
+
+// The same, or else by the surface of the overlap. False when that fails as well.
+template <typename A, typename B>
+bool lines(const A& a, const B& b, const Shape& shape_a, const Shape& shape_b, const Pose& X_AB,
+           const InterferenceOptions& options, InterferenceWorkspace::Scratch& scratch,
+           Interference& out) {
+  if (inner_lines(a, b, X_AB, options, scratch, out) && is_finite(out.total)) return true;
+  return shell_interference(shape_a, shape_b, X_AB, options, scratch.shell, out);
 }
 
 // False when the pose is beyond the engine.
@@ -287,7 +286,7 @@ void interference(const Shape& a, const Shape& b, const Pose& X_AB,
     }
     if constexpr (serves_pair<A, B>(Engine::kLines)) {
       if (out.engine == Engine::kLines) {
-        if (lines(solid_a, solid_b, X_AB, options, workspace.scratch(), out)) return;
+        if (lines(solid_a, solid_b, a, b, X_AB, options, workspace.scratch(), out)) return;
         out.engine = Engine::kOctree;
       }
     }

@@ -335,15 +335,18 @@ bool lines_interference(const ConvexView& a, const ConvexView& b, const Pose& X_
   return true;
 }
 
-void add_lines_region(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
+bool add_lines_region(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
                       const InterferenceOptions& options, LinesScratch& scratch,
                       LinesRegions& regions) noexcept {
   LinesRun run(a, b, X_AB, options, scratch);
   const VolumeMetrics metrics = run.run(true);
-  if (!metrics.touching()) return;
+  if (!metrics.touching()) {
+    return !run.lost(metrics, std::min(a.own_metrics().volume, b.own_metrics().volume));
+  }
   LinesRegion& region = regions.add();
   region.metrics = metrics;
   run.add_patches(region.patches);
+  return true;
 }
 
 }  // namespace volcontact

@@ -34,8 +34,9 @@ bool lines_interference(const ConvexView& a, const ConvexView& b, const Pose& X_
                         const InterferenceOptions& options, LinesScratch& scratch,
                         Interference& out) noexcept;
 
-/// Adds the overlap of two convex bodies that are pieces of solids, if there is one.
-void add_lines_region(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
+/// Adds the overlap of two convex bodies that are pieces of solids, if there is one. False in a
+/// degenerate pose that it cannot make out.
+bool add_lines_region(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
                       const InterferenceOptions& options, LinesScratch& scratch,
                       LinesRegions& regions) noexcept;
 

@@ -12,6 +12,8 @@
 namespace volcontact {
 namespace {
 
+constexpr double kAxial = 1e-2;       // of directions, and of R: a face that holds the axis
+constexpr double kLostFace = 1e-5;    // of the area: a face that the sums have missed
 constexpr double kWidestAngle = 1.6;  // of an undivided arc [rad]
 constexpr double kSameAngle = 1e-11;  // [rad]
 constexpr double kNearEnd = 3e-4;     // of a range: to which its ends are known at least
@@ -215,9 +217,25 @@ class RingRun {
       sum.area_moment -= Vec3(x[1], x[2], x[3]).cross(n);
     }
     for (int i = 0; i + 1 < fan.round_count; ++i) sum.counter_area += sums.round_area[i];
-    if (flat) return;
-    sum.area_vector = Vec3(sums.vector[0], sums.vector[1], sums.vector[2]);
+    const Vec3 of_torus(sums.vector[0], sums.vector[1], sums.vector[2]);
+    if (flat) {
+      // A face through the axis lies in one half-plane, of which the sums see nothing.
+      const double lost = (of_torus - sum.area_vector).norm();
+      if (!has_axial_plane() || lost < kLostFace * sum.area) return;
+      sum.counter_area += lost;
+    }
+    sum.area_vector = of_torus;
     sum.area_moment = Vec3(sums.moment[0], sums.moment[1], 0.0);
+  }
+
+  bool has_axial_plane() const {
+    for (const PlaneFace& plane : s_.faces.planes) {
+      if (std::abs(plane.normal.z()) < kAxial &&
+          std::abs(plane.offset) < kAxial * torus_.major_radius()) {
+        return true;
+      }
+    }
+    return false;
   }
 
   // Depth under the planes of a flat body, in proportion to the squares of their area vectors; in

@@ -68,12 +68,18 @@ TEST(RingComposed, ARingOnABoredBlockFarFromTheBoreIsOnABlock) {
   }
 }
 
-// Over the rim of the bore the octree answers, and its bounds hold the answer of neither block nor
-// bore.
-TEST(RingComposed, ABoreInReachIsLeftToTheOctree) {
-  const Shape bored = box(0.5, 0.5, 0.1) - tube(0.2, 0.5);
+// Over the rim of the bore the surface of the overlap serves; the answer is that of neither block
+// nor bore.
+TEST(RingComposed, ABoreInReachIsServed) {
+  const Shape bored = box(0.5, 0.5, 0.1) - tube(0.2, 0.5),
+              block = Box({.half_sizes = {.5, .5, .1}});
+  const Shape plug = Cylinder({.radius = 0.2, .half_length = 0.1});
   const Pose X{Mat3::Identity(), {0.2, 0.0, -0.19}};
-  EXPECT_EQ(evaluated(kRing, bored, X).engine, Engine::kOctree);
+  const Interference out = evaluated(kRing, bored, X);
+  EXPECT_EQ(out.engine, Engine::kLines);
+  const double expected =
+      evaluated(kRing, block, X).total.volume - evaluated(kRing, plug, X).total.volume;
+  EXPECT_NEAR(out.total.volume, expected, 1e-4 * expected);
 }
 
 TEST(RingComposed, OctreeBoundsHoldTheVolume) {

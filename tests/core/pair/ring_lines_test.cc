@@ -153,6 +153,22 @@ TEST(RingLines, AreaVectorAndMomentAreTheGradientOfVolume) {
   }
 }
 
+// The side of a box through the axis of the ring, which no half-plane about the axis crosses.
+TEST(RingLines, AFaceThroughTheAxisCounts) {
+  const Shape box = Box({.half_sizes = {0.3, 0.2, 0.25}});
+  const InterferenceOptions options{.tolerance = 1e-6};
+  for (const double aside : {0.0, 1e-12, 1e-9, 1e-6, 1e-3}) {
+    const Pose X{Mat3::Identity(), Vec3(0.3, 0.2 + aside, 0.22)};
+    const VolumeMetrics m = evaluated(kRing, box, X, options).total;
+    const auto volume = [&](const Pose& X_AB) {
+      return evaluated(kRing, box, X_AB, options).total.volume;
+    };
+    const test::Gradient g = test::gradient_of_A(volume, X, 1e-3);
+    EXPECT_LE((g.shift - m.area_vector).norm(), 1e-3 * m.area) << aside;
+    EXPECT_LE((g.turn - m.area_moment).norm(), 1e-3 * m.area * kMajor) << aside;
+  }
+}
+
 // A bar moves outwards over the inner side of the ring: two sites become one.
 TEST(RingLines, VolumeIsContinuousWhereSitesMerge) {
   const Shape bar = Box({.half_sizes = {1.0, 0.02, 0.03}});
