@@ -11,6 +11,17 @@
 
 namespace volcontact {
 
+/// Threads that a call may use when `asked` for so many, 0 for as many as there are: one where
+/// others already share the work.
+inline int thread_limit(int asked) {
+#ifdef _OPENMP
+  if (omp_in_parallel()) return 1;
+  return asked > 0 ? asked : omp_get_max_threads();
+#else
+  return (void)asked, 1;
+#endif
+}
+
 /// Threads that stay awake through one program and share its loops. One parallel region holds all
 /// of it: waking threads for every loop costs more than a loop of some ten microseconds. Which
 /// thread does what is up to chance, so that the tasks must not depend on each other.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "volcontact/base/crew.h"
 #include "volcontact/pair/columns/contained.h"
 #include "volcontact/pair/columns/nearest_face.h"
 
@@ -21,9 +22,16 @@ constexpr double kNoArea = 1e-8;      // of the largest cell: rounding has made 
 class Columns {
  public:
   // Without b: the half-space z < 0 of B's frame.
-  Columns(const SurfaceView& a, const SurfaceView* b, const Pose& X_AB, ColumnsScratch& scratch,
-          Interference& out)
-      : a_(a), b_(b), X_AB_(X_AB), X_BA_(X_AB.inverse()), scratch_(scratch), out_(out) {
+  Columns(const SurfaceView& a, const SurfaceView* b, const Pose& X_AB,
+          const InterferenceOptions& options, ColumnsScratch& scratch, Interference& out)
+      : a_(a),
+        b_(b),
+        X_AB_(X_AB),
+        X_BA_(X_AB.inverse()),
+        most_leaf_pairs_(options.most_cells),
+        threads_(thread_limit(options.threads)),
+        scratch_(scratch),
+        out_(out) {
     rounding_ = 4.0 * kEpsilon *
                 (size_of(a.bounds) + X_AB.translation.lpNorm<1>() +
                  (b != nullptr ? size_of(b->bounds) : 0.0));
@@ -31,10 +39,9 @@ class Columns {
     out.sites.clear();
   }
 
-  void meshes(int most_leaf_pairs) {
+  void meshes() {
     if (bounds_apart(a_.bounds, b_->bounds, X_AB_)) return;
     if (b_->planes != nullptr && add_on_one_face()) return finish();
-    most_leaf_pairs_ = most_leaf_pairs;
     const double reach = kReach * (size_of(a_.bounds) + size_of(b_->bounds));
     const bool counted =
         find_contacts(*a_.tree, *b_->tree, X_BA_, reach, kMostContacts, scratch_.crossing);
@@ -169,7 +176,7 @@ class Columns {
                            scratch_.cells)) {
         return false;
       }
-      make_cells(*a_.tree, X_CA, *b_->tree, X_CB, window, scratch_.cells);
+      make_cells(*a_.tree, X_CA, *b_->tree, X_CB, window, threads_, scratch_.cells);
       keep_crossing_parts(patch);
       if (!ends_outwards()) continue;
       const bool shared = !is_within(window, nullptr);
@@ -307,7 +314,7 @@ class Columns {
     const Pose X_CA = X_CB * X_BA_;
     if (find_leaf_pairs(*a_.tree, X_CA, *b_->tree, X_CB, ColumnWindow{}, most_leaf_pairs_ / 2,
                         scratch_.cells)) {
-      make_cells(*a_.tree, X_CA, *b_->tree, X_CB, ColumnWindow{}, scratch_.cells);
+      make_cells(*a_.tree, X_CA, *b_->tree, X_CB, ColumnWindow{}, threads_, scratch_.cells);
       add_regions(X_CA, X_CB, X_AB_ * X_BC, b_->tree);
       return;
     }
@@ -374,10 +381,10 @@ class Columns {
   const SurfaceView& a_;
   const SurfaceView* b_;
   const Pose X_AB_, X_BA_;
+  const int most_leaf_pairs_, threads_;
   ColumnsScratch& scratch_;
   Interference& out_;
   double rounding_;
-  int most_leaf_pairs_ = 0;
   VolumeMetrics sampled_;  // where the budget did not allow more
 };
 
@@ -386,13 +393,13 @@ class Columns {
 void columns_interference(const SurfaceView& a, const SurfaceView& b, const Pose& X_AB,
                           const InterferenceOptions& options, ColumnsScratch& scratch,
                           Interference& out) noexcept {
-  Columns(a, &b, X_AB, scratch, out).meshes(options.most_cells);
+  Columns(a, &b, X_AB, options, scratch, out).meshes();
 }
 
 void columns_interference(const SurfaceView& a, const HalfSpace&, const Pose& X_AB,
-                          const InterferenceOptions&, ColumnsScratch& scratch,
+                          const InterferenceOptions& options, ColumnsScratch& scratch,
                           Interference& out) noexcept {
-  Columns(a, nullptr, X_AB, scratch, out).half_space();
+  Columns(a, nullptr, X_AB, options, scratch, out).half_space();
 }
 
 }  // namespace volcontact

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcontact/base/crew.h"
 #include "volcontact/base/ordered_sum.h"
 #include "volcontact/pair/cell_tree.h"
 #include "volcontact/pair/octree_depth.h"
@@ -12,15 +13,6 @@ namespace volcontact {
 namespace {
 
 constexpr int kSumGrain = 64;  // leaves in a partial sum
-
-int thread_limit(int asked) {
-#ifdef _OPENMP
-  if (omp_in_parallel()) return 1;
-  return asked > 0 ? asked : omp_get_max_threads();
-#else
-  return (void)asked, 1;
-#endif
-}
 
 OctreeScratch::Totals totals_of(const Cell& cell) {
   const Vec3& c = cell.center;

@@ -92,7 +92,8 @@ INSTANTIATE_TEST_SUITE_P(
                       NamedPair{"sphere", "torus"}, NamedPair{"torus", "box"},
                       NamedPair{"cylinder", "torus"}, NamedPair{"torus", "convex_polytope"},
                       NamedPair{"torus", "torus"}, NamedPair{"box", "mesh"},
-                      NamedPair{"sphere", "mesh"}, NamedPair{"cylinder", "mesh"}),
+                      NamedPair{"sphere", "mesh"}, NamedPair{"cylinder", "mesh"},
+                      NamedPair{"mesh", "torus"}, NamedPair{"bored_block", "mesh"}),
     [](const auto& test) { return std::string(test.param.first) + "_" + test.param.second; });
 
 TEST(Spread, MedianAndWorst) {

@@ -385,5 +385,19 @@ TEST(Columns, EveryInstructionSetMakesTheSameBits) {
   }
 }
 
+// Bodies pressed into each other deep enough that several threads get cells to make.
+TEST(Columns, AnyNumberOfThreadsMakesTheSameBits) {
+  const Mesh one = mesh_of(test::bumpy_soup(4, 1)), two = mesh_of(test::bumpy_soup(4, 2));
+  const Pose X_AB{test::turn(Vec3(1.0, 2.0, 3.0), 0.5), Vec3(0.3, 0.2, 0.9)};
+  const Interference serial = evaluated(one, two, X_AB);
+  ASSERT_EQ(serial.engine, Engine::kColumns);
+  ASSERT_TRUE(serial.total.touching());
+  for (const int threads : {2, 3, 4, 8, 16, 0}) {
+    const Interference many = evaluated(one, two, X_AB, {.threads = threads});
+    EXPECT_TRUE(test::same(many.total, serial.total, {0.0, 0.0})) << threads;
+    EXPECT_EQ(many.sites.size(), serial.sites.size());
+  }
+}
+
 }  // namespace
 }  // namespace volcontact

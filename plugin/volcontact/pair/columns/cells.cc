@@ -282,6 +282,11 @@ bool meets_rectangle(const double corners[3][3], const ColumnWindow& window, dou
 #undef VOLCONTACT_SIMD_KERNEL
 
 namespace volcontact {
+namespace {
+
+constexpr std::size_t kShare = 256;  // leaf pairs that are worth waking a thread for
+
+}  // namespace
 
 bool find_leaf_pairs(const ObbTree& a, const Pose& X_CA, const ObbTree& b, const Pose& X_CB,
                      const ColumnWindow& window, int most, CellScratch& scratch) noexcept {
@@ -290,8 +295,30 @@ bool find_leaf_pairs(const ObbTree& a, const Pose& X_CA, const ObbTree& b, const
 }
 
 void make_cells(const ObbTree& a, const Pose& X_CA, const ObbTree& b, const Pose& X_CB,
-                const ColumnWindow& window, CellScratch& scratch) noexcept {
-  VOLCONTACT_SIMD_CALL(scratch.path, make_cells_wide, a, X_CA, b, X_CB, window, scratch);
+                const ColumnWindow& window, int threads, CellScratch& scratch) noexcept {
+  const std::size_t pairs = scratch.leaf_pairs.size() / 2;
+  if (threads <= 1 || pairs < kShare) {
+    scratch.upright = VOLCONTACT_SIMD_CALL(scratch.path, make_cells_wide, a, X_CA, b, X_CB, window,
+                                           scratch.leaf_pairs.data(), pairs, scratch.cells);
+    return;
+  }
+  // Each share on its own; put together they are as if they were one.
+  const std::size_t shares = (pairs + kShare - 1) / kShare;
+  if (scratch.shares.size() < shares) scratch.shares.resize(shares);
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+  for (std::size_t i = 0; i < shares; ++i) {
+    const std::size_t first = i * kShare, count = std::min(pairs - first, kShare);
+    scratch.shares[i].upright =
+        VOLCONTACT_SIMD_CALL(scratch.path, make_cells_wide, a, X_CA, b, X_CB, window,
+                             scratch.leaf_pairs.data() + 2 * first, count, scratch.shares[i].cells);
+  }
+  scratch.upright = false;
+  scratch.cells.clear();
+  for (std::size_t i = 0; i < shares; ++i) {
+    const CellScratch::Share& share = scratch.shares[i];
+    scratch.upright |= share.upright;
+    scratch.cells.insert(scratch.cells.end(), share.cells.begin(), share.cells.end());
+  }
 }
 
 void make_cells_below(const ObbTree& a, const Pose& X_CA, CellScratch& scratch) noexcept {

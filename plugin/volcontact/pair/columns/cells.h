@@ -62,15 +62,20 @@ struct CellScratch {
   std::vector<int> leaf_pairs;  ///< leaf of A, leaf of B, ...
   std::vector<ColumnCell> cells;
   bool upright = false;  ///< some triangle in the window has no projection
+  struct Share {
+    std::vector<ColumnCell> cells;
+    bool upright;
+  };
+  std::vector<Share> shares;  ///< of several threads
 };
 
 /// Lists the pairs of leaves that may hold cells; false when there are more than `most`.
 bool find_leaf_pairs(const ObbTree& a, const Pose& X_CA, const ObbTree& b, const Pose& X_CB,
                      const ColumnWindow& window, int most, CellScratch& scratch) noexcept;
 
-/// Makes the cells of those pairs, in a fixed order.
+/// Makes the cells of those pairs, in a fixed order whatever the number of threads.
 void make_cells(const ObbTree& a, const Pose& X_CA, const ObbTree& b, const Pose& X_CB,
-                const ColumnWindow& window, CellScratch& scratch) noexcept;
+                const ColumnWindow& window, int threads, CellScratch& scratch) noexcept;
 
 /// The cells of A with the half-space z < 0 of C.
 void make_cells_below(const ObbTree& a, const Pose& X_CA, CellScratch& scratch) noexcept;
