@@ -44,7 +44,9 @@ TEST(ParallelSolid, HoldsWhatIsDeeper) {
         EXPECT_EQ(below < 0.0, signed_distance(inner, X_SI.inverse() * p) < 0.0) << name_of(solid);
         deeper += below < 0.0;
       }
-      if (share < 0.5) EXPECT_GT(deeper, 20) << name_of(solid);
+      if (share < 0.5) {
+        EXPECT_GT(deeper, 20) << name_of(solid);
+      }
     }
   }
 }
