@@ -11,6 +11,7 @@
 #include "core/support/gradient.h"
 #include "core/support/matchers.h"
 #include "core/support/meshes.h"
+#include "core/support/overlapping.h"
 
 namespace volcontact {
 namespace {
@@ -18,6 +19,7 @@ namespace {
 using test::box_soup;
 using test::evaluated;
 using test::mesh_of;
+using test::overlapping;
 using test::Random;
 using test::shifted;
 using test::Soup;
@@ -134,15 +136,8 @@ TEST(ComposedColumns, AMeshOfABoxMeetsComposedSolidsAsTheBox) {
     int compared = 0, served = 0;
     for (int i = 0; i < 16; ++i) {
       const Mesh mesh = mesh_of(box_soup(half, 1 + 3 * (i % 2)));
-      Pose X_AB = random.pose(1.0);
-      const Vec3 direction = X_AB.translation.normalized();
-      double together = 0.0, apart = 1.5;
-      for (int k = 0; k < 25; ++k) {
-        const double middle = 0.5 * (together + apart);
-        X_AB.translation = middle * direction;
-        (evaluated(box, kind.solid, X_AB).total.touching() ? together : apart) = middle;
-      }
-      X_AB.translation = (together - std::pow(10.0, random.uniform(-3.5, -1.0))) * direction;
+      const Pose X_AB =
+          overlapping(box, kind.solid, random, std::pow(10.0, random.uniform(-3.5, -1.0)));
       const Interference expected = evaluated(box, kind.solid, X_AB, Engine::kLines, 1e-5);
       if (!expected.total.touching() || expected.engine != Engine::kLines) continue;
       ++compared;

@@ -7,6 +7,7 @@
 #include "core/support/gradient.h"
 #include "core/support/matchers.h"
 #include "core/support/meshes.h"
+#include "core/support/overlapping.h"
 
 namespace volcontact {
 namespace {
@@ -14,6 +15,7 @@ namespace {
 using test::box_soup;
 using test::evaluated;
 using test::mesh_of;
+using test::overlapping;
 using test::Random;
 using test::shifted;
 using test::Soup;
@@ -25,20 +27,6 @@ std::vector<Shape> round_solids() {
           Capsule({.radius = 0.15, .half_length = 0.25}),
           Frustum({.bottom_radius = 0.3, .top_radius = 0.1, .half_length = 0.25}),
           Frustum({.bottom_radius = 0.3, .top_radius = 0.0, .half_length = 0.25})};
-}
-
-// B moved along a direction until it overlaps the box by `depth`.
-Pose overlapping(const Box& box, const Shape& b, Random& random, double depth) {
-  Pose X_AB = random.pose(1.0);
-  const Vec3 direction = X_AB.translation.normalized();
-  double together = 0.0, apart = 1.5;
-  for (int i = 0; i < 40; ++i) {
-    const double middle = 0.5 * (together + apart);
-    X_AB.translation = middle * direction;
-    (evaluated(box, b, X_AB).total.touching() ? together : apart) = middle;
-  }
-  X_AB.translation = (together - depth) * direction;
-  return X_AB;
 }
 
 // Lines through the box itself are the oracle.

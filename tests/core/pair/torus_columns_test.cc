@@ -10,6 +10,7 @@
 #include "core/support/gradient.h"
 #include "core/support/matchers.h"
 #include "core/support/meshes.h"
+#include "core/support/overlapping.h"
 
 namespace volcontact {
 namespace {
@@ -17,25 +18,12 @@ namespace {
 using test::box_soup;
 using test::evaluated;
 using test::mesh_of;
+using test::overlapping;
 using test::Random;
 using test::shifted;
 
 constexpr double kMajor = 0.3, kMinor = 0.1;
 const Torus kRing({.major_radius = kMajor, .minor_radius = kMinor});
-
-// Moved along a direction until it overlaps the box by `depth`.
-Pose overlapping(const Box& box, const Torus& ring, Random& random, double depth) {
-  Pose X_AB = random.pose(1.0);
-  const Vec3 direction = X_AB.translation.normalized();
-  double together = 0.0, apart = 1.5;
-  for (int i = 0; i < 40; ++i) {
-    const double middle = 0.5 * (together + apart);
-    X_AB.translation = middle * direction;
-    (evaluated(box, ring, X_AB).total.touching() ? together : apart) = middle;
-  }
-  X_AB.translation = (together - depth) * direction;
-  return X_AB;
-}
 
 // Circles of the ring through the box itself are the oracle.
 TEST(TorusColumns, AMeshOfABoxMeetsARingAsTheBox) {
