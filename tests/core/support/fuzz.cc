@@ -284,6 +284,8 @@ class Search {
 
 Cost cost_of(const Example& a, const Example& b) {
   const auto composed = [](const Example& e) { return std::holds_alternative<Csg>(e.shape); };
+  const auto mesh = [](const Example& e) { return std::holds_alternative<Mesh>(e.shape); };
+  if (mesh(a) || mesh(b)) return composed(a) || composed(b) ? Cost::kHigh : Cost::kMiddle;
   if (composed(a) || composed(b)) {
     return has_cone_or_ring(a) || has_cone_or_ring(b) ? Cost::kHigh : Cost::kMiddle;
   }

@@ -12,8 +12,8 @@ namespace volcontact::test {
 /// How much a pair costs, which decides how often it is tried.
 enum class Cost : int {
   kLow = 0,     ///< simple convex solids: microseconds
-  kMiddle = 1,  ///< composed solids with bores: now and then left to the octree
-  kHigh = 2,    ///< two tori, and composed solids with tori or cones: the octree, at length
+  kMiddle = 1,  ///< meshes, and composed solids with bores: now and then left to the octree
+  kHigh = 2,    ///< composed solids with meshes, tori or cones: at length
 };
 Cost cost_of(const Example& a, const Example& b);
 
