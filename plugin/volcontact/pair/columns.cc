@@ -360,7 +360,8 @@ class Columns {
       const double length = m.area_vector.norm();
       const double along = length > 0.0 ? std::abs(m.area_vector.z()) / length : 1.0;
       m.depth_moment = sum.energy * along;
-      m.depth = (sum.high - sum.low) * along;
+      // A region may show no face to the columns, only walls.
+      m.depth = sum.high > sum.low ? (sum.high - sum.low) * along : 0.0;
       out_.sites.push_back(transformed(m, X_AC));
     }
     return area_vector;

@@ -385,6 +385,17 @@ TEST(Columns, EveryInstructionSetMakesTheSameBits) {
   }
 }
 
+// Flush faces on all sides: one of the regions shows nothing but walls to the columns.
+TEST(Columns, ARegionOfWallsAloneHasNoDepthAndIsFinite) {
+  const Mesh block = mesh_of(box_soup(Vec3(0.35, 0.3, 0.25), 8));
+  Mat3 turned;
+  turned << 0, -1, 0, 0, 0, 1, -1, 0, 0;
+  const Pose X_AB{turned, Vec3(0.0, -0.099999999999999978, 0.15000000000000002)};
+  const Interference out = evaluated(block, Box({.half_sizes = Vec3(0.4, 0.3, 0.2)}), X_AB);
+  ASSERT_TRUE(out.total.touching());
+  for (const VolumeMetrics& site : out.sites) EXPECT_TRUE(is_finite(site));
+}
+
 // Bodies pressed into each other deep enough that several threads get cells to make.
 TEST(Columns, AnyNumberOfThreadsMakesTheSameBits) {
   const Mesh one = mesh_of(test::bumpy_soup(4, 1)), two = mesh_of(test::bumpy_soup(4, 2));
