@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "c_api/guarded.h"
+
+#include <algorithm>
+#include <cstring>
+#include <sstream>
+
+namespace volcontact::c_api {
+namespace {
+
+// Of fixed size, so that a message about lack of memory needs none.
+thread_local char last_error[2048] = "";
+
+}  // namespace
+
+int fail(int code, const char* text) noexcept {
+  const std::size_t length = std::min(std::strlen(text), sizeof last_error - 1);
+  std::memcpy(last_error, text, length);
+  last_error[length] = '\0';
+  return code;
+}
+
+void require_given(const void* pointer, const char* function, const char* argument) {
+  if (pointer) return;
+  throw std::invalid_argument(std::string(function) + ": " + argument + " is null");
+}
+
+Pose pose_from(const double* matrix, const char* name) {
+  if (!matrix) return {};
+  constexpr double kOrthonormal = 1e-6;  // numbers of single precision are welcome
+  using Matrix4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+  const Eigen::Map<const Matrix4> m(matrix);
+  if (!m.allFinite()) {
+    throw std::invalid_argument(std::string(name) + ": the pose has a number that is not finite");
+  }
+  const Pose pose{m.topLeftCorner<3, 3>(), m.topRightCorner<3, 1>()};
+  const double skewed = (pose.rotation.transpose() * pose.rotation - Mat3::Identity()).norm();
+  if (skewed > kOrthonormal || pose.rotation.determinant() < 0.0) {
+    std::ostringstream message;
+    message << name << ": the upper left 3x3 block is no rotation (determinant "
+            << pose.rotation.determinant() << ", |R^T R - 1| = " << skewed << ", allowed "
+            << kOrthonormal << "); poses are row-major 4x4 matrices";
+    throw std::invalid_argument(message.str());
+  }
+  if (m.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)) {
+    throw std::invalid_argument(
+        std::string(name) +
+        ": the last row of a pose must be 0 0 0 1; poses are row-major 4x4 matrices");
+  }
+  return pose;
+}
+
+void copy_pose(const Pose& pose, double* matrix) noexcept {
+  using Matrix4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+  Eigen::Map<Matrix4> m(matrix);
+  m.setIdentity();
+  m.topLeftCorner<3, 3>() = pose.rotation;
+  m.topRightCorner<3, 1>() = pose.translation;
+}
+
+Twist twist_from(const double* numbers, const char* name) {
+  const Eigen::Map<const Eigen::Matrix<double, 6, 1>> v(numbers);
+  if (!v.allFinite()) {
+    throw std::invalid_argument(std::string(name) + ": the twist has a number that is not finite");
+  }
+  return {v.head<3>(), v.tail<3>()};
+}
+
+const char* message() noexcept { return last_error; }
+
+int copy_text(const std::string& text, char* buffer, int capacity) noexcept {
+  if (buffer && capacity > 0) {
+    const std::size_t count = std::min(text.size(), static_cast<std::size_t>(capacity - 1));
+    std::memcpy(buffer, text.data(), count);
+    buffer[count] = '\0';
+  }
+  return static_cast<int>(text.size());
+}
+
+}  // namespace volcontact::c_api
+
+using namespace volcontact::c_api;
+
+extern "C" {
+
+int vc_version(void) { return VC_VERSION; }
+
+int vc_check_version(int version_of_header) {
+  constexpr int kPatches = 100;
+  if (version_of_header / kPatches == VC_VERSION / kPatches) return 0;
+  return guarded([&] {
+    return fail(VC_ERROR_VERSION,
+                ("the program was compiled with the header of version " +
+                 std::to_string(version_of_header) + " and the library has " +
+                 std::to_string(VC_VERSION) + "; compile it with the library's own volcontact.h")
+                    .c_str());
+  });
+}
+
+const char* vc_error(void) { return volcontact::c_api::message(); }
+
+}  // extern "C"

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/support/count_allocations.h"
+#include "c_api/support.h"
+
+namespace volcontact::c_api::testing {
+namespace {
+
+TEST(CAllocations, WarmEvaluationAllocatesNothing) {
+  const Model model = model_of(solid("box", "half_sizes", {0.1, 0.08, 0.05}),
+                               solid("box", "half_sizes", {0.5, 0.5, 0.05}));
+  ASSERT_EQ(vc_model_choose(model.get(), "friction_law", "bristle"), 0);
+  const Workspace scratch = workspace();
+  std::vector<double> state(static_cast<std::size_t>(vc_model_state_size(model.get(), 4)));
+  vc_result result;
+  vc_site sites[4];
+  const auto evaluate = [&](double x) {
+    const vc_motion motion = at(x, 0, 0.099);
+    return vc_evaluate(model.get(), scratch.get(), &motion, state.data(), state.data(),
+                       static_cast<int>(state.size()), 1e-3, &result);
+  };
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(evaluate(1e-5 * i), 0) << vc_error();
+  }
+  const adaptor::testing::AllocationCounter counter;
+  const long before = adaptor::testing::AllocationCounter::total();
+  for (int i = 3; i < 20; ++i) {
+    evaluate(1e-5 * i);
+    vc_sites(scratch.get(), sites, 4);
+  }
+  EXPECT_EQ(adaptor::testing::AllocationCounter::total(), before);
+  workspace();  // the counter does count
+  EXPECT_GT(adaptor::testing::AllocationCounter::total(), before);
+}
+
+}  // namespace
+}  // namespace volcontact::c_api::testing
