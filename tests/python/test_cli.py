@@ -3,7 +3,10 @@
 
 import io
 import json
+import re
+from pathlib import Path
 
+import mujoco
 import pytest
 from rich.console import Console
 
@@ -178,3 +181,25 @@ def test_bars_appear_only_when_the_work_takes_a_while(monkeypatch):
     bars.close()
     assert "native contact" in output.getvalue()
     assert "50 %" in output.getvalue()
+
+
+def test_check_prints_the_line_that_a_hand_written_scene_needs(scene, tmp_path, capsys):
+    assert main(["check", scene]) == 0
+    (line,) = re.findall(r"<size nuserdata=\"\d+\"/>", capsys.readouterr().out)
+    text = Path(scene).read_text()
+    # With that line plain MuJoCo loads a model that can be attached; without, it cannot.
+    with pytest.raises(ValueError, match="userdata is too small"):
+        volcontact.attach(mujoco.MjModel.from_xml_string(text))
+    better = tmp_path / "better.xml"
+    better.write_text(text.replace("<worldbody>", f"{line}<worldbody>"))
+    with volcontact.attach(mujoco.MjModel.from_xml_path(str(better))):
+        pass
+    assert main(["check", str(better)]) == 0
+    output = capsys.readouterr().out
+    assert "the file has room" in output and "<size" not in output
+    # Numbers of the user's own come before ours.
+    own = tmp_path / "own.xml"
+    own.write_text(text.replace("<worldbody>", '<size nuserdata="3"/><worldbody>'))
+    assert main(["check", str(own), "--json"]) == 0
+    userdata = json.loads(capsys.readouterr().out)["userdata"]
+    assert userdata["line"] == f'<size nuserdata="{userdata["needed"] + 3}"/>'

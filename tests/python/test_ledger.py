@@ -11,10 +11,12 @@ import copy
 import mujoco
 import numpy as np
 import pytest
+from checkpoints import checkpoint, restore
 
 import volcontact as vc
 
 STEPS = 400
+SOFT, STIFF = "2e6", "1e11"  # k_v [N/m^3]: steps are explicit, and implicit
 INTEGRATORS = [
     name
     for name in ("Euler", "RK4", "implicit", "implicitfast", "discrete")
@@ -33,22 +35,26 @@ SCENE = """
   </worldbody>
   <custom>
     <numeric name="volcontact/option/target/{target}" data="1"/>
-    <numeric name="volcontact/material/ice/stiffness" data="2e6"/>
+    <numeric name="volcontact/material/ice/stiffness" data="{stiffness}"/>
     <numeric name="volcontact/material/ice/damping" data="0.5"/>
     <numeric name="volcontact/material/ice/friction" data="0"/>
     <tuple name="volcontact/material/ice">
       <element objtype="geom" objname="floor"/><element objtype="geom" objname="box"/>
     </tuple>
   </custom>
+  <keyframe><key qpos="0 0 .11 1 0 0 0" qvel="0 0 -.5 0 .3 0"/></keyframe>
 </mujoco>
 """
 
 
-def run(target, integrator, behaviour):
+def run(target, integrator, behaviour, stiffness=SOFT):
     """Final qpos and qvel after STEPS steps of `behaviour`."""
-    model = vc.load(SCENE.format(target=target, integrator=integrator))
+    model = vc.load(SCENE.format(target=target, integrator=integrator, stiffness=stiffness))
     data = mujoco.MjData(model)
     with vc.attach(model) as contact:
+        (pair,) = contact.description["pairs"]
+        # A whole face makes it stiff, the corners that it lands on do not.
+        assert ("from a patch" in pair["implicit"]) == (stiffness == STIFF)
         touched = False
         for i in range(STEPS):
             data = behaviour(model, data, i) or data
@@ -57,8 +63,12 @@ def run(target, integrator, behaviour):
     return np.concatenate([data.qpos, data.qvel])
 
 
-def error(target, integrator, behaviour):
-    return np.abs(run(target, integrator, behaviour) - run("passive", integrator, behaviour)).max()
+def error(target, integrator, behaviour, stiffness=SOFT):
+    reference = run("passive", integrator, behaviour, stiffness)
+    return np.abs(run(target, integrator, behaviour, stiffness) - reference).max()
+
+
+KEPT = {}
 
 
 def does_nothing(model, data, i):
@@ -115,9 +125,36 @@ def assigns_xfrc_every_step(model, data, i):
     mujoco.mj_step(model, data)
 
 
+def goes_to_a_keyframe_midway(model, data, i):
+    if i == STEPS // 2:
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_step(model, data)
+
+
+def goes_back_to_a_checkpoint(model, data, i):
+    # The state is kept at one step, put back into data that have run on, twice.
+    if i == 0:
+        data.qfrc_applied[0] = 0.3
+    if i == STEPS // 4:
+        KEPT[id(model)] = checkpoint(data)
+    if i in (STEPS // 2, 3 * STEPS // 4):
+        restore(data, KEPT[id(model)])
+    mujoco.mj_step(model, data)
+
+
+def steps_in_two_halves(model, data, i):
+    if i == 0:
+        data.qfrc_applied[0] = 0.3
+    mujoco.mj_step1(model, data)
+    mujoco.mj_step2(model, data)
+
+
 EXACT = [
     does_nothing,
     resets_midway,
+    goes_to_a_keyframe_midway,
+    goes_back_to_a_checkpoint,
+    steps_in_two_halves,
     sets_a_constant_force_once,
     calls_forward_again,
     takes_finite_differences,
@@ -127,12 +164,13 @@ EXACT = [
 ]
 
 
-# MuJoCo refuses finite differences under Runge-Kutta, from some release on.
+# MuJoCo refuses finite differences under Runge-Kutta, from some release on, and its two halves of
+# a step know none.
 CASES = [
     pytest.param(behaviour, integrator, id=f"{behaviour.__name__}-{integrator}")
     for behaviour in EXACT
     for integrator in INTEGRATORS
-    if (behaviour, integrator) != (takes_finite_differences, "RK4")
+    if integrator != "RK4" or behaviour not in (takes_finite_differences, steps_in_two_halves)
 ]
 
 
@@ -145,6 +183,16 @@ def test_applied_equals_passive_to_the_last_bit(behaviour, integrator):
 def test_xfrc_equals_passive_to_rounding(behaviour, integrator):
     # MuJoCo turns xfrc_applied into joint forces by other sums than ours.
     assert error("xfrc", integrator, behaviour) < 1e-11
+
+
+IMPLICIT = [case for case in CASES if "RK4" not in case.id]
+
+
+@pytest.mark.parametrize(("behaviour", "integrator"), IMPLICIT)
+def test_targets_equal_passive_under_implicit_steps(behaviour, integrator):
+    # The solver of the contact is told the user's forces, wherever they stand.
+    assert error("applied", integrator, behaviour, STIFF) == 0.0
+    assert error("xfrc", integrator, behaviour, STIFF) < 1e-11
 
 
 # Writes after the callback has run, the one thing a shared array cannot survive. mj_step1 and
@@ -183,7 +231,7 @@ def test_force_from_a_control_callback_leaves_other_targets_alone(target):
         data.qfrc_applied[:] = (0.3, 0, 0, 0, 0, 0)
 
     constant = run(target, "Euler", sets_a_constant_force_once)
-    model = vc.load(SCENE.format(target=target, integrator="Euler"))
+    model = vc.load(SCENE.format(target=target, integrator="Euler", stiffness=SOFT))
     data = mujoco.MjData(model)
     mujoco.set_mjcb_control(control)
     try:
@@ -197,7 +245,7 @@ def test_force_from_a_control_callback_leaves_other_targets_alone(target):
 
 @pytest.mark.parametrize("target", ["applied", "xfrc"])
 def test_array_holds_user_force_plus_contact(target):
-    model = vc.load(SCENE.format(target=target, integrator="Euler"))
+    model = vc.load(SCENE.format(target=target, integrator="Euler", stiffness=SOFT))
     data = mujoco.MjData(model)
     data.qpos[2] = 0.1
     array = data.qfrc_applied if target == "applied" else data.xfrc_applied[1]
@@ -218,7 +266,11 @@ def test_finite_differences_see_the_contact_and_leave_no_trace():
     keeps_time = True
     for target in ("passive", "applied", "undisturbed"):
         model = vc.load(
-            SCENE.format(target=target.replace("undisturbed", "applied"), integrator="Euler")
+            SCENE.format(
+                target=target.replace("undisturbed", "applied"),
+                integrator="Euler",
+                stiffness=SOFT,
+            )
         )
         data = mujoco.MjData(model)
         a = np.zeros((2 * model.nv, 2 * model.nv))
@@ -245,7 +297,7 @@ def test_inverse_dynamics_take_passive_contact_as_known():
     # applied force and inverse dynamics find it.
     needed = {}
     for target in ("passive", "applied"):
-        model = vc.load(SCENE.format(target=target, integrator="Euler"))
+        model = vc.load(SCENE.format(target=target, integrator="Euler", stiffness=SOFT))
         data = mujoco.MjData(model)
         data.qpos[:7] = 0, 0, 0.0999, 1, 0, 0, 0
         with vc.attach(model) as contact:

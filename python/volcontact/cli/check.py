@@ -44,6 +44,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
         warnings.simplefilter("ignore", RuntimeWarning)  # they are part of the description
         with volcontact.attach(model) as contact:
             description = contact.description
+    description["userdata"]["line"] = size_line(description["userdata"])
     if terminal.json:
         terminal.result(description)
         return 0
@@ -58,3 +59,18 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     for warning in description.get("warnings", ()):
         terminal.warning(str(warning))
     return 0
+
+
+def size_line(userdata: dict[str, int]) -> str:
+    """What a program that does not use `volcontact.load` must find in the file.
+
+    Args:
+        userdata: `needed` and `present` numbers, of a model that `load` made.
+
+    Returns:
+        The MJCF line, or that the file has enough.
+    """
+    in_file = userdata["present"] - userdata["needed"]
+    if in_file >= userdata["needed"]:
+        return f'the file has room: nuserdata="{in_file}"'
+    return f'<size nuserdata="{userdata["needed"] + in_file}"/>'
