@@ -91,6 +91,19 @@ void write_warning(const char* text, Warn warn = &mju_warning) {
   }
 }
 
+/// Distance along a ray to a geom of a simple type, 0 from within, negative when it misses; its
+/// function got one more argument on the way.
+template <typename Ray = decltype(&mju_rayGeom)>
+double ray_to_zone(const mjtNum* position, const mjtNum* rotation, const mjtNum* size,
+                   const mjtNum* point, const mjtNum* direction, int type, Ray ray = &mju_rayGeom) {
+  if constexpr (std::is_invocable_v<Ray, const mjtNum*, const mjtNum*, const mjtNum*, const mjtNum*,
+                                    const mjtNum*, int>) {
+    return ray(position, rotation, size, point, direction, type);
+  } else {
+    return ray(position, rotation, size, point, direction, type, nullptr);
+  }
+}
+
 /// "2.2.2" from 222, "4.0.0" from 4000000.
 inline std::string version_text(int version) {
   const int base = version < 1000 ? 10 : 1000;

@@ -3,6 +3,7 @@
 
 #include <atomic>
 
+#include "adaptor/auto_attach.h"
 #include "adaptor/scene_registry.h"
 #include "adaptor/volcontact_mujoco.h"
 
@@ -57,5 +58,6 @@ extern "C" void volcontact_passive(const mjModel* m, mjData* d) {
   using namespace volcontact::adaptor;
   if (is_inside && may_be_called_back) return;
   call_previous(m, d);
-  if (const SceneContact* contact = contact_of(m)) contact->step(m, d, thread_scratch());
+  const SceneContact* contact = attaches_by_itself() ? contact_by_itself(m) : contact_of(m);
+  if (contact) contact->step(m, d, thread_scratch());
 }

@@ -114,6 +114,7 @@ SceneContact::SceneContact(const mjModel* m, const SceneContact* before)
   pairs_.reserve(geom_pairs_.size());
   for (const GeomPair& pair : geom_pairs_) add_pair(m, pair);
   check_integrator(m);
+  warn_about_mixed_steps(m);
   if (sites_.row_size > 0) sites_.rows = rows_for(geom_pairs_);
   if (options().implicit != Implicit::kNever) solved_rows_ = rows_for(geom_pairs_);
 }
@@ -177,7 +178,9 @@ void SceneContact::warn_about_model(const mjModel* m) {
   }
   for (int i = 0; i < m->nsensor; ++i) {
     if (m->sensor_type[i] == mjSENS_TOUCH) {
-      warn_once("touch sensors read 0 under volumetric contact");
+      warn_once(
+          "touch sensors see native contacts only, until contact.update_touch(data) or "
+          "volcontact_update_touch writes them");
     }
   }
 }

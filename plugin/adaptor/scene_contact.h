@@ -99,6 +99,7 @@ class SceneContact {
   void add_pair(const mjModel* m, const GeomPair& geoms);
   void warn_about_model(const mjModel* m);
   void check_integrator(const mjModel* m);
+  void warn_about_mixed_steps(const mjModel* m);
   double largest_rate(const mjModel* m, const GeomPair& geoms, const PairLaws& laws) const;
   void warn_once(const std::string& warning);
   // The sites that the evaluation before left, of which `committed` is null when there was none.

@@ -87,6 +87,19 @@ void SceneContact::check_integrator(const mjModel* m) {
   }
 }
 
+void SceneContact::warn_about_mixed_steps(const mjModel* m) {
+  if (options().pairs != PairRule::kListed || !may_be_implicit(m)) return;
+  const bool always = options().implicit == Implicit::kAlways;
+  for (const PairContact& pair : pairs_) {
+    if (!always && !implicit_use(m, pair).is_possible) continue;
+    warn_once(
+        "steps may be implicit in the volumetric contacts, and these know nothing of MuJoCo's own "
+        "contacts: a body that touches both is not held as it should be; use "
+        "volcontact/option/implicit/off with a smaller time step, or let all pairs be volumetric");
+    return;
+  }
+}
+
 bool SceneContact::may_be_implicit(const mjModel* m) const noexcept {
   return options().implicit != Implicit::kNever && m->opt.integrator != mjINT_RK4;
 }

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "adaptor/auto_attach.h"
+#include "adaptor/contact_list.h"
 #include "adaptor/passive_callback.h"
 #include "adaptor/scene_description.h"
 #include "adaptor/scene_registry.h"
@@ -81,6 +83,19 @@ volcontact_site record_of(const PairContact& pair, int index, const SiteReport& 
   return site;
 }
 
+volcontact_contact record_of(const SceneForce& force) {
+  volcontact_contact contact{};
+  contact.geom_a = force.geom_a;
+  contact.geom_b = force.geom_b;
+  contact.is_native = force.is_native ? 1 : 0;
+  copy_vector(force.position, contact.position);
+  copy_vector(force.normal, contact.normal);
+  copy_vector(force.force, contact.force);
+  copy_vector(force.torque, contact.torque);
+  contact.normal_force = force.normal_force;
+  return contact;
+}
+
 void copy_channels(const ByChannel& from, double (&to)[4]) {
   const double numbers[] = {from.normal, from.roll, from.slide, from.spin};
   std::copy(std::begin(numbers), std::end(numbers), to);
@@ -122,7 +137,7 @@ int volcontact_attach(mjModel* m, char* message, int message_size) {
 int volcontact_detach(mjModel* m, char* message, int message_size) {
   return guarded(message, message_size, [&] {
     if (!detach_scene(m)) throw std::logic_error("the model is not attached");
-    if (attached_scenes() == 0) uninstall_callback();
+    if (attached_scenes() == 0 && !attaches_by_itself()) uninstall_callback();
     return 0;
   });
 }
@@ -130,6 +145,15 @@ int volcontact_detach(mjModel* m, char* message, int message_size) {
 int volcontact_is_attached(const mjModel* m) { return is_attached(m) ? 1 : 0; }
 
 int volcontact_is_installed(void) { return callback_is_installed() ? 1 : 0; }
+
+int volcontact_set_auto(int on) {
+  return guarded(nullptr, 0, [&] {
+    set_attaches_by_itself(on != 0);
+    if (on != 0) install_callback();
+    if (on == 0 && attached_scenes() == 0) uninstall_callback();
+    return 0;
+  });
+}
 
 int volcontact_release(const mjModel* m, mjData* d) {
   return guarded(nullptr, 0, [&] {
@@ -156,6 +180,30 @@ int volcontact_sites(const mjModel* m, const mjData* d, volcontact_site* sites, 
       }
     }
     return count;
+  });
+}
+
+int volcontact_contacts(const mjModel* m, const mjData* d, volcontact_contact* contacts,
+                        int capacity) {
+  return guarded(nullptr, 0, [&] {
+    const SceneContact* contact = contact_of(m);
+    if (!contact) return static_cast<int>(VOLCONTACT_ERROR_STATE);
+    std::vector<SceneForce> forces;
+    list_contacts(*contact, m, d, thread_scratch(), forces);
+    const std::size_t room = contacts ? static_cast<std::size_t>(std::max(capacity, 0)) : 0;
+    for (std::size_t i = 0; i < std::min(room, forces.size()); ++i) {
+      contacts[i] = record_of(forces[i]);
+    }
+    return static_cast<int>(forces.size());
+  });
+}
+
+int volcontact_update_touch(const mjModel* m, mjData* d) {
+  return guarded(nullptr, 0, [&] {
+    const SceneContact* contact = contact_of(m);
+    if (!contact) return static_cast<int>(VOLCONTACT_ERROR_STATE);
+    update_touch_sensors(*contact, m, d, thread_scratch());
+    return 0;
   });
 }
 

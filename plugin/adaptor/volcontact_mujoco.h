@@ -48,6 +48,19 @@ typedef struct volcontact_site_ {
   double volume_error;    // bound or estimate of the error of the volume [m^3]
 } volcontact_site;
 
+// One contact of a scene, a volumetric site or one of MuJoCo's own.
+typedef struct volcontact_contact_ {
+  int geom_a;  // -1: no geom, a flex
+  int geom_b;
+  int is_native;
+  int reserved;
+  double position[3];   // centroid of the overlap, or the contact point [m]
+  double normal[3];     // on a, from b to a
+  double force[3];      // on a [N]
+  double torque[3];     // on a, about the position [N m]
+  double normal_force;  // [N]
+} volcontact_contact;
+
 // Energies; channels in the order normal, roll, slide, spin.
 typedef struct volcontact_energy_ {
   double elastic;        // stored in the contacts [J]
@@ -82,6 +95,12 @@ VOLCONTACT_API int volcontact_is_attached(const mjModel* m);
 // 1 while MuJoCo's passive callback is volcontact's; somebody may have replaced it.
 VOLCONTACT_API int volcontact_is_installed(void);
 
+// 1: every model with a `volcontact/...` key is attached by itself at its first evaluation, as
+// MuJoCo makes one when it compiles; for programs that know nothing of volcontact. The file needs
+// room in userdata (`volcontact check` prints the line). 0: no more. A library of another MuJoCo
+// returns VOLCONTACT_ERROR_VERSION.
+VOLCONTACT_API int volcontact_set_auto(int on);
+
 // The passive callback itself, for programs that set mjcb_passive themselves.
 VOLCONTACT_API void volcontact_passive(const mjModel* m, mjData* d);
 
@@ -93,6 +112,15 @@ VOLCONTACT_API int volcontact_release(const mjModel* m, mjData* d);
 // how many there are; 0 before the first evaluation.
 VOLCONTACT_API int volcontact_sites(const mjModel* m, const mjData* d, volcontact_site* sites,
                                     int capacity);
+
+// All contacts at the state of the last evaluation: volumetric sites, then those MuJoCo solved.
+// Writes up to `capacity` of them and returns how many there are.
+VOLCONTACT_API int volcontact_contacts(const mjModel* m, const mjData* d,
+                                       volcontact_contact* contacts, int capacity);
+
+// Writes what the touch sensors measure to sensordata: MuJoCo sees its own contacts alone. Call it
+// after mj_step or mj_forward, before sensordata is read.
+VOLCONTACT_API int volcontact_update_touch(const mjModel* m, mjData* d);
 
 // Energies at the last evaluation.
 VOLCONTACT_API int volcontact_get_energy(const mjModel* m, const mjData* d,

@@ -40,7 +40,7 @@ from volcontact._volcontact import (
     series_stiffness,
 )
 from volcontact.own_laws import FrictionLaw, LawField, LawState, NormalLaw
-from volcontact.scene import Contact, attach, load
+from volcontact.scene import Contact, attach, contact_forces, load
 
 __version__ = "0.1.0"
 
@@ -81,6 +81,7 @@ __all__ = [
     "VolumeSpring",
     "__version__",
     "attach",
+    "contact_forces",
     "interference",
     "layer_stiffness",
     "load",

@@ -41,6 +41,21 @@ SITE_DTYPE = np.dtype(
     align=True,
 )
 
+CONTACT_DTYPE = np.dtype(
+    [
+        ("geom_a", "i4"),
+        ("geom_b", "i4"),
+        ("is_native", "i4"),
+        ("reserved", "i4"),
+        ("position", "f8", (3,)),
+        ("normal", "f8", (3,)),
+        ("force", "f8", (3,)),
+        ("torque", "f8", (3,)),
+        ("normal_force", "f8"),
+    ],
+    align=True,
+)
+
 _ERROR_VERSION = -2
 _ERROR_STATE = -3
 _ERROR_INTERNAL = -4
@@ -76,6 +91,8 @@ _SIGNATURES = {
     "is_installed": _Signature(()),
     "release": _Signature((ctypes.c_void_p, ctypes.c_void_p)),
     "sites": _Signature((ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int)),
+    "contacts": _Signature((ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int)),
+    "update_touch": _Signature((ctypes.c_void_p, ctypes.c_void_p)),
     "get_energy": _Signature((ctypes.c_void_p, ctypes.c_void_p, ctypes.POINTER(RawEnergy))),
     "describe": _Signature((ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int), has_message=True),
     "live_error": _Signature((ctypes.c_void_p,), has_message=True),

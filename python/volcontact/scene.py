@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
-from volcontact._adaptor import SITE_DTYPE, RawEnergy, adaptor
+from volcontact._adaptor import CONTACT_DTYPE, SITE_DTYPE, RawEnergy, adaptor
 
 
 class Channels(NamedTuple):
@@ -89,6 +89,26 @@ def attach(model: mujoco.MjModel) -> Contact:
     if not isinstance(model, mujoco.MjModel):
         raise TypeError(f"attach takes an mujoco.MjModel, got {type(model).__name__}")
     return Contact(model)
+
+
+def contact_forces(data: mujoco.MjData) -> np.ndarray:
+    """All contacts of data of an attached model, volumetric and MuJoCo's own.
+
+    Returns:
+        Structured array as of `Contact.contact_forces`.
+
+    Raises:
+        TypeError: not an MjData.
+        ValueError: no attached model, or more than one, has data of this size; then ask the
+            `Contact` itself.
+    """
+    if not isinstance(data, mujoco.MjData):
+        raise TypeError(f"contact_forces takes an mujoco.MjData, got {type(data).__name__}")
+    fitting = [contact for contact in Contact._open.values() if contact._fits(data)]
+    if len(fitting) != 1:
+        count = "no attached model has" if not fitting else f"{len(fitting)} attached models have"
+        raise ValueError(f"{count} data of this size: call contact_forces of what attach returned")
+    return fitting[0].contact_forces(data)
 
 
 class Contact:
@@ -181,6 +201,41 @@ class Contact:
                 return self._sites[:count].copy()
             self._sites = np.empty(2 * count, SITE_DTYPE)
 
+    def contact_forces(self, data: mujoco.MjData) -> np.ndarray:
+        """All contacts at the state of the last evaluation, volumetric and MuJoCo's own.
+
+        The same for every target, and what to read in a mixed scene.
+
+        Returns:
+            Structured array, one row a contact. Vectors have shape (3,) and are in the world
+            frame. Fields: `geom_a`, `geom_b` (-1 for a flex), `is_native`, `position` [m] (centroid
+            of the overlap, or MuJoCo's contact point), `normal` (on a, from b to a), `force` on a
+            [N], `torque` on a about the position [N m], `normal_force` [N].
+        """
+        model = self._require_open()
+        self._check(data)
+        rows = np.empty(64, CONTACT_DTYPE)
+        while True:
+            count = self._adaptor.call(
+                "contacts", model._address, data._address, rows.ctypes.data, len(rows)
+            )
+            if count <= len(rows):
+                names = [name for name in CONTACT_DTYPE.names or () if name != "reserved"]
+                return rows[:count][names].copy()
+            rows = np.empty(count, CONTACT_DTYPE)
+
+    def update_touch(self, data: mujoco.MjData) -> None:
+        """Writes what touch sensors measure into `data.sensordata`.
+
+        MuJoCo's touch sensors see native contacts only, under every target. Call this after
+        `mj_step` or `mj_forward`, before `sensordata` is read; like all sensors they then belong to
+        the state of the last evaluation. The rule is MuJoCo's: normal forces on the body of the
+        sensor's site whose ray, outward from the contact, meets the site.
+        """
+        model = self._require_open()
+        self._check(data)
+        self._adaptor.call("update_touch", model._address, data._address)
+
     def energy(self, data: mujoco.MjData) -> Energy:
         """Energies at the last evaluation; the account starts anew when the data is reset."""
         raw = self._raw_energy(data)
@@ -228,9 +283,7 @@ class Contact:
         """The data fit the model; warns when numbers changed in the model are not valid."""
         if not isinstance(data, mujoco.MjData):
             raise TypeError(f"takes an mujoco.MjData, got {type(data).__name__}")
-        model = self._model
-        sizes = (data.qpos.size, data.qvel.size, len(data.geom_xpos), data.userdata.size)
-        if sizes != (model.nq, model.nv, model.ngeom, model.nuserdata):
+        if not self._fits(data):
             raise ValueError("the data are not of the attached model")
         if not self._adaptor.call("is_installed"):
             self._report(
@@ -239,6 +292,11 @@ class Contact:
         error = self.live_error()
         if error:
             self._report(f"the last valid numbers stay in force: {error}")
+
+    def _fits(self, data: mujoco.MjData) -> bool:
+        model = self._model
+        sizes = (data.qpos.size, data.qvel.size, len(data.geom_xpos), data.userdata.size)
+        return sizes == (model.nq, model.nv, model.ngeom, model.nuserdata)
 
     def _report(self, text: str) -> None:
         if text == self._reported:

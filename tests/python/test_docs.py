@@ -240,22 +240,32 @@ def documented_messages() -> list[str]:
     return [line for _, text in blocks(page, "text") for line in text.splitlines()]
 
 
-def test_c_program_of_the_plugin_page_runs(tmp_path: Path) -> None:
+@pytest.mark.parametrize("language", ["c", "cpp"])
+def test_programs_of_the_plugin_page_run(language: str, tmp_path: Path) -> None:
     """Compiled as the page says, against the MuJoCo and the adaptor of this environment."""
     page = ROOT / "plugin" / "README.md"
-    (_, program), (_, scene) = blocks(page, "c")[0], blocks(page, "xml")[0]
-    (tmp_path / "program.c").write_text(program, encoding="utf-8")
+    (_, program), (_, scene) = blocks(page, language)[0], blocks(page, "xml")[0]
+    source = tmp_path / f"program.{language}"
+    source.write_text(program, encoding="utf-8")
     (tmp_path / "scene.xml").write_text(scene, encoding="utf-8")
     package = Path(mujoco.__file__).parent
     adaptor = Path(vc._volcontact.__file__).parent
     (mujoco_library,) = package.glob("libmujoco.so.*")
     (adaptor_library,) = adaptor.glob(f"libvolcontact_mujoco-{mujoco.__version__}.so")
+    variable, default, standard = {
+        "c": ("CC", "cc", "-std=c99"),
+        "cpp": ("CXX", "c++", "-std=c++17"),
+    }[language]
     subprocess.run(
         [
-            os.environ.get("CXX", "c++"),
-            tmp_path / "program.c",
+            os.environ.get(variable, default),
+            standard,
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            source,
             f"-I{ROOT / 'plugin'}",
-            f"-I{package / 'include'}",
+            f"-isystem{package / 'include'}",
             adaptor_library,
             mujoco_library,
             f"-Wl,-rpath,{adaptor}:{package}",
@@ -267,7 +277,11 @@ def test_c_program_of_the_plugin_page_runs(tmp_path: Path) -> None:
     ran = subprocess.run(
         [tmp_path / "program"], cwd=tmp_path, check=True, capture_output=True, text=True
     )
-    assert "touches at 1 place" in ran.stdout
+    if language == "c":
+        assert "touches at 1 place" in ran.stdout
+    else:
+        (force,) = re.findall(r"geoms 0 and 1: (\S+) N", ran.stdout)
+        assert float(force) == pytest.approx(9.81, rel=0.05)  # 1 kg that has nearly come to rest
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/auto_attach.h"
+
+#include <atomic>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <string>
+
+#include "adaptor/mujoco_compat.h"
+#include "adaptor/scene_registry.h"
+
+namespace volcontact::adaptor {
+namespace {
+
+std::atomic<bool> is_on{false};
+
+// Keys may have a prefix before `volcontact/`.
+bool has_keys(const mjModel* m) noexcept {
+  const auto is_ours = [m](int address) {
+    return std::strstr(m->names + address, "volcontact/") != nullptr;
+  };
+  for (int i = 0; i < m->nnumeric; ++i) {
+    if (is_ours(m->name_numericadr[i])) return true;
+  }
+  for (int i = 0; i < m->ntuple; ++i) {
+    if (is_ours(m->name_tupleadr[i])) return true;
+  }
+  return false;
+}
+
+// The model that was refused last: it is not asked again at every step. The first warning may be
+// lost, since MuJoCo evaluates once when it compiles and catches warnings there.
+struct Refused {
+  const mjModel* model = nullptr;
+  long long names = 0;
+  long long userdata = 0;
+  int times = 0;
+};
+thread_local Refused refused;
+constexpr int kMostRefusals = 2;
+
+bool is_refused(const mjModel* m) noexcept {
+  return refused.model == m && refused.names == m->nnames && refused.userdata == m->nuserdata &&
+         refused.times >= kMostRefusals;
+}
+
+void refuse(const mjModel* m, const std::string& why) noexcept {
+  if (refused.model != m || refused.names != m->nnames || refused.userdata != m->nuserdata) {
+    refused = {m, m->nnames, m->nuserdata, 0};
+  }
+  ++refused.times;
+  write_warning(("volcontact: contact stays native: " + why).c_str());
+}
+
+void attach(mjModel* m) noexcept {
+  std::string problem;
+  try {
+    const std::string warning = attach_scene(m);
+    if (!warning.empty()) write_warning(("volcontact: " + warning).c_str());
+    // The program has no word for it, so it is said here.
+    std::fprintf(stderr, "volcontact: the contact of model '%s' is volumetric\n", m->names);
+    return;
+  } catch (const std::exception& error) {
+    problem = error.what();
+  } catch (...) {
+    problem = "an exception of unknown type";
+  }
+  refuse(m, problem);
+}
+
+}  // namespace
+
+bool attaches_by_itself() noexcept { return is_on.load(std::memory_order_relaxed); }
+void set_attaches_by_itself(bool on) noexcept { is_on = on; }
+
+const SceneContact* contact_by_itself(const mjModel* m) noexcept {
+  // The host's own model, which its program may write; it does not know that it asked for this.
+  auto* model = const_cast<mjModel*>(m);
+  const SceneContact* contact = contact_of(m);
+  if (!contact) {
+    if (!is_refused(m) && has_keys(m)) attach(model);
+    return nullptr;
+  }
+  if (contact->options().pairs == PairRule::kListed) return contact;
+  if (m->opt.disableflags & mjDSBL_CONTACT) return contact;
+  // Attached while MuJoCo compiled it, which wrote the flags of the file again afterwards.
+  model->opt.disableflags |= mjDSBL_CONTACT;
+  return nullptr;
+}
+
+}  // namespace volcontact::adaptor

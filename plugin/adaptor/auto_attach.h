@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include "adaptor/scene_contact.h"
+
+namespace volcontact::adaptor {
+
+/// Whether models are attached by themselves; see volcontact_set_auto.
+bool attaches_by_itself() noexcept;
+void set_attaches_by_itself(bool on) noexcept;
+
+/// The contact of a model, which is attached when no one has done so and it has a `volcontact/...`
+/// key; null where it has none, and for the one evaluation at which native contact is turned off,
+/// since that has its native contacts already. What goes wrong becomes a MuJoCo warning. Never
+/// throws.
+const SceneContact* contact_by_itself(const mjModel* m) noexcept;
+
+}  // namespace volcontact::adaptor
