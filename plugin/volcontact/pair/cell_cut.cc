@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kSplitShare = 0.4;    // axes with this share of the largest score are halved
 constexpr double kOthersShare = 0.25;  // weight of the other faces' bend in a face's doubt
+constexpr double kMostShare = 2.0;     // of the volume sampled, to which it may be corrected
 
 }  // namespace
 
@@ -82,10 +83,18 @@ void CellCut::estimate(Cell& cell) {
   for (std::size_t i = 0; i < tangents_.size(); ++i) {
     const Moments& between = between_[i];
     if (between.volume == 0.0) continue;
-    const double share = std::clamp(between.volume, gaps_[i].low, gaps_[i].high) / between.volume;
-    sums.volume -= share * between.volume;
-    sums.first -= share * between.first;
-    sums.second -= share * between.second;
+    const double volume = std::clamp(between.volume, gaps_[i].low, gaps_[i].high);
+    const double share = volume / between.volume;
+    sums.volume -= volume;
+    if (share >= 0.0 && share <= kMostShare) {
+      sums.first -= share * between.first;
+      sums.second -= share * between.second;
+      continue;
+    }
+    // Samples that all but cancel say nothing about where the volume is: it is at the face.
+    const Vec3 at = tangents_[i].touch.cwiseMax(-half_).cwiseMin(half_);
+    sums.first -= volume * at;
+    sums.second -= volume * at * at.transpose();
   }
   const double inside = std::clamp(sums.volume, cell.low, cell.high);
   if (inside != sums.volume) {

@@ -78,7 +78,7 @@ Carvings Carver::of_member(const Csg::Member& member) const {
 bool Carver::reach(const PartHull& hull, const std::vector<MemberFace>& faces) const {
   PartHull rest = hull;
   for (const MemberFace& face : faces) {
-    if (rest.least(face) >= -face.tolerance(size_)) return false;
+    if (rest.stays_above(face, -face.tolerance(size_))) return false;
     if (face.kind == MemberFace::Kind::kPlane) rest.cut(face, true);
     if (face.kind == MemberFace::Kind::kRound) rest.cut_round(face);
     if (rest.empty()) return false;
@@ -102,18 +102,19 @@ bool Carver::inside(const Carving& piece, const MemberFace& round) const {
 Carving Carver::part(const Carving& of, PosedShape body) const {
   Carving result(std::move(body));
   for (const MemberFace& round : of.carved) {
-    if (result.hull.least(round) < -round.tolerance(size_)) result.carved.push_back(round);
+    if (!result.hull.stays_above(round, -round.tolerance(size_))) result.carved.push_back(round);
   }
   return result;
 }
 
 void Carver::carve(Carving piece, const MemberFace& round, Carvings& out) const {
   if (inside(piece, round)) return;
-  if (!(piece.hull.least(round) < -round.tolerance(size_))) return out.push_back(std::move(piece));
+  if (piece.hull.stays_above(round, -round.tolerance(size_)))
+    return out.push_back(std::move(piece));
   for (const MemberFace& other : piece.carved) {
     const std::optional<MemberFace> plane = csg_crossing(round, other, size_);
     if (!plane || !(piece.hull.most(*plane) > plane->tolerance(size_)) ||
-        !(piece.hull.least(*plane) < -plane->tolerance(size_))) {
+        piece.hull.stays_above(*plane, -plane->tolerance(size_))) {
       continue;
     }
     Split halves = split(piece.body, *plane, size_);
@@ -306,7 +307,7 @@ void find_seams(std::vector<CarvedPiece>& pieces, double size) {
           PartHull hull(pieces[i].body, pieces[i].X_SB);
           const bool meets =
               std::all_of(faces[j].begin(), faces[j].end(), [&](const MemberFace& f) {
-                return &f == &other || hull.least(f) < -f.tolerance(size);
+                return &f == &other || !hull.stays_above(f, -f.tolerance(size));
               });
           if (meets) seam.covered.push_back(region_beside(pieces[j], faces[j], &other));
         }

@@ -171,27 +171,24 @@ double PartHull::most(const MemberFace& face) const {
 }
 
 // Frank-Wolfe with line search: the tangent plane at any point bounds a convex function from below.
-double PartHull::least(const MemberFace& face) const {
-  if (!bounded_) return -kInfinity;
-  if (empty()) return kInfinity;
-  double value = kInfinity;
+bool PartHull::stays_above(const MemberFace& face, double level) const {
+  if (!bounded_) return false;
+  if (empty()) return true;
   if (face.kind == MemberFace::Kind::kPlane) {
-    for (const Vec3& p : points()) value = std::min(value, face.value(p));
-    return value;
+    return std::all_of(points().begin(), points().end(),
+                       [&](const Vec3& p) { return face.value(p) >= level; });
   }
   Vec3 x = Vec3::Zero();
   for (const Vec3& p : points()) x += p / polytope_.size();
-  double bound = -kInfinity;
   for (int step = 0; step < kFrankWolfeSteps; ++step) {
-    value = face.value(x);
-    if (value < 0.0) return value;
+    const double value = face.value(x);
+    if (value < level) return false;
     const Vec3 slope = face.slope_at(x);
     Vec3 best = points()[0];
     for (const Vec3& p : points()) {
       if (slope.dot(p) < slope.dot(best)) best = p;
     }
-    bound = std::max(bound, value + slope.dot(best - x));
-    if (bound > 0.0 || !(slope.dot(best - x) < 0.0)) break;
+    if (value + std::min(0.0, slope.dot(best - x)) >= level) return true;
     // The convex function along the way, by golden section.
     const Vec3 way = best - x;
     double low = 0.0, high = 1.0;
@@ -205,7 +202,7 @@ double PartHull::least(const MemberFace& face) const {
     }
     x += 0.5 * (low + high) * way;
   }
-  return bound;
+  return false;
 }
 
 void PartHull::cut(const Vec3& normal, double offset) {

@@ -52,8 +52,9 @@ class PartHull {
   std::span<const Vec3> points() const { return polytope_.points(); }
   /// Largest value of the face's function over the hull; +infinity when not bounded.
   double most(const MemberFace& face) const;
-  /// Least value of it, or a little less; -infinity when not bounded.
-  double least(const MemberFace& face) const;
+  /// Whether it is proven that the face's function is nowhere in the hull below this level; never
+  /// when not bounded.
+  bool stays_above(const MemberFace& face, double level) const;
   /// Keeps one side of a plane: inside, or outside of it.
   void cut(const MemberFace& plane, bool inside);
   void cut(const Vec3& normal, double offset);

@@ -107,7 +107,7 @@ std::optional<MomentSum> closed_form(const Csg& solid) {
       const PartHull hull(plug->shape, plug->X_SM);
       for (std::size_t j = 0; j < i; ++j) {
         const MemberFace& other = piece.carved[j];
-        if (!(hull.least(other) >= -other.tolerance(size))) return std::nullopt;
+        if (!hull.stays_above(other, -other.tolerance(size))) return std::nullopt;
       }
       sum += moments_of(plug->shape, plug->X_SM, -1.0);
     }

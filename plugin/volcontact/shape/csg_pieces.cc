@@ -101,7 +101,7 @@ class Decomposition {
 bool Decomposition::always(const PartHull& hull, const MemberFace& face, bool inside,
                            double slack) const {
   const double allowed = slack * face.tolerance(size_);
-  return inside ? hull.most(face) <= allowed : hull.least(face) >= -allowed;
+  return inside ? hull.most(face) <= allowed : hull.stays_above(face, -allowed);
 }
 
 bool Decomposition::same_side(const MemberFace& a, bool a_inside, const MemberFace& b,
@@ -142,6 +142,17 @@ bool Decomposition::constrain(const std::vector<Literal>& literals, const std::v
   return !hull.empty();
 }
 
+// Whether the plane is across the axis of a cone that the part is inside of. Such planes keep it
+// from the other nappe, and off the space where the cone grows wider than the hull around it.
+bool ends_a_cone(const Literal& plane, const std::vector<Literal>& literals) {
+  if (plane.face.kind != MemberFace::Kind::kPlane) return false;
+  return std::any_of(literals.begin(), literals.end(), [&](const Literal& other) {
+    if (other.face.kind != MemberFace::Kind::kCone || !other.inside) return false;
+    const Vec3 axis = other.face.X_FS.rotation.row(2);
+    return plane.face.quadric.linear.cross(axis).norm() <= kSameFace;
+  });
+}
+
 // The part with the faces it was cut by. Faces that do not reach it are left out.
 std::optional<Part> Decomposition::joined(const Part& part, const PartHull& hull,
                                           const std::vector<Cut>& cuts, bool one_leads_out,
@@ -163,9 +174,13 @@ std::optional<Part> Decomposition::joined(const Part& part, const PartHull& hull
       result.literals.push_back({cut.face, cut.inside, join == Join::kBothNeeded && leads_out});
     }
   }
-  std::erase_if(result.literals, [&](const Literal& literal) {
-    return always(hull, literal.face, literal.inside, -1.0);
-  });
+  std::vector<Literal> all;
+  all.swap(result.literals);
+  for (const Literal& literal : all) {
+    if (ends_a_cone(literal, all) || !always(hull, literal.face, literal.inside, -1.0)) {
+      result.literals.push_back(literal);
+    }
+  }
   return result;
 }
 

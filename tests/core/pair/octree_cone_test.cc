@@ -43,6 +43,22 @@ TEST(OctreeCone, CutOffTipIsAThirdOfItsSectionTimesItsHeight) {
   }
 }
 
+// A ball of radius r in a conical cup whose apex lies in the middle of the block, at a height z on
+// the axis: pi int (r^2 - (h - z)^2 - (slope h)^2) dh between the roots, where a parabola is
+// positive.
+TEST(OctreeCone, ABallInAPointedCupIsARing) {
+  const double r = 0.12, z = 0.175, slope = 0.7;
+  const Pose X{Mat3::Identity(), Vec3(0.0, 0.0, 0.1)};
+  const Csg cup(Csg::Operation::kDifference, Csg(Box({.half_sizes = Vec3(0.3, 0.3, 0.2)})),
+                Csg(Frustum({.bottom_radius = 0.0, .top_radius = 0.14, .half_length = 0.1}), X));
+  const double a = 1.0 + slope * slope, root = std::sqrt(z * z - a * (z * z - r * r));
+  const double exact = kPi * a * std::pow(2.0 * root / a, 3) / 6.0;
+  const Pose X_AB{Mat3::Identity(), Vec3(0.0, 0.0, z)};
+  for (const double tolerance : kTolerances) {
+    expect_certified(octree(cup, Sphere({.radius = r}), X_AB, tolerance), exact, tolerance);
+  }
+}
+
 // A block with a conical hole, wider at the top, and a round peg of radius c on the same axis that
 // goes through both. It fills the hole where that is wider, and overlaps below.
 class ConicalHole : public ::testing::Test {

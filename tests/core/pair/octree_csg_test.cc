@@ -14,10 +14,10 @@ namespace {
 
 using namespace testing;  // the solids
 
-Interference octree(const Csg& a, const Csg& b) {
+Interference octree(const Csg& a, const Csg& b, double tolerance = 1e-2) {
   static OctreeScratch scratch;
   Interference out;
-  octree_interference(view_of(a), view_of(b), Pose{}, {.tolerance = 1e-2}, scratch, out);
+  octree_interference(view_of(a), view_of(b), Pose{}, {.tolerance = tolerance}, scratch, out);
   return out;
 }
 
@@ -56,6 +56,36 @@ TEST(OctreeCsg, TheFarSideOfABoreCounts) {
   const Interference out = octree(boss, rod);
   EXPECT_LE(std::abs(out.total.volume - exact), out.total.volume_error);
   EXPECT_NEAR(out.total.volume, exact, 1e-2 * exact);
+}
+
+// Where the samples of the volume between a face and its plane cancel, they have no middle: leaves
+// of these two gave centroids kilometres away.
+TEST(OctreeCsg, CentroidsAreThoseOfTheIntersection) {
+  const Csg block = box(.4, .4, .25) - tube(.15, .5) - tube(.25, .2, at(0, 0, .3));
+  Pose X;
+  X.rotation = Eigen::Quaterniond((Mat3() << 0.16985641245, -0.87781283998, 0.4478765646,
+                                   -0.5725983011, 0.28197799277, 0.76981789871, -0.80204737063,
+                                   -0.38721186651, -0.45473837061)
+                                      .finished())
+                   .normalized();
+  X.translation = Vec3(0.1147465486, 0.1784027458, 0.0561218447);
+  Pose Y;
+  Y.rotation = Eigen::Quaterniond((Mat3() << -0.64673649140, -0.32451233726, -0.69023449179,
+                                   0.75869042589, -0.18088870225, -0.62583393570, 0.07823521174,
+                                   -0.92842394432, 0.36319172798)
+                                      .finished())
+                   .normalized();
+  Y.translation = Vec3(-0.5330758238, -0.0137593497, -0.0872666454);
+  const Csg pill = capsule(.2, .3), egg(Ellipsoid({.semi_axes = Vec3(.5, .35, .2)}));
+  const std::pair<Csg, Csg> cases[] = {{pill, block.posed(X)}, {egg, block.posed(Y)}};
+  for (const auto& [a, b] : cases) {
+    const VolumeMetrics exact = csg_metrics_by_lines(a & b);
+    for (const double tolerance : {1e-2, 1e-3}) {
+      const VolumeMetrics m = octree(a, b, tolerance).total;
+      EXPECT_LE((m.centroid - exact.centroid).norm(), 0.5 * tolerance);  // half the block
+      EXPECT_LE((m.inertia - exact.inertia).norm(), 3.0 * tolerance * exact.inertia.norm());
+    }
+  }
 }
 
 // The seams within the solid are no surface: a ball pressed into the top of a counterbored block
