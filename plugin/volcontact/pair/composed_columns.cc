@@ -218,7 +218,8 @@ class ComposedColumns {
     if (!(sum.moments.volume > 0.0)) return;
     // The faces across the axis close what the wall leaves open.
     sum.moments.counter_area =
-        std::max(0.0, sum.moments.counter_area) + std::abs(sum.moments.area_vector.z());
+        std::max(std::max(0.0, sum.moments.counter_area) + std::abs(sum.moments.area_vector.z()),
+                 sum.moments.area_vector.norm());
     VolumeMetrics m = sum.moments.metrics();
     m.depth_moment = sum.depth_moment;
     m.depth = sum.depth;
@@ -251,7 +252,8 @@ class ComposedColumns {
       for (const VolumeMetrics& site : s_.whole.sites) s_.sites.push_back({site, number});
       return true;
     }
-    rest.counter_area = std::max(0.0, counter_area);
+    // What was taken off is an estimate; no surface is smaller than its area vector.
+    rest.counter_area = std::max(counter_area, rest.area_vector.norm());
     if (!(rest.volume > 0.0)) return rest.volume_error < options_.tolerance * s_.whole.total.volume;
     s_.sites.push_back({rest, number});
     return true;

@@ -235,13 +235,14 @@ class RoundColumns {
     const Vec3 n = surface.area_vector.stableNormalized();
     RoundSum along_n = sum;  // what the depth is about
     if (!n.isZero(0.0) && up.dot(n) < 1.0 - 1e-9 && up.dot(n) > 0.0) along_n = sum_parts(n);
+    // Few columns see a steep face of B; no surface is smaller than its area vector.
     patch.moments = {sum.volume,
                      sum.first,
                      sum.second,
                      surface.area_vector,
                      surface.area_moment,
                      surface.area,
-                     std::abs(sum.counter_area)};
+                     std::max(std::abs(sum.counter_area), surface.area_vector.norm())};
     patch.depth_moment = along_n.energy;
     patch.depth = height_over(along_n.low, n.isZero(0.0) ? up : n);
     patch.volume_error = error_of(sum);

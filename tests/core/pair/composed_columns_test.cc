@@ -12,6 +12,7 @@
 #include "core/support/matchers.h"
 #include "core/support/meshes.h"
 #include "core/support/overlapping.h"
+#include "core/support/random_shapes.h"
 
 namespace volcontact {
 namespace {
@@ -221,6 +222,25 @@ TEST(ComposedColumns, TheWholeOfABodyIsContained) {
   const double volume = 2.0 * kHalfPlate * (.04 * .04 - kPi * kRadius * kRadius);
   EXPECT_NEAR(outer.total.volume, volume, 1e-6 * volume);
   EXPECT_EQ(evaluated(chip, plate, Pose{}).total.volume, 0.0);
+}
+
+// The surface of the overlap is closed: each body's share of it is no smaller than |S|.
+TEST(ComposedColumns, NoSurfaceIsSmallerThanItsAreaVector) {
+  Random random(3);
+  const ConvexPolytope gem = test::random_polytope(18, random);
+  const Csg block = testing::box(.8, .8, .5) - testing::tube(.3, 1.) -
+                    testing::tube(.5, .4, testing::at(0, 0, .6));
+  int served = 0;
+  for (int k = 0; k < 3000; ++k) {
+    const Pose X_AB = random.pose(1.2);
+    const Interference out = evaluated(gem, block, X_AB);
+    if (out.engine != Engine::kColumns || !out.total.touching()) continue;
+    ++served;
+    for (const VolumeMetrics& m : out.sites) {
+      EXPECT_LE(m.area_vector.norm(), (1.0 + 1e-3) * std::min(m.area, m.counter_area)) << k;
+    }
+  }
+  EXPECT_GT(served, 500);
 }
 
 TEST(ComposedColumns, TheAreaVectorIsTheGradientOfTheVolume) {
