@@ -10,25 +10,36 @@ namespace {
 
 using testing::ModelPointer;
 
-std::string scene(const std::string& table, const std::string& thing) {
+std::string scene(const std::string& table, const std::string& thing,
+                  const std::string& custom = "") {
   return "<mujoco><asset><mesh name='tetrahedron' vertex='0 0 0  1 0 0  0 1 0  0 0 1'/></asset>"
          "<worldbody><geom name='table' " +
          table + "/><body pos='0 0 1.1'><freejoint/><geom name='thing' " + thing +
          " mass='1'/></body></worldbody>" +
-         testing::numeric("volcontact/option/formulation/potential", "1") + "</mujoco>";
+         testing::numeric("volcontact/option/formulation/potential", "1") + custom + "</mujoco>";
 }
 
-TEST(Formulation, PotentialServesPairsWithALayer) {
-  for (const char* thing : {"type='box' size='.1 .1 .1'", "type='ellipsoid' size='.1 .2 .1'",
-                            "type='mesh' mesh='tetrahedron'"}) {
-    const ModelPointer m = testing::load(scene("type='box' size='1 1 1'", thing));
-    EXPECT_EQ(SceneContact(m.get()).pairs()[0].laws.laws.formulation, Formulation::kPotential);
+TEST(Formulation, PotentialServesEveryPairOfGeoms) {
+  const std::string box = "type='box' size='1 1 1'", egg = "type='ellipsoid' size='.1 .2 .1'",
+                    mesh = "type='mesh' mesh='tetrahedron'";
+  for (const std::string& table : {box, egg, mesh}) {
+    for (const std::string& thing : {box, egg, mesh}) {
+      const ModelPointer m = testing::load(scene(table, thing));
+      EXPECT_EQ(SceneContact(m.get()).pairs()[0].laws.laws.formulation, Formulation::kPotential);
+    }
   }
 }
 
 TEST(Formulation, PotentialRefusesAPairByItsGeomsAndSaysWhy) {
-  const ModelPointer m =
-      testing::compile(scene("type='ellipsoid' size='1 1 1'", "type='mesh' mesh='tetrahedron'"));
+  // Two ellipsoids composed have neither layers nor faces, nor has a third one.
+  const std::string two =
+      "<custom><tuple name='volcontact/solid/two'>"
+      "<element objtype='geom' objname='table' prm='1'/>"
+      "<element objtype='geom' objname='knob' prm='1'/></tuple></custom>";
+  const std::string knob =
+      "type='ellipsoid' size='1 1 1'/>"
+      "<geom name='knob' type='ellipsoid' size='.2 .3 .4' pos='1 0 0'";
+  const ModelPointer m = testing::compile(scene(knob, "type='ellipsoid' size='.1 .2 .1'", two));
   const std::string message = testing::message_of([&] { SceneContact{m.get()}; });
   EXPECT_NE(message.find("formulation/potential does not serve geoms 'table' and 'thing'"),
             std::string::npos)

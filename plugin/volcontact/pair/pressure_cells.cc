@@ -57,6 +57,7 @@ class Field {
   PressureField integrate() {
     drop_stiff_layers();
     s_.overlap = s_.clip.polytope;
+    const bool a_is_rigid = !(share_of_a_ > 0.0);  // what B's layers press comes back on A
     PressureField field;
     for (std::size_t i = 0; i < layers_.size(); ++i) {
       s_.clip.polytope = s_.overlap;
@@ -65,10 +66,11 @@ class Field {
       cell.add(s_.clip.polytope);
       const Layer& layer = layers_[i];
       field.energy += layer.at_origin * cell.volume + layer.slope.dot(cell.first);
-      if (!layer.of_a) continue;
+      if (layer.of_a == a_is_rigid) continue;
       field.force += cell.volume * layer.slope;
       field.couple += cell.first.cross(layer.slope);
     }
+    if (a_is_rigid) field.force = -field.force, field.couple = -field.couple;
     return field;
   }
 

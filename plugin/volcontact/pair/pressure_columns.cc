@@ -146,10 +146,16 @@ class ColumnField {
       const double weight = weight_ * Rule::kWeights[i] * (to - from);
       const Depth in_a = depth_in(a_, x);
       const double psi_a = stiffness_a_ * std::max(0.0, in_a.value);
-      const double psi_b = stiffness_b_ * std::max(0.0, depth_in(b_, X_BA_ * x).value);
+      const Depth in_b = depth_in(b_, X_BA_ * x);
+      const double psi_b = stiffness_b_ * std::max(0.0, in_b.value);
       sum_.energy += weight * std::min(psi_a, psi_b);
-      if (!(psi_a < psi_b)) continue;
-      const Vec3 force = weight * stiffness_a_ * in_a.gradient;
+      Vec3 force;
+      if (stiffness_a_ == kInfinity) {  // what B's layer presses comes back on A
+        force = -weight * stiffness_b_ * (X_BA_.rotation.transpose() * in_b.gradient);
+      } else {
+        if (!(psi_a < psi_b)) continue;
+        force = weight * stiffness_a_ * in_a.gradient;
+      }
       sum_.force += force;
       sum_.couple += (x - c_).cross(force);
     }

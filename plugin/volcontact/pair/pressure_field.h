@@ -8,6 +8,7 @@
 
 #include "volcontact/pair/clip.h"
 #include "volcontact/pair/interference.h"
+#include "volcontact/shape/face_cells.h"
 
 namespace volcontact {
 
@@ -18,6 +19,7 @@ struct PressureField {
   double energy = 0.0;         ///< int psi dV over the overlap [m^4]
   Vec3 force = Vec3::Zero();   ///< on A, -d energy / d x_A [m^3]
   Vec3 couple = Vec3::Zero();  ///< on A, -d energy / d theta_A about the centroid of the site [m^4]
+  double error = 0.0;          ///< estimate for the force, where a rule is not the gradient [m^3]
 };
 
 /// Memory of pressure_field(), reused from call to call.
@@ -37,6 +39,25 @@ struct PressureScratch {
   Shape inner_a = Sphere({}), inner_b = Sphere({});
   std::unique_ptr<InterferenceWorkspace> engines;  ///< made when first wanted
   Interference level;
+  /// Cells of the polytopes that were met; a copy of the polytope keeps its data block alive.
+  struct CellsOf {
+    ConvexPolytope solid;
+    std::vector<FaceCell> cells;
+  };
+  std::vector<CellsOf> cells;
+  std::vector<int> stack;  ///< of a walk through a tree
+  /// A triangle under a pressure: its corners, and the middles of its sides from each of them on.
+  struct Corner {
+    Vec3 x;
+    double d;  ///< depth in the solid that carries, negative outside
+  };
+  struct Leaf {
+    Corner corners[6];
+    Vec3 n;
+    double off;  ///< the triangle from its quarters
+  };
+  std::vector<Leaf> leaves;
+  const std::vector<FaceCell>& cells_of(const ConvexPolytope& solid);  ///< made when first wanted
 };
 
 /// The site asked for, among all sites of the pair.
@@ -49,7 +70,14 @@ struct PressureSite {
   InterferenceOptions options;  ///< of the overlap
 
   const VolumeMetrics& metrics() const { return sites[index]; }
+  /// The site that a part of the overlap belongs to: the nearest, by the spread of each.
+  std::size_t nearest(const Vec3& place) const;
 };
+
+/// The field on the solid C that carries it, in C's frame and with the couple about C's origin, as
+/// one on A: the other way round where C is B.
+PressureField field_on_a(const PressureField& on_carrier, const Pose& X_AC, bool is_a,
+                         const Vec3& centroid_A);
 
 /// Whether the field of this pair can be integrated with this engine, and if not, why: a sentence
 /// for a message, empty where it can.
@@ -59,8 +87,8 @@ inline bool has_pressure_field(const Shape& a, const Shape& b, Engine engine = E
 }
 
 /// The field of one site of the pair, in A's frame. Exact for half-spaces, boxes and polytopes;
-/// for others a rule whose wrench is the gradient of its energy. Zero where has_pressure_field()
-/// is false.
+/// for others a rule whose wrench is the gradient of its energy, or of the integral to `error`.
+/// Zero where has_pressure_field() is false.
 PressureField pressure_field(const Shape& a, const Shape& b, const Pose& X_AB,
                              const PressureSite& site, PressureScratch& scratch) noexcept;
 

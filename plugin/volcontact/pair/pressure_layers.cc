@@ -146,7 +146,7 @@ class LayerSum {
     Level sum;
     for (const VolumeMetrics& part : s_.level.sites) {
       const VolumeMetrics metrics = transformed(part, X_AI);
-      if (nearest_site(metrics.centroid) != site_.index) continue;
+      if (site_.nearest(metrics.centroid) != site_.index) continue;
       const Level at = level_of(metrics);
       sum.volume += at.volume, sum.fall += at.fall;
       sum.shift += at.shift, sum.turn += at.turn;
@@ -164,21 +164,6 @@ class LayerSum {
     const double volume_a = own_metrics_of(a).volume, volume = s_.level.total.volume;
     const bool is_a = std::abs(volume - volume_a) < 1e-6 * volume;
     return {volume, is_a ? share_a_ * surface_area(a) : share_b_ * surface_area(b)};
-  }
-
-  // The site that a part of a deeper level belongs to: the nearest, by the spread of each.
-  std::size_t nearest_site(const Vec3& place) const {
-    std::size_t nearest = 0;
-    double least = kInfinity;
-    for (std::size_t i = 0; i < site_.sites.size(); ++i) {
-      const VolumeMetrics& metrics = site_.sites[i];
-      const Mat3 spread = metrics.second_moment() / metrics.volume;
-      const Mat3 widened = spread + 1e-6 * spread.trace() * Mat3::Identity();
-      const Vec3 offset = place - metrics.centroid;
-      const double distance = offset.dot(widened.inverse() * offset);
-      if (distance < least) least = distance, nearest = i;
-    }
-    return nearest;
   }
 
   const Shape& a_;

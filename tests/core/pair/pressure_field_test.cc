@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/support/gradient.h"
+#include "core/support/meshes.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact {
@@ -103,6 +104,21 @@ TEST(PressureField, ActionIsReaction) {
   expect_reaction(kEgg, kEgg, kRound);
 }
 
+TEST(PressureField, RigidSolidGetsTheReaction) {
+  // All of the field in one, either way round.
+  for (const Shape& solid : {kBox, kWedge, kEgg}) {
+    for (const Overlap& at : overlaps(solid, solid, 4)) {
+      const PressureField on_a = field_of(solid, solid, at.X_AB, 0.0);
+      const PressureField on_b = field_of(solid, solid, at.X_AB.inverse(), 1.0);
+      const double size = on_b.force.norm();
+      ASSERT_GT(size, 0.0);
+      const double tolerance = name_of(solid) == name_of(kEgg) ? kRound : kExact;
+      EXPECT_LT((on_a.force + at.X_AB.rotation * on_b.force).norm(), tolerance * size);
+      EXPECT_NEAR(on_a.energy, on_b.energy, tolerance * on_a.energy);
+    }
+  }
+}
+
 TEST(PressureField, HalfSpaceCarriesAllOfIt) {
   // Archimedes: k V through the centroid, whatever the share.
   for (const Shape& solid : {kBox, kWedge, kBall, kEgg, kPill}) {
@@ -178,16 +194,13 @@ TEST(PressureField, SaysWhichPairsItTakes) {
   EXPECT_TRUE(has_pressure_field(kRing, kFloor));
   EXPECT_TRUE(has_pressure_field(kRing, kPill));
   EXPECT_TRUE(has_pressure_field(kWedge, kBall));
+  EXPECT_TRUE(has_pressure_field(kWedge, kEgg));
+  const Shape mesh = test::mesh_of(test::box_soup({0.1, 0.1, 0.1}));
+  for (const Shape& other : {kWedge, kEgg, mesh}) EXPECT_TRUE(has_pressure_field(mesh, other));
   EXPECT_FALSE(has_pressure_field(kFloor, kFloor));
 }
 
 TEST(PressureField, SaysWhyItDoesNotTakeAPair) {
-  EXPECT_NE(why_no_pressure_field(kWedge, kEgg).find("neither has layers"), std::string::npos);
-  PressureScratch scratch;
-  const Pose near{Mat3::Identity(), Vec3(0.12, 0.0, 0.0)};
-  const VolumeMetrics site = site_of(kWedge, kEgg, near);
-  ASSERT_TRUE(site.touching());
-  EXPECT_EQ(pressure_field(kWedge, kEgg, near, {{&site, 1}, 0, 0.5, {}}, scratch).energy, 0.0);
   // A solid of the user's meets a box through the octree alone.
   struct Cube {
     Aabb bounds() const { return {Vec3::Constant(-0.1), Vec3::Constant(0.1)}; }
@@ -196,6 +209,12 @@ TEST(PressureField, SaysWhyItDoesNotTakeAPair) {
   const Shape cube = SignedDistance(Cube{});
   EXPECT_NE(why_no_pressure_field(kBox, cube).find("octree"), std::string::npos);
   EXPECT_TRUE(has_pressure_field(kBox, cube, Engine::kOctree));
+  EXPECT_NE(why_no_pressure_field(cube, kEgg).find("neither has layers"), std::string::npos);
+  PressureScratch scratch;
+  const Pose near{Mat3::Identity(), Vec3(0.12, 0.0, 0.0)};
+  const VolumeMetrics site = site_of(cube, kEgg, near);
+  ASSERT_TRUE(site.touching());
+  EXPECT_EQ(pressure_field(cube, kEgg, near, {{&site, 1}, 0, 0.5, {}}, scratch).energy, 0.0);
 }
 
 }  // namespace
