@@ -37,6 +37,7 @@ class BoreRun {
     window_ = find_lines_window(a_, b_, X_AB_, s_.path, true, s_.faces);
     if (window_.kind == LinesWindow::Kind::kApart) return true;
     if (apex_is_on_a_face()) return false;
+    s_.fan.choose_rule(options_.tolerance);
     move_off_axis();
     outline_.trace();
     const std::vector<Place>& places = outline_.places();

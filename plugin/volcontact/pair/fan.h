@@ -83,6 +83,7 @@ struct FanFaces {
   double plane_rounding = 0.0;  ///< of a height on a plane face
   double start = 0.0;           ///< rho of the wall of a bore about the axis; 0 without
   double area_scale = 0.0;      ///< of the frame
+  bool fine = false;            ///< eight nodes on each piece of a section, not five
 };
 
 /// Sums over the columns of a fan, in coordinates along u, v and t from its center: x, y, h. These
@@ -132,6 +133,9 @@ class Fan {
   /// `idle` planes cannot touch the overlap; they only say how far the solids reach over it.
   void set(const FaceSet& faces, const std::vector<PlaneFace>& idle, const FanFrame& frame);
   const FanFaces& faces() const { return faces_; }
+  /// For a relative error of the volume. Area vectors converge less fast than volumes: with five
+  /// nodes they are off by 1e-7 to 1e-4.
+  void choose_rule(double tolerance);
 
   /// Largest rho of the overlap in eight directions (u, v), of any length but zero, and the height
   /// of the middle of the column there.

@@ -46,6 +46,7 @@ class LinesRun {
         break;
     }
     choose_frame();
+    s_.fan.choose_rule(options_.tolerance);
     s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
     recenter();
     find_breaks(s_.faces.active, frame_, tolerance(), s_.breaks);

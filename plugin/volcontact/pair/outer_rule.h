@@ -18,16 +18,6 @@ inline constexpr int kMaxDepth = 4;          ///< of divisions of an arc
 inline constexpr double kInnerError = 3e-6;  ///< of the rule along a half-plane, per V; as measured
 }  // namespace outer_rule
 
-template <>
-struct GaussRule<8> {
-  static constexpr double kNodes[] = {
-      0.019855071751231884, 0.10166676129318663, 0.23723379504183551, 0.4082826787521751,
-      0.5917173212478249,   0.76276620495816449, 0.89833323870681337, 0.98014492824876812};
-  static constexpr double kWeights[] = {
-      0.05061426814518813, 0.11119051722668724, 0.15685332293894364, 0.18134189168918099,
-      0.18134189168918099, 0.15685332293894364, 0.11119051722668724, 0.05061426814518813};
-};
-
 using OuterRule = GaussRule<kLanes>;
 
 /// Legendre polynomials at the nodes of the rule with 8 nodes, times 2 k + 1.

@@ -41,6 +41,8 @@ class RingFan {
  public:
   /// The faces are those of the body alone, owned by Owner::kB.
   void set(const FaceSet& faces, double major_radius, double minor_radius);
+  /// For what set() brings next; as Fan::choose_rule().
+  void choose_rule(double tolerance) { fan_.choose_rule(tolerance); }
   const RingFaces& faces() const { return faces_; }
   /// The plane of the body behind a plane of the sums.
   int plane_face(int i) const { return faces_.fan.planes[i].face; }

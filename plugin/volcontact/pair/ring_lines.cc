@@ -37,6 +37,7 @@ class RingRun {
 
   void run() {
     set_faces();
+    s_.fan.choose_rule(options_.tolerance);
     s_.fan.set(s_.faces, torus_.major_radius(), torus_.minor_radius());
     find_ring_sites(body_, X_, s_.path, s_.fan, s_.sites);
     if (s_.sites.ranges.empty()) return;

@@ -137,19 +137,18 @@ TEST(PressureLayers, EnergyIsTheIntegralOfTheSofterLayer) {
 }
 
 // Work over a closed path round an edge, over the largest energy.
-double loop_work(const Shape& a, const Shape& b, const Pose& X_AB) {
-  const int kSamples = std::holds_alternative<Mesh>(a) ? 100 : 300;
+double loop_work(const Shape& a, const Shape& b, const Pose& X_AB, int samples = 60) {
   const Vec3 u(0.004, 0.002, -0.003), v(-0.001, 0.004, 0.002), axis(0.05, -0.03, 0.06);
   double work = 0.0, most = 0.0;
-  for (int i = 0; i < kSamples; ++i) {
-    const double s = 2.0 * kPi * i / kSamples;
+  for (int i = 0; i < samples; ++i) {
+    const double s = 2.0 * kPi * i / samples;
     const Pose X = test::moved({X_AB.rotation, Vec3::Zero()}, Vec3::Zero(), std::sin(s) * axis);
     const Vec3 place = X_AB.translation + std::cos(s) * u + std::sin(2.0 * s) * v;
     const Vec3 velocity = -std::sin(s) * u + 2.0 * std::cos(2.0 * s) * v;
     const Vec3 rotation = std::cos(s) * axis;
     const Sum sum = sum_of(a, b, {X.rotation, place});
     const Vec3 couple = sum.field.couple - place.cross(sum.field.force);  // about B's origin
-    work -= 2.0 * kPi / kSamples * (sum.field.force.dot(velocity) + couple.dot(rotation));
+    work -= 2.0 * kPi / samples * (sum.field.force.dot(velocity) + couple.dot(rotation));
     most = std::max(most, sum.field.energy);
   }
   EXPECT_GT(most, 0.0) << name_of(a) << " " << name_of(b);
@@ -158,18 +157,19 @@ double loop_work(const Shape& a, const Shape& b, const Pose& X_AB) {
 
 TEST(PressureLayers, ClosedLoopsTakeNoWork) {
   const Pose corner{test::turn({1.0, 0.3, -0.4}, 0.9), Vec3(0.1, 0.08, 0.1)};
-  for (const Shape& b : {kBall, kEgg, kCone}) {
-    EXPECT_LT(loop_work(kBox, b, corner), 1e-6) << name_of(b);
+  for (const Shape& b : {kBall, kEgg, kCone, kRod}) {
+    // Edges of both need more samples of the path.
+    const bool edges = name_of(b) == name_of(kCone) || name_of(b) == name_of(kRod);
+    EXPECT_LT(loop_work(kBox, b, corner, edges ? 300 : 60), 1e-6) << name_of(b);
   }
   // Where lines leave some hundred-thousandths of the area vector in places.
-  EXPECT_LT(loop_work(kBox, kRod, corner), 1e-5);
   EXPECT_LT(loop_work(kBox, kPill, corner), 3e-5);
   EXPECT_LT(loop_work(kWedge, kBall, corner), 3e-5);
   const Pose beside{test::turn({1.0, 0.3, -0.4}, 0.9), Vec3(0.05, 0.04, 0.06)};
   EXPECT_LT(loop_work(kRod, kPill, beside), 1e-6);
   EXPECT_LT(loop_work(kRing, kRod, beside), 4e-5);
   const Pose over_rim{Mat3::Identity(), Vec3(0.06, 0.01, 0.16)};
-  EXPECT_LT(loop_work(kBored, kBall, over_rim), 3e-5);
+  EXPECT_LT(loop_work(kBored, kBall, over_rim), 5e-6);
 }
 
 TEST(PressureLayers, MeshesAreServedByColumns) {
