@@ -117,7 +117,10 @@ std::string implicit_text(const mjModel* m, const SceneContact& contact, const P
     return "off";
   if (contact.options().implicit == Implicit::kAlways) return "on";
   const SceneContact::ImplicitUse use = contact.implicit_use(m, pair);
-  if (!use.is_possible) return "not needed";
+  const Friction* friction = pair.laws.laws.friction.get();
+  const bool by_friction =
+      friction && friction->states().empty() && contact.options().pairs != PairRule::kListed;
+  if (!use.is_possible) return by_friction ? "where friction would reverse the slip" : "not needed";
   char text[64];
   std::snprintf(text, sizeof text, "from a patch of %.2g m^2 on", use.least_area);
   return text;

@@ -37,6 +37,17 @@ InverseMass inverse_mass(const mjModel* m, const GeomPair& geoms) {
           m->body_invweight0[2 * a + 1] + m->body_invweight0[2 * b + 1]};
 }
 
+// Whether friction without memory would throw the bodies back in an explicit step, faster than they
+// slide or spin now: h c > 2 m, with c the friction per slip. Once the slip is so small they would
+// chatter for ever. The mass at the patch is that of a solid ball: 1/m and 5/2 of it for the arm.
+bool reverses_slip(const SiteReport& site, const InverseMass& inverse, double h) {
+  constexpr double kBall = 3.5, kLimit = 2.0;
+  const double across = (site.force_on_A - site.normal_force * site.normal).norm();
+  if (h * across * kBall * inverse.along > kLimit * site.slip.norm()) return true;
+  const double torque = std::abs(site.torque_on_A.dot(site.normal));
+  return h * torque * inverse.about > kLimit * std::abs(site.spin);
+}
+
 // Of the solid's box, its largest face [m^2].
 double largest_face(const Shape& solid) {
   const auto bounds = bounds_of(solid);
@@ -104,8 +115,8 @@ bool SceneContact::may_be_implicit(const mjModel* m) const noexcept {
   return options().implicit != Implicit::kNever && m->opt.integrator != mjINT_RK4;
 }
 
-// Whether an explicit step could not hold some site: by h^2 k/m of its patch against displacements
-// and turns, with the mass that MuJoCo knows of each body at its first pose.
+// Whether an explicit step could not hold some site: by its friction, and by h^2 k/m of its patch
+// against displacements and turns, with the mass that MuJoCo knows of each body at its first pose.
 bool SceneContact::is_stiff(const mjModel* m, const Scratch& scratch) const noexcept {
   if (options().implicit == Implicit::kAlways) return true;
   const double h = m->opt.timestep;
@@ -113,9 +124,15 @@ bool SceneContact::is_stiff(const mjModel* m, const Scratch& scratch) const noex
     const ContactReport& report = scratch.reports[k];
     if (report.sites.empty()) continue;
     const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
+    const InverseMass inverse = inverse_mass(m, pair.geoms);
+    // Beside native contacts an implicit step does more harm than chatter.
+    const Friction* friction = pair.laws.laws.friction.get();
+    if (friction && friction->states().empty() && options().pairs != PairRule::kListed) {
+      for (const SiteReport& site : report.sites) {
+        if (reverses_slip(site, inverse, h)) return true;
+      }
+    }
     if (h * h * pair.largest_rate < kPossibleNumber) continue;
-    const GeomPair& geoms = pair.geoms;
-    const InverseMass inverse = inverse_mass(m, geoms);
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
       const VolumeMetrics& metrics = report.sites[i].metrics;
       const double k_v = report.inputs[i].normal_out.elastic / metrics.volume;
