@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adaptor/contact_equations.h"
 
-#include <cmath>
+#include "adaptor/cholesky.h"
 
 namespace volcontact::adaptor {
 namespace {
@@ -10,26 +10,6 @@ using Vector = Eigen::Map<Eigen::VectorXd>;
 using ConstVector = Eigen::Map<const Eigen::VectorXd>;
 
 std::size_t size(int count) { return static_cast<std::size_t>(count); }
-
-// Solves a x = b for the symmetric positive definite `a`, row by row, of which the lower triangle
-// is read and overwritten.
-void solve_in_place(double* a, int n, double* x) {
-  for (int i = 0; i < n; ++i) {
-    double* row = a + static_cast<std::ptrdiff_t>(i) * n;
-    for (int k = 0; k < i; ++k) {
-      const double* other = a + static_cast<std::ptrdiff_t>(k) * n;
-      row[k] = (row[k] - ConstVector(row, k).dot(ConstVector(other, k))) * other[k];
-    }
-    // The diagonal holds the inverse.
-    row[i] = 1.0 / std::sqrt(row[i] - ConstVector(row, i).squaredNorm());
-    x[i] = (x[i] - ConstVector(row, i).dot(ConstVector(x, i))) * row[i];
-  }
-  for (int i = n - 1; i >= 0; --i) {
-    const double* row = a + static_cast<std::ptrdiff_t>(i) * n;
-    x[i] *= row[i];
-    Vector(x, i) -= x[i] * ConstVector(row, i);
-  }
-}
 
 }  // namespace
 
@@ -69,6 +49,7 @@ void ContactEquations::solve_for_forces(const ContactSpace& space, double step,
     row[i] += 1.0;
     right_[size(i)] = column.numbers.dot(u.segment<3>(column.first));
   }
+  factor_in_place(matrix_.data(), n);
   solve_in_place(matrix_.data(), n, right_.data());
   for (int i = 0; i < n; ++i) {
     const Column& column = columns[size(i)];
@@ -103,6 +84,7 @@ void ContactEquations::solve_for_dofs(const ContactSpace& space, double step,
     }
   }
   right *= step;
+  factor_in_place(matrix_.data(), nv);
   solve_in_place(matrix_.data(), nv, right_.data());
   u.noalias() += jacobian.lazyProduct(right);
   for (const Column& column : columns) {

@@ -2,39 +2,14 @@
 #include "adaptor/contact_space.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "adaptor/cholesky.h"
 #include "adaptor/solids_of_geoms.h"
 
 namespace volcontact::adaptor {
 namespace {
 
 std::size_t size(int count) { return static_cast<std::size_t>(count); }
-
-// Row-major Cholesky factor in the lower triangle, in place.
-void factor(double* a, int n) {
-  using Row = Eigen::Map<const Eigen::VectorXd>;
-  for (int i = 0; i < n; ++i) {
-    double* row = a + i * n;
-    for (int k = 0; k < i; ++k) {
-      const double* other = a + k * n;
-      row[k] = (row[k] - Row(row, k).dot(Row(other, k))) / other[k];
-    }
-    row[i] = std::sqrt(row[i] - Row(row, i).squaredNorm());
-  }
-}
-
-void solve(const double* a, int n, double* x) {
-  for (int i = 0; i < n; ++i) {
-    double sum = x[i];
-    for (int k = 0; k < i; ++k) sum -= a[i * n + k] * x[k];
-    x[i] = sum / a[i * n + i];
-  }
-  for (int i = n - 1; i >= 0; --i) {
-    x[i] /= a[i * n + i];
-    for (int k = 0; k < i; ++k) x[k] -= a[i * n + k] * x[i];
-  }
-}
 
 }  // namespace
 
@@ -78,9 +53,9 @@ void ContactSpace::divide_by_mass(const mjModel* m) noexcept {
       // Only the lower triangle is filled by every release.
       std::copy_n(&mass_[size((first + i) * nv_ + first)], i + 1, &block_[size(i * n)]);
     }
-    factor(block_.data(), n);
+    factor_in_place(block_.data(), n);
     for (int row = 0; row < rows_; ++row) {
-      solve(block_.data(), n, &response_[size(row * nv_ + first)]);
+      solve_in_place(block_.data(), n, &response_[size(row * nv_ + first)]);
     }
     first = last;
   }

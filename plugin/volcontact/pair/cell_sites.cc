@@ -3,20 +3,20 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
+
+#include "volcontact/base/disjoint_sets.h"
 
 namespace volcontact {
 namespace {
 
 constexpr double kSpeck = 1e-3;  // of the volume
 
-// The leaves and their regions: union-find, the least leaf of a region is its root.
+// The leaves and their regions: disjoint sets.
 class Regions {
  public:
   Regions(std::span<const Cell> cells, const std::vector<int>& leaves, SiteScratch& scratch)
       : cells_(cells), leaves_(leaves), s_(scratch), count_(static_cast<int>(leaves.size())) {
-    s_.parent.resize(leaves.size());
-    std::iota(s_.parent.begin(), s_.parent.end(), 0);
+    make_sets(s_.parent, leaves.size());
     s_.boxes.resize(leaves.size());
     for (int i = 0; i < count_; ++i) {
       s_.boxes[i].min = cell(i).center + cell(i).content_low;
@@ -28,15 +28,8 @@ class Regions {
   // Box of the volume in the leaf.
   const Vec3& low(int i) const { return s_.boxes[i].min; }
   const Vec3& high(int i) const { return s_.boxes[i].max; }
-  int root(int i) {
-    while (s_.parent[i] != i) i = s_.parent[i] = s_.parent[s_.parent[i]];
-    return i;
-  }
-  void join(int i, int j) {
-    i = root(i);
-    j = root(j);
-    s_.parent[std::max(i, j)] = std::min(i, j);
-  }
+  int root(int i) { return root_of(s_.parent, i); }
+  void join(int i, int j) { join_sets(s_.parent, i, j); }
 
   void join_neighbours(double slack);
   void join_specks();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcontact/base/disjoint_sets.h"
 #include "volcontact/pair/columns/bore_plug.h"
 #include "volcontact/pair/columns/contained.h"
 
@@ -329,26 +330,20 @@ class ComposedColumns {
   void join_sites() {
     const int n = static_cast<int>(s_.sites.size());
     std::vector<int>& of = s_.site_of;
-    of.resize(static_cast<std::size_t>(n));
-    for (int i = 0; i < n; ++i) of[i] = i;
-    const auto root = [&](int i) {
-      while (of[i] != i) i = of[i] = of[of[i]];
-      return i;
-    };
+    make_sets(of, s_.sites.size());
     for (int i = 0; i < n; ++i) {
       for (int j = 0; j < i; ++j) {
         if (s_.sites[i].piece == s_.sites[j].piece) continue;
         if (!share_seam(s_.sites[i].piece, s_.sites[j].piece)) continue;
         if (!are_neighbours(s_.sites[i].metrics, s_.sites[j].metrics)) continue;
-        const int a = root(i), b = root(j);
-        of[std::max(a, b)] = std::min(a, b);
+        join_sets(of, i, j);
       }
     }
     for (int site = 0; site < n; ++site) {
       if (of[site] != site) continue;
       VolumeMetrics sum = s_.sites[site].metrics;
       for (int i = site + 1; i < n; ++i) {
-        if (root(i) == site) sum = sum + s_.sites[i].metrics;
+        if (root_of(of, i) == site) sum = sum + s_.sites[i].metrics;
       }
       out_.total = out_.sites.empty() ? sum : out_.total + sum;
       out_.sites.push_back(sum);

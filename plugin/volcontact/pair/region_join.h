@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "volcontact/base/disjoint_sets.h"
 #include "volcontact/pair/interference.h"
 #include "volcontact/pair/lines_region.h"
 #include "volcontact/shape/csg.h"
@@ -43,8 +44,7 @@ class RegionJoin {
 
   void run() {
     const int n = static_cast<int>(regions_.size());
-    site_of_.resize(n);
-    for (int i = 0; i < n; ++i) site_of_[i] = i;
+    make_sets(site_of_, regions_.size());
     for (int i = 0; i < n; ++i) {
       for (LinesRegion::PlanePatch& p : regions_[i].patches) {
         for (int j = 0; j < i; ++j) {
@@ -58,7 +58,7 @@ class RegionJoin {
       if (site_of_[site] != site) continue;
       VolumeMetrics sum = regions_[site].metrics;
       for (int i = site + 1; i < n; ++i) {
-        if (root(i) == site) sum = sum + regions_[i].metrics;
+        if (root_of(site_of_, i) == site) sum = sum + regions_[i].metrics;
       }
       settle_status(sum);
       out_.total = out_.sites.empty() ? sum : out_.total + sum;
@@ -67,18 +67,12 @@ class RegionJoin {
   }
 
  private:
-  int root(int i) const {
-    while (site_of_[i] != i) i = site_of_[i];
-    return i;
-  }
-
   void join(int i, LinesRegion::PlanePatch& p, int j, LinesRegion::PlanePatch& q) {
     if (p.owner != q.owner || !same_plane(p, -q.normal, -q.offset)) return;
     const double shared = std::min(p.area, q.area);
     if (!(shared > 0.0)) return;
     if (!holds_(regions_[i], q) && !holds_(regions_[j], p)) return;
-    const int a = root(i), b = root(j);
-    site_of_[std::max(a, b)] = std::min(a, b);
+    join_sets(site_of_, i, j);
     for (int k : {i, j}) {
       VolumeMetrics& m = regions_[k].metrics;
       double& area = p.owner == Owner::kA ? m.area : m.counter_area;

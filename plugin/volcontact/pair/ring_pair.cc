@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcontact/base/disjoint_sets.h"
 #include "volcontact/pair/outer_rule.h"
 #include "volcontact/pair/small_turn.h"
 
@@ -138,23 +139,15 @@ class RingPairRun {
     return depth;
   }
 
-  int root(int strand) const {
-    while (s_.region_of[strand] != strand) strand = s_.region_of[strand];
-    return strand;
-  }
-  void join(int one, int other) {
-    one = root(one);
-    other = root(other);
-    s_.region_of[std::max(one, other)] = std::min(one, other);
-  }
+  int root(int strand) const { return root_of(s_.region_of, strand); }
+  void join(int one, int other) { join_sets(s_.region_of, one, other); }
   int strand(int side, const RingPatch::Arc& arc) const {
     return arc.strand + (side == 0 ? 0 : patch(0).strands);
   }
 
   // Parts of either surface by their strands, and parts of both where arcs end in one place.
   void join_strands() {
-    s_.region_of.resize(patch(0).strands + patch(1).strands);
-    for (std::size_t i = 0; i < s_.region_of.size(); ++i) s_.region_of[i] = static_cast<int>(i);
+    make_sets(s_.region_of, static_cast<std::size_t>(patch(0).strands + patch(1).strands));
     for (int side = 0; side < 2; ++side) {
       const int base = side == 0 ? 0 : patch(0).strands;
       for (const RingPatch::Joint& j : patch(side).joints) join(base + j.one, base + j.other);

@@ -106,13 +106,8 @@ class TorusColumns {
     s_.crossings.clear();
     const ObbTree& tree = *a_.tree;
     for (const auto& [slot, inside] : s_.radial.search.found) {
-      const ObbTree::Leaf& leaf = tree.leaves[static_cast<std::size_t>(slot / kLanes)];
-      const int lane = slot % kLanes;
       Vec3 c[3];
-      for (int i = 0; i < 3; ++i) {
-        c[i] =
-            X_BA_ * Vec3(leaf.corner[i][0][lane], leaf.corner[i][1][lane], leaf.corner[i][2][lane]);
-      }
+      for (int i = 0; i < 3; ++i) c[i] = X_BA_ * tree.corner(slot, i);
       add_crossings(c);
     }
     auto& crossings = s_.crossings;

@@ -7,6 +7,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "volcontact/base/disjoint_sets.h"
+
 namespace volcontact {
 namespace {
 
@@ -43,9 +45,9 @@ void check(const std::vector<Vec3>& vertices, const std::vector<Triangle>& trian
 // become one), by sorting along x.
 std::vector<int> welded_numbers(const std::vector<Vec3>& vertices, double reach) {
   const int count = static_cast<int>(vertices.size());
-  std::vector<int> order(count), root(count);
+  std::vector<int> order(count), root;
   std::iota(order.begin(), order.end(), 0);
-  std::iota(root.begin(), root.end(), 0);
+  make_sets(root, vertices.size());
   std::sort(order.begin(), order.end(), [&](int i, int j) {
     const Vec3 &a = vertices[i], &b = vertices[j];
     if (a.x() != b.x()) return a.x() < b.x();
@@ -53,10 +55,6 @@ std::vector<int> welded_numbers(const std::vector<Vec3>& vertices, double reach)
     if (a.z() != b.z()) return a.z() < b.z();
     return i < j;
   });
-  const auto find = [&](int i) {
-    while (root[i] != i) i = root[i] = root[root[i]];
-    return i;
-  };
   for (int k = 0; k < count; ++k) {
     const Vec3& a = vertices[order[k]];
     for (int m = k + 1; m < count; ++m) {
@@ -64,14 +62,11 @@ std::vector<int> welded_numbers(const std::vector<Vec3>& vertices, double reach)
       if (b.x() - a.x() > reach) break;
       // Equal vertices stand side by side: with no reach, one comparison is enough.
       const bool near = (b - a).cwiseAbs().maxCoeff() <= reach;
-      if (near) {
-        const int i = find(order[k]), j = find(order[m]);
-        root[std::max(i, j)] = std::min(i, j);
-      }
+      if (near) join_sets(root, order[k], order[m]);
       if (reach == 0.0 && !near) break;
     }
   }
-  for (int i = 0; i < count; ++i) root[i] = find(i);
+  for (int i = 0; i < count; ++i) root[i] = root_of(root, i);
   return root;
 }
 

@@ -36,6 +36,12 @@ struct ObbTree {
   std::vector<int> triangle_of_slot;  ///< -1 in an unused lane
   /// Half-edge 3 s + i of slot s: the half-edge on the other side.
   std::vector<int> twins;
+
+  Vec3 corner(int slot, int i) const {
+    const auto& c = leaves[static_cast<std::size_t>(slot / kLanes)].corner[i];
+    const int lane = slot % kLanes;
+    return {c[0][lane], c[1][lane], c[2][lane]};
+  }
 };
 
 /// Two nodes of trees, and their lanes that a search through both has yet to compare.

@@ -160,14 +160,9 @@ class Summation {
     const ObbTree* tree = surfaces_[side]->tree;
     if (tree == nullptr) return 0.0;
     const int other = tree->twins[3 * slot + edge] / 3;
-    const ObbTree::Leaf& leaf = tree->leaves[other / kLanes];
-    const int lane = other % kLanes;
-    Vec3 corner[3];
-    for (int c = 0; c < 3; ++c) {
-      corner[c] = Vec3(leaf.corner[c][0][lane], leaf.corner[c][1][lane], leaf.corner[c][2][lane]);
-    }
-    const Vec3 normal =
-        surfaces_[side]->X_CM->rotation * (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+    const Vec3 origin = tree->corner(other, 0);
+    const Vec3 normal = surfaces_[side]->X_CM->rotation *
+                        (tree->corner(other, 1) - origin).cross(tree->corner(other, 2) - origin);
     if (!(std::abs(normal.z()) <= kUpright * normal.norm())) return 0.0;
     const double length = std::hypot(dx, dy);
     return normal.x() * dy - normal.y() * dx >= 0.0 ? length : -length;

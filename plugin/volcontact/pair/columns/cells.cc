@@ -282,11 +282,6 @@ bool meets_rectangle(const double corners[3][3], const ColumnWindow& window, dou
 #undef VOLCONTACT_SIMD_KERNEL
 
 namespace volcontact {
-namespace {
-
-constexpr std::size_t kShare = 256;  // leaf pairs that are worth waking a thread for
-
-}  // namespace
 
 bool find_leaf_pairs(const ObbTree& a, const Pose& X_CA, const ObbTree& b, const Pose& X_CB,
                      const ColumnWindow& window, int most, CellScratch& scratch) noexcept {
@@ -296,6 +291,7 @@ bool find_leaf_pairs(const ObbTree& a, const Pose& X_CA, const ObbTree& b, const
 
 void make_cells(const ObbTree& a, const Pose& X_CA, const ObbTree& b, const Pose& X_CB,
                 const ColumnWindow& window, int threads, CellScratch& scratch) noexcept {
+  constexpr std::size_t kShare = 256;  // leaf pairs that are worth waking a thread for
   const std::size_t pairs = scratch.leaf_pairs.size() / 2;
   if (threads <= 1 || pairs < kShare) {
     scratch.upright = VOLCONTACT_SIMD_CALL(scratch.path, make_cells_wide, a, X_CA, b, X_CB, window,

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "volcontact/base/disjoint_sets.h"
+
 namespace volcontact {
 namespace {
 
@@ -12,16 +14,6 @@ constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
 constexpr double kClosed = 1e-9;  // of the length of the curve
 constexpr std::size_t kMostPatches = 100;
 constexpr double kLeastArea = 1e-4;  // of the square of the length
-
-int find(std::vector<int>& parent, int i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-void join(std::vector<int>& parent, int i, int j) {
-  i = find(parent, i);
-  j = find(parent, j);
-  parent[std::max(i, j)] = std::min(i, j);
-}
 
 void join_neighbors(const std::vector<TriangleContact>& contacts, PatchScratch& scratch) {
   std::size_t size = 16;
@@ -34,7 +26,7 @@ void join_neighbors(const std::vector<TriangleContact>& contacts, PatchScratch& 
       std::size_t at = static_cast<std::size_t>((key * 0x9e3779b97f4a7c15u) >> 20) & (size - 1);
       while (scratch.keys[at] != kEmpty && scratch.keys[at] != key) at = (at + 1) & (size - 1);
       if (scratch.keys[at] == key) {
-        join(scratch.parent, static_cast<int>(i), scratch.contact_at[at]);
+        join_sets(scratch.parent, static_cast<int>(i), scratch.contact_at[at]);
       } else {
         scratch.keys[at] = key;
         scratch.contact_at[at] = static_cast<int>(i);
@@ -49,12 +41,12 @@ int sort_by_patch(PatchScratch& scratch) {
   scratch.number.assign(scratch.parent.size(), -1);
   int patches = 0;
   for (int i = 0; i < count; ++i) {
-    int& number = scratch.number[find(scratch.parent, i)];
+    int& number = scratch.number[root_of(scratch.parent, i)];
     if (number < 0) number = patches++;
   }
   scratch.order.resize(scratch.parent.size());
   scratch.starts.assign(static_cast<std::size_t>(patches) + 1, 0);
-  const auto patch_of = [&](int i) { return scratch.number[find(scratch.parent, i)]; };
+  const auto patch_of = [&](int i) { return scratch.number[root_of(scratch.parent, i)]; };
   for (int i = 0; i < count; ++i) ++scratch.starts[patch_of(i) + 1];
   std::partial_sum(scratch.starts.begin(), scratch.starts.end(), scratch.starts.begin());
   for (int i = 0; i < count; ++i) scratch.order[scratch.starts[patch_of(i)]++] = i;
@@ -66,7 +58,7 @@ void measure(const std::vector<TriangleContact>& contacts, PatchScratch& scratch
   const int count = static_cast<int>(scratch.order.size());
   for (int first = 0, last; first < count; first = last) {
     const auto patch_of = [&](int k) {
-      return patches == 1 ? 0 : scratch.number[find(scratch.parent, scratch.order[k])];
+      return patches == 1 ? 0 : scratch.number[root_of(scratch.parent, scratch.order[k])];
     };
     const int patch = patch_of(first);
     for (last = first + 1; last < count && patch_of(last) == patch;) ++last;
@@ -122,8 +114,7 @@ CurveFlux flux_of(const std::vector<TriangleContact>& contacts, const int* first
 }
 
 bool find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& scratch) noexcept {
-  scratch.parent.resize(contacts.size());
-  for (std::size_t i = 0; i < contacts.size(); ++i) scratch.parent[i] = static_cast<int>(i);
+  make_sets(scratch.parent, contacts.size());
   join_neighbors(contacts, scratch);
   scratch.several.assign(contacts.size(), 0);
   // Until no two patches are near to each other.
@@ -135,17 +126,17 @@ bool find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& sc
       for (std::size_t j = 0; j < i; ++j) {
         const ContactPatch &a = scratch.patches[i], &b = scratch.patches[j];
         const int root_a = scratch.order[a.first], root_b = scratch.order[b.first];
-        if (find(scratch.parent, root_a) == find(scratch.parent, root_b)) continue;
+        if (root_of(scratch.parent, root_a) == root_of(scratch.parent, root_b)) continue;
         if (!near(a, b)) continue;
-        join(scratch.parent, root_a, root_b);
-        scratch.several[find(scratch.parent, root_a)] = 1;
+        join_sets(scratch.parent, root_a, root_b);
+        scratch.several[root_of(scratch.parent, root_a)] = 1;
         joined = true;
       }
     }
     if (!joined) break;
   }
   for (ContactPatch& patch : scratch.patches) {
-    patch.one_curve = scratch.several[find(scratch.parent, scratch.order[patch.first])] == 0;
+    patch.one_curve = scratch.several[root_of(scratch.parent, scratch.order[patch.first])] == 0;
     patch.flux =
         flux_of(contacts, scratch.order.data() + patch.first, scratch.order.data() + patch.last);
   }

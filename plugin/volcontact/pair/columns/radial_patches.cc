@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace volcontact {
 namespace {
@@ -47,7 +46,13 @@ class RadialPatches {
       const RadialReach reach = add_triangle(slot);
       if (reach != RadialReach::kDone) return reach;
     }
-    join_faces();
+    const int patches = join_faces(
+        *a_.tree, s_.slot_of_face,
+        [&](int slot, int e) {
+          return edge_inside(corner_of(slot, e), corner_of(slot, (e + 1) % 3));
+        },
+        s_.joining, s_.patch_of_face);
+    s_.patches.resize(static_cast<std::size_t>(patches));
     sort_by_patch();
     for (RadialPatch& patch : s_.patches) {
       if (!measure(patch)) return RadialReach::kBudget;
@@ -56,11 +61,7 @@ class RadialPatches {
   }
 
  private:
-  Vec3 corner_of(int slot, int i) const {
-    const ObbTree::Leaf& leaf = a_.tree->leaves[static_cast<std::size_t>(slot / kLanes)];
-    const int lane = slot % kLanes;
-    return X_QA_ * Vec3(leaf.corner[i][0][lane], leaf.corner[i][1][lane], leaf.corner[i][2][lane]);
-  }
+  Vec3 corner_of(int slot, int i) const { return X_QA_ * a_.tree->corner(slot, i); }
 
   static double over(const SurfacePlane& plane, const Vec3& x) {
     return plane.normal.dot(x) - plane.offset;
@@ -197,46 +198,6 @@ class RadialPatches {
     return f(0.5 * (low + high));
   }
 
-  int root_of(int i) {
-    std::vector<int>& parent = s_.parent;
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  }
-
-  // Faces that share an edge inside of the solid belong to one patch.
-  void join_faces() {
-    const int count = static_cast<int>(s_.slot_of_face.size());
-    const ObbTree& tree = *a_.tree;
-    std::vector<int>& of_slot = s_.face_of_slot;
-    if (of_slot.size() < tree.triangle_of_slot.size()) {
-      of_slot.resize(tree.triangle_of_slot.size(), -1);
-    }
-    for (int i = 0; i < count; ++i) of_slot[s_.slot_of_face[i]] = i;
-    s_.parent.resize(static_cast<std::size_t>(count));
-    std::iota(s_.parent.begin(), s_.parent.end(), 0);
-    for (int i = 0; i < count; ++i) {
-      const int slot = s_.slot_of_face[i];
-      for (int e = 0; e < 3; ++e) {
-        const int other = of_slot[tree.twins[3 * slot + e] / 3];
-        if (other < 0 || other > i) continue;
-        const int one = root_of(i), two = root_of(other);
-        if (one == two || !edge_inside(corner_of(slot, e), corner_of(slot, (e + 1) % 3))) continue;
-        s_.parent[std::max(one, two)] = std::min(one, two);
-      }
-    }
-    s_.patch_of_face.resize(static_cast<std::size_t>(count));
-    for (int i = 0; i < count; ++i) {
-      const int root = root_of(i);
-      if (root == i) {
-        s_.patch_of_face[i] = static_cast<int>(s_.patches.size());
-        s_.patches.emplace_back();
-      } else {
-        s_.patch_of_face[i] = s_.patch_of_face[root];
-      }
-    }
-    for (int i = 0; i < count; ++i) of_slot[s_.slot_of_face[i]] = -1;
-  }
-
   // Faces and parts, patch after patch, each in the order in which they were found.
   void sort_by_patch() {
     const std::size_t patches = s_.patches.size();
@@ -255,7 +216,7 @@ class RadialPatches {
     for (const RadialPart& part : s_.parts) ++s_.starts[s_.patch_of_face[part.face] + 1];
     for (std::size_t i = 0; i < patches; ++i) s_.starts[i + 1] += s_.starts[i];
     s_.part_order.resize(s_.parts.size());
-    std::vector<int>& next = s_.parent;
+    std::vector<int>& next = s_.joining.parent;
     next.assign(s_.starts.begin(), s_.starts.end());
     for (std::size_t i = 0; i < s_.parts.size(); ++i) {
       s_.part_order[next[s_.patch_of_face[s_.parts[i].face]]++] = static_cast<int>(i);

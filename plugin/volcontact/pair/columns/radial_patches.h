@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "volcontact/pair/columns/face_patches.h"
 #include "volcontact/pair/columns/radial_cut.h"
 #include "volcontact/pair/columns/radial_search.h"
 #include "volcontact/pair/interference.h"
@@ -24,8 +25,8 @@ struct RadialScratch {
   std::vector<int> slot_of_face;
   std::vector<RadialPart> parts, parts_here, divided;
   std::vector<char> meets_other;  ///< of each face
-  std::vector<int> face_of_slot;  ///< -1 between uses
-  std::vector<int> parent, patch_of_face, face_order, part_order, starts;
+  FacePatchScratch joining;
+  std::vector<int> patch_of_face, face_order, part_order, starts;
   std::vector<double> doubts;
   RadialPieces pieces;
   std::vector<RadialPatch> patches;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcontact/base/disjoint_sets.h"
+
 namespace volcontact {
 namespace {
 
@@ -27,10 +29,8 @@ class Joiner {
     mask_ = size - 1;
     scratch.keys.assign(size, kEmpty);
     scratch.cell_at.resize(size);
-    scratch.parent.resize(2 * cells.size());
+    make_sets(scratch.parent, 2 * cells.size());
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      scratch.parent[2 * i] = static_cast<int>(2 * i);
-      scratch.parent[2 * i + 1] = static_cast<int>(2 * i + 1);
       const std::uint64_t key = key_of(cells[i].f, cells[i].g);
       std::size_t at = home(key);
       while (scratch.keys[at] != kEmpty) at = (at + 1) & mask_;
@@ -39,16 +39,8 @@ class Joiner {
     }
   }
 
-  int find(int i) {
-    std::vector<int>& parent = scratch_.parent;
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  }
-  void join(int i, int j) {
-    i = find(i);
-    j = find(j);
-    scratch_.parent[std::max(i, j)] = std::min(i, j);
-  }
+  int find(int i) { return root_of(scratch_.parent, i); }
+  void join(int i, int j) { join_sets(scratch_.parent, i, j); }
 
   // The cell across the edges of a label; -1 where there is none.
   int across(const ColumnCell& cell, int label) const {
@@ -180,16 +172,8 @@ int find_regions_below(const ObbTree& a, std::vector<ColumnCell>& cells, RegionS
   const int count = static_cast<int>(cells.size());
   std::vector<int>& of_slot = scratch.cell_of_slot;
   if (of_slot.size() < a.triangle_of_slot.size()) of_slot.resize(a.triangle_of_slot.size(), -1);
-  std::vector<int>& parent = scratch.parent;
-  parent.resize(cells.size());
-  for (int i = 0; i < count; ++i) {
-    parent[i] = i;
-    of_slot[cells[i].f] = i;
-  }
-  const auto root = [&](int i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  make_sets(scratch.parent, cells.size());
+  for (int i = 0; i < count; ++i) of_slot[cells[i].f] = i;
   for (int i = 0; i < count; ++i) {
     ColumnCell& cell = cells[i];
     for (int label = 0; label < 3; ++label) {
@@ -198,8 +182,7 @@ int find_regions_below(const ObbTree& a, std::vector<ColumnCell>& cells, RegionS
       if (other < 0) {
         cell.walls = static_cast<unsigned char>(cell.walls | 1u << label);
       } else if (other < i) {
-        const int one = root(i), two = root(other);
-        parent[std::max(one, two)] = std::min(one, two);
+        join_sets(scratch.parent, i, other);
       }
     }
   }
@@ -207,7 +190,7 @@ int find_regions_below(const ObbTree& a, std::vector<ColumnCell>& cells, RegionS
   scratch.number.assign(cells.size(), -1);
   int regions = 0;
   for (int i = 0; i < count; ++i) {
-    int& number = scratch.number[root(i)];
+    int& number = scratch.number[root_of(scratch.parent, i)];
     if (number < 0) number = regions++;
     scratch.region_of[i] = {number, number, cells[i].walls != 0 ? number : -1, -1};
     of_slot[cells[i].f] = -1;

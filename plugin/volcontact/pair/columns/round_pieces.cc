@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #define VOLCONTACT_SIMD_KERNEL "volcontact/pair/columns/round_search_kernel.inc"
 #include "volcontact/base/simd_paths.inc"
@@ -253,55 +252,12 @@ std::size_t triangle_count(const ObbTree& tree) {
   return count;
 }
 
-Vec3 corner_of(const ObbTree& tree, const Vec3& origin, int slot, int i) {
-  const ObbTree::Leaf& leaf = tree.leaves[slot / kLanes];
-  const int lane = slot % kLanes;
-  return Vec3(leaf.corner[i][0][lane], leaf.corner[i][1][lane], leaf.corner[i][2][lane]) - origin;
-}
-
-int root_of(std::vector<int>& parent, int i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
-// Faces that share an edge inside of the solid belong to one patch.
-void find_patches(const ObbTree& tree, const Vec3& origin, const RoundSolid& solid,
-                  RoundSearchScratch& scratch, RoundPieces& pieces) {
-  const int count = static_cast<int>(pieces.slot_of_face.size());
-  std::vector<int>& of_slot = scratch.face_of_slot;
-  if (of_slot.size() < tree.triangle_of_slot.size())
-    of_slot.resize(tree.triangle_of_slot.size(), -1);
-  for (int i = 0; i < count; ++i) of_slot[pieces.slot_of_face[i]] = i;
-  scratch.parent.resize(count);
-  std::iota(scratch.parent.begin(), scratch.parent.end(), 0);
-  for (int i = 0; i < count; ++i) {
-    const int slot = pieces.slot_of_face[i];
-    for (int e = 0; e < 3; ++e) {
-      const int twin = tree.twins[3 * slot + e] / 3, other = of_slot[twin];
-      if (other < 0 || other > i) continue;
-      const int one = root_of(scratch.parent, i), two = root_of(scratch.parent, other);
-      if (one == two) continue;
-      if (!edge_inside(solid, corner_of(tree, origin, slot, e),
-                       corner_of(tree, origin, slot, (e + 1) % 3))) {
-        continue;
-      }
-      scratch.parent[std::max(one, two)] = std::min(one, two);
-    }
-  }
-  pieces.patch_of_face.resize(count);
-  pieces.patch_count = 0;
-  for (int i = 0; i < count; ++i) {
-    const int root = root_of(scratch.parent, i);
-    pieces.patch_of_face[i] = root == i ? pieces.patch_count++ : pieces.patch_of_face[root];
-  }
-  for (int i = 0; i < count; ++i) of_slot[pieces.slot_of_face[i]] = -1;
-}
-
 }  // namespace
 
 bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid& solid,
                        const InterferenceOptions& options, RoundSearchScratch& scratch,
                        RoundPieces& pieces) noexcept {
+  const auto corner_of = [&](int slot, int i) -> Vec3 { return tree.corner(slot, i) - origin; };
   VOLCONTACT_SIMD_CALL(scratch.path, find_triangles_near, tree, origin, solid, scratch);
   // The columns at the rim of a patch are short, and the more triangles it has, the less of it are
   // those at the rim.
@@ -315,8 +271,7 @@ bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid
   for (const auto& [slot, inside] : scratch.found) {
     const int face = static_cast<int>(pieces.slot_of_face.size());
     const std::size_t before = pieces.triangles.size();
-    const Vec3 corner[3] = {corner_of(tree, origin, slot, 0), corner_of(tree, origin, slot, 1),
-                            corner_of(tree, origin, slot, 2)};
+    const Vec3 corner[3] = {corner_of(slot, 0), corner_of(slot, 1), corner_of(slot, 2)};
     if (inside) {
       pieces.triangles.push_back({{corner[0], corner[1], corner[2]}, face});
     } else {
@@ -327,7 +282,14 @@ bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid
     if (static_cast<int>(pieces.triangles.size()) > options.most_cells) return false;
   }
   pieces.whole = uncut && scratch.found.size() == triangle_count(tree);
-  if (!pieces.whole) find_patches(tree, origin, solid, scratch, pieces);
+  if (!pieces.whole) {
+    pieces.patch_count = join_faces(
+        tree, pieces.slot_of_face,
+        [&](int slot, int e) {
+          return edge_inside(solid, corner_of(slot, e), corner_of(slot, (e + 1) % 3));
+        },
+        scratch.joining, pieces.patch_of_face);
+  }
   return true;
 }
 

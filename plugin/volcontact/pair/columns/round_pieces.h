@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "volcontact/base/simd.h"
+#include "volcontact/pair/columns/face_patches.h"
 #include "volcontact/pair/columns/round_solid.h"
 #include "volcontact/pair/interference.h"
 #include "volcontact/shape/obb_tree.h"
@@ -51,8 +52,7 @@ struct RoundSearchScratch {
   SimdPath path = best_simd_path();
   std::vector<int> stack;
   std::vector<Found> found;
-  std::vector<int> face_of_slot;  ///< -1 between uses
-  std::vector<int> parent;
+  FacePatchScratch joining;
   std::vector<Vec3> corners;  ///< of the polygon at hand
 };
 
