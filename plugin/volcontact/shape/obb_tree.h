@@ -48,6 +48,7 @@ struct ObbTree {
 struct NodePair {
   int node_a, node_b;
   unsigned lanes_a, lanes_b;
+  int around_b = -1;  ///< the box around node_b: lane + kLanes times the number of its node
 };
 
 ObbTree make_obb_tree(const MeshTopology& topology);
