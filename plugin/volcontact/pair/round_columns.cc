@@ -33,6 +33,20 @@ double square_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (a + t * way - p).squaredNorm();
 }
 
+double square_to_triangle(const Vec3& p, const Vec3 (&c)[3]) {
+  const Vec3 n = (c[1] - c[0]).cross(c[2] - c[0]);
+  bool over = true;
+  double edges = kInfinity;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 &a = c[i], &b = c[(i + 1) % 3];
+    over &= n.dot((b - a).cross(p - a)) > 0.0;
+    edges = std::min(edges, square_to_segment(p, a, b));
+  }
+  if (!over) return edges;
+  const double height = n.dot(p - c[0]);
+  return height * height / n.squaredNorm();
+}
+
 // Surface integrals over the triangles and slivers of one patch, in Q.
 struct PatchSurface {
   Vec3 area_vector = Vec3::Zero(), area_moment = Vec3::Zero();
@@ -76,9 +90,7 @@ class RoundColumns {
       return add_contained(transformed(own_b, X_AB_), 0.0, 0.0);
     }
     sort_by_patch();
-    for (Patch& patch : s_.patches) {
-      if (!measure(patch)) return false;
-    }
+    for (Patch& patch : s_.patches) measure(patch);
     add_sites(transformed(own_b, X_QB));
     VolumeMetrics& total = out_.total;
     if (total.volume_error > options_.tolerance * total.volume) total.status = Status::kApproximate;
@@ -142,7 +154,7 @@ class RoundColumns {
 
   // The metrics of what lies below the patch, down to B's surface. Their volume is negative where
   // the patch is the surface of a cavity, or looks down on all of B.
-  bool measure(Patch& patch) {
+  void measure(Patch& patch) {
     PatchSurface surface;
     s_.pieces_of_patch.clear();
     for (int k = patch.first_triangle; k < patch.last_triangle; ++k) {
@@ -170,16 +182,60 @@ class RoundColumns {
     const auto works = [&](const Vec3& direction) {
       return try_direction(direction.normalized(), slivers, surface, patch);
     };
-    if (works(up)) return true;
+    if (works(up)) return;
     if (solid_.has_axis) {
       const Vec3& axis = solid_.axis_direction;
       const double along = up.dot(axis);
-      if (std::abs(along) < kAlmostAcross && works(up - along * axis)) return true;
-      if (std::abs(along) > kAlmostAxis && works(std::copysign(1.0, along) * axis)) return true;
+      if (std::abs(along) < kAlmostAcross && works(up - along * axis)) return;
+      if (std::abs(along) > kAlmostAxis && works(std::copysign(1.0, along) * axis)) return;
     }
     const Vec3 against = against_outline(slivers);
-    if (up.dot(against) > 0.0 && works(against)) return true;
-    return works(-up);
+    if (up.dot(against) > 0.0 && works(against)) return;
+    if (!works(-up)) look_from_point(surface, patch);
+  }
+
+  // Where no direction sees the patch whole, a point inside of B does: B is convex.
+  void look_from_point(const PatchSurface& surface, Patch& patch) {
+    s_.slivers_of_patch.clear();
+    for (int k = patch.first_sliver; k < patch.last_sliver; ++k) {
+      s_.slivers_of_patch.push_back(s_.pieces.slivers[s_.sliver_order[k]]);
+    }
+    const StarSum sum = sum_star(solid_, far_point(), s_.pieces_of_patch, s_.slivers_of_patch,
+                                 kDoubtShare * options_.tolerance, options_.most_cells, s_.star);
+    patch.moments = sum.moments;
+    patch.moments.area_vector = surface.area_vector;
+    patch.moments.area_moment = surface.area_moment;
+    patch.moments.area = surface.area;
+    patch.moments.counter_area =
+        std::max(std::abs(sum.moments.counter_area), surface.area_vector.norm());
+    patch.deep = true;
+    patch.volume_error =
+        sum.doubt + kSliverError * sum.slivers + kSeamError * std::abs(sum.moments.volume);
+  }
+
+  // Of points in B the one farthest from the patch.
+  Vec3 far_point() const {
+    Vec3 best = Vec3::Zero();
+    double farthest = -1.0;
+    const auto look = [&](const Vec3& p) {
+      double nearest = kInfinity;
+      for (const Triangle& t : s_.pieces_of_patch) {
+        nearest = std::min(nearest, square_to_triangle(p, t.corner));
+        if (nearest <= farthest) return;
+      }
+      farthest = nearest;
+      best = p;
+    };
+    look(best);
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 way(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0);
+      look(0.5 * (b_.support(X_AB_, way) - origin_));
+    }
+    for (int side = 0; side < 6; ++side) {
+      const Vec3 way = (side & 1 ? 1.0 : -1.0) * Vec3::Unit(side / 2);
+      look(0.6 * (b_.support(X_AB_, way) - origin_));
+    }
+    return best;
   }
 
   // Which plane faces of B the outline of the patch may run along.
@@ -320,14 +376,13 @@ class RoundColumns {
   // All patches, and copies of B, whose metrics are in Q.
   Patch joined(const VolumeMetrics& own_b, int copies) const {
     Patch all{};
+    all.deep = true;
     const Vec3 first = copies * own_b.volume * own_b.centroid;
     all.moments.volume = copies * own_b.volume;
     all.moments.first = first;
     all.moments.second = copies * own_b.second_moment() + first * own_b.centroid.transpose();
     for (const Patch& patch : s_.patches) {
       all.moments += patch.moments;
-      all.depth_moment += std::abs(patch.depth_moment);
-      all.depth = std::max(all.depth, patch.depth);
       all.volume_error += patch.volume_error;
     }
     return all;
@@ -338,9 +393,19 @@ class RoundColumns {
     VolumeMetrics m = patch.moments.metrics();
     m.depth_moment = patch.depth_moment;
     m.depth = patch.depth;
+    if (patch.deep) set_depth_of_layer(m);
     m.volume_error = patch.volume_error;
     out_.sites.push_back(transformed(m, Pose{Mat3::Identity(), origin_}));
     out_.total = out_.total + out_.sites.back();
+  }
+
+  // A layer as thick everywhere has the variance thickness^2 / 12 across.
+  static void set_depth_of_layer(VolumeMetrics& m) {
+    const Mat3 variance = m.second_moment() / m.volume;
+    const Vec3 n = m.normal();
+    const double across = n.isZero(0.0) ? variance.trace() / 3.0 : n.dot(variance * n);
+    m.depth = std::sqrt(12.0 * std::max(0.0, across));
+    m.depth_moment = 0.5 * m.volume * m.depth;
   }
 
   // Of five points spread in B the one farthest from A's edges: a thin part of A may hold any one

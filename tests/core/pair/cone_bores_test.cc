@@ -172,7 +172,6 @@ TEST(ConeBores, AChamferMayOverlapTheBore) {
   }
 }
 
-// Near the apex columns from there are of no use; the octree answers.
 // A cone's apex in reach is beyond its bundle; the surface of the overlap serves.
 TEST(ConeBores, ACupWithAPointIsServedByTheSurface) {
   const double r = 0.012, z = 0.0175, slope = kTop / kHalf;

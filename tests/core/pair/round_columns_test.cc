@@ -63,6 +63,46 @@ TEST(RoundColumns, AMeshOfABoxMeetsRoundSolidsAsTheBox) {
   }
 }
 
+// Anywhere in each other, also where no direction sees the surface of one in the other whole.
+TEST(RoundColumns, DeepOverlapsAreThoseOfTheBox) {
+  const Vec3 half(0.24, 0.08, 0.6);
+  const Box box({.half_sizes = half});
+  Random random(7);
+  for (const Shape& b : round_solids()) {
+    std::vector<double> errors;
+    int approximate = 0;
+    for (int i = 0; i < 40; ++i) {
+      const Mesh mesh = mesh_of(box_soup(half, 1 + 5 * (i % 3)));
+      const Pose X_AB = random.pose(0.2);
+      const VolumeMetrics expected = evaluated(box, b, X_AB, Engine::kLines, 1e-6).total;
+      if (expected.status == Status::kContained || !expected.touching()) continue;
+      const Interference out = evaluated(mesh, b, X_AB);
+      EXPECT_EQ(out.engine, Engine::kColumns);
+      const VolumeMetrics& m = out.total;
+      const double error = std::abs(m.volume - expected.volume);
+      errors.push_back(error / expected.volume);
+      if (m.status == Status::kApproximate) {  // little is left of much
+        ++approximate;
+        EXPECT_LE(error, m.volume_error);
+        continue;
+      }
+      EXPECT_LE(error, 1e-3 * expected.volume);
+      EXPECT_LE((m.centroid - expected.centroid).norm(), 2e-3 * std::cbrt(expected.volume));
+      EXPECT_LE((m.area_vector - expected.area_vector).norm(), 1e-3 * expected.area);
+      EXPECT_LE((m.area_moment - expected.area_moment).norm(), 1e-3 * expected.area);
+      EXPECT_LE((m.inertia - expected.inertia).norm(), 0.01 * expected.inertia.norm());
+      // A depth is no more than the overlap is wide.
+      EXPECT_GT(m.depth, 0.0);
+      EXPECT_LE(m.depth, 2.0 * half.norm());
+      EXPECT_LE(m.depth_moment, m.volume * m.depth);
+    }
+    std::sort(errors.begin(), errors.end());
+    ASSERT_GE(errors.size(), 30u);
+    EXPECT_LE(approximate, 4);
+    EXPECT_LE(errors[errors.size() / 2], 5e-5);
+  }
+}
+
 TEST(RoundColumns, ABallOnAFaceIsACap) {
   const double r = 0.3;
   for (int n : {1, 3, 20}) {
