@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import mujoco
 import numpy as np
+import pytest
 from case import GRAVITY, Bounds, Case, Figure, contact_of, load
 
 STEP, MASS, HALF = 2e-3, 12.0, 0.1
@@ -115,14 +116,20 @@ def depth(factor: float, *, native: bool = False) -> float:
     return HALF - float(data.qpos[2])
 
 
-def seated(step: float, *, native: bool = False) -> np.ndarray:
-    """Position of the battery box after its drop [m]; k_v = 1e10 N/m^3 of each pair."""
+def stiff_battery_box(step: float) -> mujoco.MjModel:
+    """The battery box with k_v = 1e10 N/m^3 of each pair."""
     model = load("battery_box/scene.xml")
     model.opt.timestep = step
     for i in range(model.nnumeric):
         name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_NUMERIC, i)
         if name.endswith("/stiffness"):
             model.numeric_data[model.numeric_adr[i]] = 2e10  # two in series
+    return model
+
+
+def seated(step: float, *, native: bool = False) -> np.ndarray:
+    """Position of the battery box after its drop [m]."""
+    model = stiff_battery_box(step)
     data = mujoco.MjData(model)
     with contact_of(model, native=native):
         mujoco.mj_step(model, data, round(2.5 / step))
@@ -218,3 +225,16 @@ def measure(count: int = 4) -> Case:
 
 def test_implicit_contact() -> None:
     measure().check()
+
+
+@pytest.mark.parametrize("step", [2e-3, 5e-3])
+def test_battery_box_does_not_chatter(step: float) -> None:
+    model = stiff_battery_box(step)
+    data = mujoco.MjData(model)
+    fastest = 0.0
+    with contact_of(model, native=False):
+        mujoco.mj_step(model, data, round(1.5 / step))
+        for _ in range(round(1.0 / step)):
+            mujoco.mj_step(model, data)
+            fastest = max(fastest, float(np.abs(data.qvel).max()))
+    assert fastest < 1e-10
