@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "volcontact/pair/columns/contained.h"
+#include "volcontact/pair/columns/points_within.h"
 #include "volcontact/pair/columns/round_rims.h"
 
 namespace volcontact {
@@ -25,27 +26,6 @@ constexpr int kMostRounds = 6;         // of divisions of triangles
 constexpr double kAlmostAxis = 0.97, kAlmostAcross = 0.3;
 
 std::size_t padded(std::size_t count) { return (count + kLanes - 1) / kLanes * kLanes; }
-
-double square_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 way = b - a;
-  const double square = way.squaredNorm();
-  const double t = square > 0.0 ? std::clamp((p - a).dot(way) / square, 0.0, 1.0) : 0.0;
-  return (a + t * way - p).squaredNorm();
-}
-
-double square_to_triangle(const Vec3& p, const Vec3 (&c)[3]) {
-  const Vec3 n = (c[1] - c[0]).cross(c[2] - c[0]);
-  bool over = true;
-  double edges = kInfinity;
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 &a = c[i], &b = c[(i + 1) % 3];
-    over &= n.dot((b - a).cross(p - a)) > 0.0;
-    edges = std::min(edges, square_to_segment(p, a, b));
-  }
-  if (!over) return edges;
-  const double height = n.dot(p - c[0]);
-  return height * height / n.squaredNorm();
-}
 
 // Surface integrals over the triangles and slivers of one patch, in Q.
 struct PatchSurface {
@@ -78,8 +58,7 @@ class RoundColumns {
     if (bounds_apart()) return true;
     const VolumeMetrics own_b = b_.own_metrics();
     if (!(own_b.volume > 0.0)) return true;
-    const Pose X_QB{X_AB_.rotation, X_AB_.translation - origin_};
-    if (!round_solid_of(b_, X_QB, s_.faces, solid_)) return false;
+    if (!round_solid_of(b_, X_QB(), s_.faces, solid_)) return false;
     if (holds_all_of_a()) return add_contained(a_.own, a_.surface_area, 0.0);
     if (!find_round_pieces(*a_.tree, origin_, solid_, options_, s_.search, s_.pieces)) {
       return false;
@@ -91,13 +70,15 @@ class RoundColumns {
     }
     sort_by_patch();
     for (Patch& patch : s_.patches) measure(patch);
-    add_sites(transformed(own_b, X_QB));
+    add_sites(transformed(own_b, X_QB()));
     VolumeMetrics& total = out_.total;
     if (total.volume_error > options_.tolerance * total.volume) total.status = Status::kApproximate;
     return is_finite(total);
   }
 
  private:
+  Pose X_QB() const { return {X_AB_.rotation, X_AB_.translation - origin_}; }
+
   bool bounds_apart() const {
     for (int i = 0; i < 3; ++i) {
       const Vec3 e = Vec3::Unit(i);
@@ -200,7 +181,8 @@ class RoundColumns {
     for (int k = patch.first_sliver; k < patch.last_sliver; ++k) {
       s_.slivers_of_patch.push_back(s_.pieces.slivers[s_.sliver_order[k]]);
     }
-    const StarSum sum = sum_star(solid_, far_point(), s_.pieces_of_patch, s_.slivers_of_patch,
+    const StarSum sum = sum_star(solid_, point_off_faces(b_, X_QB(), s_.pieces_of_patch),
+                                 s_.pieces_of_patch, s_.slivers_of_patch,
                                  kDoubtShare * options_.tolerance, options_.most_cells, s_.star);
     patch.moments = sum.moments;
     patch.moments.area_vector = surface.area_vector;
@@ -211,31 +193,6 @@ class RoundColumns {
     patch.deep = true;
     patch.volume_error =
         sum.doubt + kSliverError * sum.slivers + kSeamError * std::abs(sum.moments.volume);
-  }
-
-  // Of points in B the one farthest from the patch.
-  Vec3 far_point() const {
-    Vec3 best = Vec3::Zero();
-    double farthest = -1.0;
-    const auto look = [&](const Vec3& p) {
-      double nearest = kInfinity;
-      for (const Triangle& t : s_.pieces_of_patch) {
-        nearest = std::min(nearest, square_to_triangle(p, t.corner));
-        if (nearest <= farthest) return;
-      }
-      farthest = nearest;
-      best = p;
-    };
-    look(best);
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vec3 way(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0);
-      look(0.5 * (b_.support(X_AB_, way) - origin_));
-    }
-    for (int side = 0; side < 6; ++side) {
-      const Vec3 way = (side & 1 ? 1.0 : -1.0) * Vec3::Unit(side / 2);
-      look(0.6 * (b_.support(X_AB_, way) - origin_));
-    }
-    return best;
   }
 
   // Which plane faces of B the outline of the patch may run along.
@@ -361,7 +318,9 @@ class RoundColumns {
     const double whole = std::round(share);
     // Next to a whole number rounding has decided; then a point of B does.
     if (std::abs(share - whole) < kAlmostWhole) {
-      const bool filled = winding_around(a_, origin_ + lonely_point(), s_.cells) > 0;
+      const bool filled =
+          winding_around(a_, origin_ + point_off_edges(b_, X_QB(), s_.pieces.triangles), s_.cells) >
+          0;
       copies += (filled ? 1 : 0) - static_cast<int>(whole);
     } else {
       copies -= static_cast<int>(std::floor(share));
@@ -406,29 +365,6 @@ class RoundColumns {
     const double across = n.isZero(0.0) ? variance.trace() / 3.0 : n.dot(variance * n);
     m.depth = std::sqrt(12.0 * std::max(0.0, across));
     m.depth_moment = 0.5 * m.volume * m.depth;
-  }
-
-  // Of five points spread in B the one farthest from A's edges: a thin part of A may hold any one
-  // of them, and a thin hole of A too.
-  Vec3 lonely_point() const {
-    const Vec3 ways[] = {Vec3::Zero(), Vec3(1.0, 1.0, 1.0), Vec3(1.0, -1.0, -1.0),
-                         Vec3(-1.0, 1.0, -1.0), Vec3(-1.0, -1.0, 1.0)};
-    Vec3 best = Vec3::Zero();
-    double farthest = -1.0;
-    for (const Vec3& way : ways) {
-      const Vec3 p = way.isZero(0.0) ? way : Vec3(0.5 * (b_.support(X_AB_, way) - origin_));
-      double nearest = kInfinity;
-      for (const Triangle& t : s_.pieces.triangles) {
-        for (int i = 0; i < 3; ++i) {
-          nearest = std::min(nearest, square_to_segment(p, t.corner[i], t.corner[(i + 1) % 3]));
-        }
-      }
-      if (nearest > farthest) {
-        farthest = nearest;
-        best = p;
-      }
-    }
-    return best;
   }
 
   const SurfaceView& a_;
