@@ -78,6 +78,7 @@ class SceneContact {
     bool is_possible = false;     ///< for `auto`
     double largest_number = 0.0;  ///< h^2 k/m of a patch as large as the smaller solid's box [-]
     double least_area = 0.0;      ///< of a patch that `auto` makes implicit [m^2]
+    double explicit_step = 0.0;   ///< the longest that an explicit step should be there [s]
   };
   ImplicitUse implicit_use(const mjModel* m, const PairContact& pair) const;
 

@@ -137,6 +137,7 @@ void write_pair(const mjModel* m, const SceneContact& contact, const PairContact
   json.member("because", kPairOriginWords[static_cast<int>(pair.geoms.origin)]);
   json.member("engine", to_string(pair.engine));
   json.member("implicit", implicit_text(m, contact, pair));
+  json.member("explicit_step", contact.implicit_use(m, pair).explicit_step);
   json.member("normal_law", pair.laws.normal_law);
   json.member("friction_law", pair.laws.friction_law);
   json.member("rolling", pair.laws.laws.rolling ? "on" : kOff);

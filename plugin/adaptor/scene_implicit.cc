@@ -79,7 +79,8 @@ SceneContact::ImplicitUse SceneContact::implicit_use(const mjModel* m,
   const double square = m->opt.timestep * m->opt.timestep;
   const double number = square * pair.largest_rate;
   const double per_area = square * stiffness_of(pair.laws) * inverse_mass(m, pair.geoms).along;
-  return {number >= kPossibleNumber, number, kStiffNumber / per_area};
+  return {number >= kPossibleNumber, number, kStiffNumber / per_area,
+          std::sqrt(kPossibleNumber / pair.largest_rate)};
 }
 
 void SceneContact::check_integrator(const mjModel* m) {

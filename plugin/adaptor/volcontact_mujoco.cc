@@ -12,6 +12,8 @@
 #include "adaptor/passive_callback.h"
 #include "adaptor/scene_description.h"
 #include "adaptor/scene_registry.h"
+#include "adaptor/solids_of_geoms.h"
+#include "volcontact/pair/overlap_surface.h"
 
 // No exception leaves this file.
 
@@ -99,6 +101,40 @@ volcontact_contact record_of(const SceneForce& force) {
 void copy_channels(const ByChannel& from, double (&to)[4]) {
   const double numbers[] = {from.normal, from.roll, from.slide, from.spin};
   std::copy(std::begin(numbers), std::end(numbers), to);
+}
+
+constexpr int kMostColumns = 256;
+
+// The site of that number, with its pair, among those of the scratch; null when there are fewer.
+struct FoundSite {
+  const PairContact* pair = nullptr;
+  const VolumeMetrics* metrics = nullptr;
+};
+FoundSite find_site(const SceneContact& contact, const SceneContact::Scratch& scratch, int site) {
+  std::size_t left = static_cast<std::size_t>(site);
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    const auto& sites = scratch.reports[k].sites;
+    if (left < sites.size()) {
+      const auto index = static_cast<std::size_t>(scratch.cull.near[k]);
+      return {&contact.pairs()[index], &sites[left].metrics};
+    }
+    left -= sites.size();
+  }
+  return {};
+}
+
+volcontact_surface_size copy_surface(const OverlapSurface& surface, double* columns, int* triangles,
+                                     int* rim) {
+  for (const auto& column : surface.columns) {
+    columns = std::copy(column.low.data(), column.low.data() + 3, columns);
+    columns = std::copy(column.high.data(), column.high.data() + 3, columns);
+  }
+  for (const auto& triangle : surface.triangles) {
+    triangles = std::copy(triangle.begin(), triangle.end(), triangles);
+  }
+  for (const auto& line : surface.rim) rim = std::copy(line.begin(), line.end(), rim);
+  return {static_cast<int>(surface.columns.size()), static_cast<int>(surface.triangles.size()),
+          static_cast<int>(surface.rim.size())};
 }
 
 }  // namespace
@@ -195,6 +231,30 @@ int volcontact_contacts(const mjModel* m, const mjData* d, volcontact_contact* c
       contacts[i] = record_of(forces[i]);
     }
     return static_cast<int>(forces.size());
+  });
+}
+
+int volcontact_site_surface(const mjModel* m, const mjData* d, int site, int resolution,
+                            double* columns, int* triangles, int* rim,
+                            volcontact_surface_size* size) {
+  return guarded(nullptr, 0, [&] {
+    *size = {};
+    const SceneContact* contact = contact_of(m);
+    if (!contact) return static_cast<int>(VOLCONTACT_ERROR_STATE);
+    if (site < 0 || resolution < 2 || resolution > kMostColumns) {
+      return static_cast<int>(VOLCONTACT_ERROR_SCENE);
+    }
+    SceneContact::Scratch& scratch = thread_scratch();
+    if (!contact->revisit(m, d, scratch)) return static_cast<int>(VOLCONTACT_ERROR_SCENE);
+    const FoundSite found = find_site(*contact, scratch, site);
+    if (!found.pair) return static_cast<int>(VOLCONTACT_ERROR_SCENE);
+    const int a = found.pair->geoms.a, b = found.pair->geoms.b;
+    const auto& solids = contact->solids();
+    const volcontact::OverlapSurface surface = volcontact::overlap_surface(
+        solids[static_cast<std::size_t>(a)], pose_of_geom(d, a),
+        solids[static_cast<std::size_t>(b)], pose_of_geom(d, b), *found.metrics, resolution);
+    *size = copy_surface(surface, columns, triangles, rim);
+    return 0;
   });
 }
 

@@ -61,6 +61,13 @@ typedef struct volcontact_contact_ {
   double normal_force;  // [N]
 } volcontact_contact;
 
+// How much of its arrays volcontact_site_surface filled.
+typedef struct volcontact_surface_size_ {
+  int columns;
+  int triangles;
+  int rim;
+} volcontact_surface_size;
+
 // Energies; channels in the order normal, roll, slide, spin.
 typedef struct volcontact_energy_ {
   double elastic;        // stored in the contacts [J]
@@ -117,6 +124,16 @@ VOLCONTACT_API int volcontact_sites(const mjModel* m, const mjData* d, volcontac
 // Writes up to `capacity` of them and returns how many there are.
 VOLCONTACT_API int volcontact_contacts(const mjModel* m, const mjData* d,
                                        volcontact_contact* contacts, int capacity);
+
+// The shape of one site of volcontact_sites, for pictures, in world frame: columns along the
+// contact normal (3 numbers of the low end and 3 of the high one, along the normal) [m], triangles
+// of columns, counterclockwise seen against the normal, and lines of two columns around them, the
+// overlap to the left. `resolution`, from 2 to 256: columns across, n below. Room is needed for
+// 3 (n + 1)^2 columns, 4 n^2 triangles and 2 (n + 1)^2 lines. Returns 0, all sizes zero where the
+// site is thinner than the columns are apart; VOLCONTACT_ERROR_SCENE where there is no such site.
+VOLCONTACT_API int volcontact_site_surface(const mjModel* m, const mjData* d, int site,
+                                           int resolution, double* columns, int* triangles,
+                                           int* rim, volcontact_surface_size* size);
 
 // Writes what the touch sensors measure to sensordata: MuJoCo sees its own contacts alone. Call it
 // after mj_step or mj_forward, before sensordata is read.

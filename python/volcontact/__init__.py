@@ -41,6 +41,7 @@ from volcontact._volcontact import (
 )
 from volcontact.own_laws import FrictionLaw, LawField, LawState, NormalLaw
 from volcontact.scene import Contact, attach, contact_forces, load
+from volcontact.surface import SiteSurface
 
 __version__ = "0.1.0"
 
@@ -75,6 +76,7 @@ __all__ = [
     "RegularizedCoulomb",
     "SignedDistance",
     "SiteReport",
+    "SiteSurface",
     "Sphere",
     "Torus",
     "VolumeMetrics",

@@ -75,6 +75,12 @@ class RawEnergy(ctypes.Structure):
     )
 
 
+class RawSurfaceSize(ctypes.Structure):
+    """`volcontact_surface_size`."""
+
+    _fields_ = (("columns", ctypes.c_int), ("triangles", ctypes.c_int), ("rim", ctypes.c_int))
+
+
 class _Signature(NamedTuple):
     arguments: tuple[Any, ...]
     has_message: bool = False
@@ -92,6 +98,18 @@ _SIGNATURES = {
     "release": _Signature((ctypes.c_void_p, ctypes.c_void_p)),
     "sites": _Signature((ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int)),
     "contacts": _Signature((ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int)),
+    "site_surface": _Signature(
+        (
+            ctypes.c_void_p,
+            ctypes.c_void_p,
+            ctypes.c_int,
+            ctypes.c_int,
+            ctypes.c_void_p,
+            ctypes.c_void_p,
+            ctypes.c_void_p,
+            ctypes.POINTER(RawSurfaceSize),
+        )
+    ),
     "update_touch": _Signature((ctypes.c_void_p, ctypes.c_void_p)),
     "get_energy": _Signature((ctypes.c_void_p, ctypes.c_void_p, ctypes.POINTER(RawEnergy))),
     "describe": _Signature((ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int), has_message=True),
@@ -100,9 +118,14 @@ _SIGNATURES = {
 
 
 class Adaptor:
-    """The functions of one library; what they report as an error is raised."""
+    """The functions of one library; what they report as an error is raised.
+
+    Attributes:
+        path: of the library.
+    """
 
     def __init__(self, path: Path) -> None:
+        self.path = path
         self._library = ctypes.CDLL(str(path))
         self._functions: dict[str, Callable[..., int]] = {}
         for name, signature in _SIGNATURES.items():

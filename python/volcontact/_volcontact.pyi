@@ -1205,3 +1205,13 @@ class ContactModel:
         Raises:
             ValueError: a pose, twist or state is not what it should be
         """
+
+def instruction_set() -> str:
+    """
+    The instructions the kernels use on this machine: 'portable', 'avx2' or 'avx512'; the results are the same to the last bit
+    """
+
+def most_threads() -> int:
+    """
+    How many threads an evaluation may use: the processors, or OMP_NUM_THREADS
+    """

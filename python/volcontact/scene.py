@@ -16,7 +16,8 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
-from volcontact._adaptor import CONTACT_DTYPE, SITE_DTYPE, RawEnergy, adaptor
+from volcontact._adaptor import CONTACT_DTYPE, SITE_DTYPE, RawEnergy, RawSurfaceSize, adaptor
+from volcontact.surface import SiteSurface
 
 
 class Channels(NamedTuple):
@@ -200,6 +201,48 @@ class Contact:
             if count <= len(self._sites):
                 return self._sites[:count].copy()
             self._sites = np.empty(2 * count, SITE_DTYPE)
+
+    def surface(self, data: mujoco.MjData, site: int, *, resolution: int = 24) -> SiteSurface:
+        """The shape of one contact site at the state of the last evaluation, for pictures.
+
+        Args:
+            data: of the attached model.
+            site: row of `sites(data)`.
+            resolution: columns across the site, from 2 to 256; twice as many take four times as
+                long.
+
+        Raises:
+            ValueError: there is no such site, or the resolution is out of range.
+        """
+        model = self._require_open()
+        self._check(data)
+        count = len(self.sites(data))
+        if not 0 <= site < count:
+            raise ValueError(
+                f"site = {site} must be from 0 to {count - 1}: there are {count} sites"
+            )
+        if not 2 <= resolution <= 256:
+            raise ValueError(f"resolution = {resolution} must be from 2 to 256")
+        nodes = (resolution + 1) ** 2
+        columns = np.empty((3 * nodes, 2, 3))
+        triangles, rim = np.empty((4 * nodes, 3), np.int32), np.empty((2 * nodes, 2), np.int32)
+        size = RawSurfaceSize()
+        pointers = (array.ctypes.data for array in (columns, triangles, rim))
+        self._adaptor.call(
+            "site_surface",
+            model._address,
+            data._address,
+            site,
+            resolution,
+            *pointers,
+            ctypes.byref(size),
+        )
+        return SiteSurface(
+            low=columns[: size.columns, 0].copy(),
+            high=columns[: size.columns, 1].copy(),
+            triangles=triangles[: size.triangles].copy(),
+            rim=rim[: size.rim].copy(),
+        )
 
     def contact_forces(self, data: mujoco.MjData) -> np.ndarray:
         """All contacts at the state of the last evaluation, volumetric and MuJoCo's own.
