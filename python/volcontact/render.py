@@ -215,7 +215,7 @@ class Renderer:
         extent = self._extent
         radius = np.sqrt(site["area"] / np.pi) or _POINT_RADIUS * extent
         disc = np.array([radius, _DISC_THICKNESS * extent, 0.0])
-        frame = _frame_along(site["normal"])
+        frame = frame_along(site["normal"])
         kinds = mujoco.mjtGeom
         self._add_geom(kinds.mjGEOM_CYLINDER, disc, site["position"], frame, (*style.color, 0.85))
         force = site["force"] if self._moves(site["geom_a"]) else -site["force"]
@@ -226,7 +226,7 @@ class Renderer:
         length = min(length, _ARROW_MAX * extent)
         thick = _ARROW_RADIUS * extent
         arrow = np.array([thick, thick, 2.0 * length])  # MuJoCo draws half of this size
-        frame = _frame_along(force)
+        frame = frame_along(force)
         self._add_geom(kinds.mjGEOM_ARROW, arrow, site["position"], frame, (*style.color, 1.0))
 
     def _moves(self, geom: int) -> bool:
@@ -293,7 +293,7 @@ def _background(shape: tuple[int, int]) -> np.ndarray:
     return np.broadcast_to(rows.astype(np.uint8), (*shape, 3))
 
 
-def _frame_along(direction: np.ndarray) -> np.ndarray:
+def frame_along(direction: np.ndarray) -> np.ndarray:
     """A rotation matrix whose third column is along `direction`, shape (3, 3)."""
     z = direction / np.linalg.norm(direction)
     helper = np.eye(3)[np.argmin(np.abs(z))]

@@ -98,6 +98,39 @@ def native_model(scene: str | os.PathLike[str]) -> mujoco.MjModel:
     return mujoco.MjModel.from_xml_path(text)
 
 
+def recorded_sites(found: np.ndarray) -> np.ndarray:
+    """What a recording keeps of the sites that `Contact.sites` returns: an array of `SITE`."""
+    sites = np.zeros(len(found), SITE)
+    for name in ("geom_a", "geom_b", "normal", "force", "area", "depth", "volume"):
+        sites[name] = found[name]
+    sites["position"] = found["centroid"]
+    return sites
+
+
+def native_sites(model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:
+    """MuJoCo's own contacts that push or overlap, as an array of `SITE`."""
+    n = data.ncon
+    sites = np.zeros(n, SITE)
+    if n == 0:
+        return sites
+    contact = data.contact
+    frames = contact.frame[:n].reshape(n, 3, 3)  # rows are axes; the first is the normal
+    wrench = np.zeros(6)
+    in_frame = np.zeros((n, 3))
+    for i in range(n):
+        mujoco.mj_contactForce(model, data, i, wrench)
+        in_frame[i] = wrench[:3]
+    sites["geom_a"] = contact.geom1[:n]
+    sites["geom_b"] = contact.geom2[:n]
+    sites["position"] = contact.pos[:n]
+    # MuJoCo's normal points from geom 1 to geom 2 and its force is the one on geom 2.
+    sites["normal"] = -frames[:, 0]
+    sites["force"] = -np.einsum("nij,ni->nj", frames, in_frame)
+    sites["depth"] = np.maximum(-contact.dist[:n], 0.0)
+    # Inside its margin MuJoCo lists a contact that does not push yet: that is no contact.
+    return sites[(sites["depth"] > 0.0) | np.any(in_frame != 0.0, axis=1)]
+
+
 def warnings_of(data: mujoco.MjData) -> dict[str, int]:
     """MuJoCo's warning counters that are not 0, by name (without the mjWARN_ prefix)."""
     kinds = {
@@ -156,12 +189,7 @@ class _VolumetricProbe:
         self.description: dict[str, Any] = dict(contact.description)
 
     def sites(self, data: mujoco.MjData) -> np.ndarray:
-        found = self._contact.sites(data)
-        sites = np.zeros(len(found), SITE)
-        for name in ("geom_a", "geom_b", "normal", "force", "area", "depth", "volume"):
-            sites[name] = found[name]
-        sites["position"] = found["centroid"]
-        return sites
+        return recorded_sites(self._contact.sites(data))
 
     def energy(self, data: mujoco.MjData) -> tuple[float, tuple[float, ...]]:
         energy = self._contact.energy(data)
@@ -177,26 +205,7 @@ class _NativeProbe:
         self.description: dict[str, Any] = {}
 
     def sites(self, data: mujoco.MjData) -> np.ndarray:
-        n = data.ncon
-        sites = np.zeros(n, SITE)
-        if n == 0:
-            return sites
-        contact = data.contact
-        frames = contact.frame[:n].reshape(n, 3, 3)  # rows are axes; the first is the normal
-        wrench = np.zeros(6)
-        in_frame = np.zeros((n, 3))
-        for i in range(n):
-            mujoco.mj_contactForce(self._model, data, i, wrench)
-            in_frame[i] = wrench[:3]
-        sites["geom_a"] = contact.geom1[:n]
-        sites["geom_b"] = contact.geom2[:n]
-        sites["position"] = contact.pos[:n]
-        # MuJoCo's normal points from geom 1 to geom 2 and its force is the one on geom 2.
-        sites["normal"] = -frames[:, 0]
-        sites["force"] = -np.einsum("nij,ni->nj", frames, in_frame)
-        sites["depth"] = np.maximum(-contact.dist[:n], 0.0)
-        # Inside its margin MuJoCo lists a contact that does not push yet: that is no contact.
-        return sites[(sites["depth"] > 0.0) | np.any(in_frame != 0.0, axis=1)]
+        return native_sites(self._model, data)
 
     def energy(self, data: mujoco.MjData) -> tuple[float, tuple[float, ...]]:
         del data

@@ -1,0 +1,311 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The live viewer in the browser, by viser, on every MuJoCo release and without a display."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Callable, Iterator
+from types import TracebackType
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from volcontact.render import default_view
+from volcontact.report.palette import NATIVE, VOLUMETRIC, rgb
+from volcontact.view.drawing import SiteDrawing, Triangles
+from volcontact.view.geoms import geom_triangles
+from volcontact.view.stage import Stage
+
+_PERIOD = 1.0 / 30.0  # of moving bodies [s]
+_OVERLAY_PERIOD = 1.0 / 8.0  # of patches and forces, of which all are sent anew [s]
+_FRICTION = (255, 166, 26)
+_SEEN_THROUGH = 0.15  # opacity of moving bodies, so that the sites inside are seen
+_MISSING = 'the browser viewer needs viser: pip install "volcontact[view]"'
+_POINT = 0.012  # of a contact without an area, in scene extents
+
+
+class Page:
+    """A page that shows a stage and steers it. Use as a context manager, or call `close`.
+
+    Args:
+        stage: what to show.
+        host: from which machines it may be opened; "127.0.0.1" is this one alone.
+        port: to listen at; the next free one where it is taken.
+
+    Attributes:
+        address: to open in the browser.
+
+    Raises:
+        RuntimeError: viser is not installed.
+    """
+
+    def __init__(self, stage: Stage, *, host: str = "127.0.0.1", port: int = 8080) -> None:
+        try:
+            import viser
+        except ImportError as error:
+            raise RuntimeError(_MISSING) from error
+        self._stage = stage
+        self._server = viser.ViserServer(host=host, port=port, label="volcontact", verbose=False)
+        shown = "localhost" if host in ("127.0.0.1", "0.0.0.0") else host
+        self.address = f"http://{shown}:{self._server.get_port()}"
+        self._bodies = list(self._add_geoms())
+        self._labels: list[Any] = []
+        self._things: dict[str, Any] = {}
+        self._look()
+        self._add_controls()
+        self._move_bodies()
+        self._draw()
+
+    def run(self, *, seconds: float | None = None) -> None:
+        """Steps and draws until interrupted, or for so many seconds of real time."""
+        begin = last = drawn = time.monotonic()
+        while seconds is None or last - begin < seconds:
+            now = time.monotonic()
+            self._stage.advance(now - last)
+            last = now
+            self._move_bodies()
+            if now - drawn > _OVERLAY_PERIOD:
+                self._draw()
+                # Where drawing takes long, half of the time is left for stepping.
+                drawn = time.monotonic() + (time.monotonic() - now) - _OVERLAY_PERIOD / 2
+            time.sleep(max(0.0, _PERIOD - (time.monotonic() - now)))
+
+    def close(self) -> None:
+        """Ends the server. May be called twice."""
+        with contextlib.suppress(RuntimeError):
+            self._server.stop()
+
+    def __enter__(self) -> Page:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    # ---- Bodies ----------------------------------------------------------------------------------
+
+    def _add_geoms(self) -> Iterator[tuple[int, Any]]:
+        model = self._stage.model
+        for geom in range(model.ngeom):
+            triangles = geom_triangles(model, geom)
+            color = model.geom_rgba[geom].copy()
+            material = model.geom_matid[geom]
+            if material >= 0 and np.array_equal(color, [0.5, 0.5, 0.5, 1.0]):
+                color = model.mat_rgba[material].copy()
+            if triangles is None or color[3] == 0.0 or model.geom_group[geom] > 2:
+                continue
+            moves = model.body_weldid[model.geom_bodyid[geom]] != 0
+            opacity = float(color[3]) * (_SEEN_THROUGH if moves else 1.0)
+            yield (
+                geom,
+                self._server.scene.add_mesh_simple(
+                    f"/geoms/{geom}",
+                    triangles[0].astype(np.float32),
+                    triangles[1].astype(np.uint32),
+                    color=_bytes(color[:3]),
+                    opacity=opacity if opacity < 1.0 else None,
+                    flat_shading=True,
+                    side="double",
+                ),
+            )
+
+    def _move_bodies(self) -> None:
+        data = self._stage.data
+        quaternion = np.zeros(4)
+        with self._stage.lock, self._server.atomic():
+            for geom, mesh in self._bodies:
+                mujoco.mju_mat2Quat(quaternion, data.geom_xmat[geom].reshape(9))
+                mesh.position = tuple(data.geom_xpos[geom])
+                mesh.wxyz = tuple(quaternion)
+
+    def _look(self) -> None:
+        view = default_view(self._stage.model)
+        azimuth, elevation = np.radians(view.azimuth), np.radians(view.elevation)
+        ahead = np.array(
+            [
+                np.cos(elevation) * np.cos(azimuth),
+                np.cos(elevation) * np.sin(azimuth),
+                np.sin(elevation),
+            ]
+        )
+        camera = self._server.initial_camera
+        camera.look_at = np.array(view.lookat)
+        camera.position = np.array(view.lookat) - view.distance * ahead
+        # MuJoCo's own field of view; viser's is wider.
+        camera.fov = float(np.radians(self._stage.model.vis.global_.fovy))
+
+    # ---- Contacts --------------------------------------------------------------------------------
+
+    def _draw(self) -> None:
+        stage = self._stage
+        wanted = self._wanted
+        stretch = None if wanted.thick.value else 1.0
+        drawings = stage.drawings(stretch=stretch)
+        color = _bytes(rgb(VOLUMETRIC if stage.contact == "volumetric" else NATIVE))
+        with self._server.atomic():
+            patches = [d.patch for d in drawings if d.patch is not None]
+            bodies = [d.body for d in drawings if d.body is not None]
+            self._put_mesh("/sites/patches", patches if wanted.patches.value else [], color, None)
+            self._put_mesh("/sites/bodies", bodies if wanted.bodies.value else [], color, 0.4)
+            self._put_points([d.position for d in drawings if d.patch is None], color)
+            arrows = drawings if wanted.forces.value else []
+            self._put_arrows("/sites/normal", [(d.position, d.normal_arrow) for d in arrows], color)
+            self._put_arrows(
+                "/sites/friction", [(d.position, d.friction_arrow) for d in arrows], _FRICTION
+            )
+            self._put_labels(drawings if wanted.numbers.value else [])
+            self._text.content = self._numbers(drawings)
+
+    def _put_mesh(
+        self,
+        name: str,
+        parts: list[Triangles],
+        color: tuple[int, int, int],
+        opacity: float | None,
+    ) -> None:
+        points = [part for part, _ in parts]
+        starts = np.cumsum([0, *(len(part) for part in points)])
+        faces = [part + start for (_, part), start in zip(parts, starts, strict=False)]
+        self._put(
+            name,
+            self._server.scene.add_mesh_simple,
+            {
+                "vertices": np.concatenate(points).astype(np.float32),
+                "faces": np.concatenate(faces).astype(np.uint32),
+                "color": color,
+            }
+            if parts
+            else None,
+            opacity=opacity,
+            side="double",
+            flat_shading=True,
+            cast_shadow=False,
+        )
+
+    def _put(
+        self, name: str, add: Callable[..., Any], changing: dict[str, Any] | None, **fixed: Any
+    ) -> None:
+        """Adds a thing, changes it, or hides it; what is added anew would flicker."""
+        thing = self._things.get(name)
+        if changing is None:
+            if thing is not None:
+                thing.visible = False
+        elif thing is None:
+            self._things[name] = add(name, **changing, **fixed)
+        else:
+            for key, value in changing.items():
+                setattr(thing, key, value)
+            thing.visible = True
+
+    def _put_points(self, positions: list[np.ndarray], color: tuple[int, int, int]) -> None:
+        colors = np.full((len(positions), 3), color, np.uint8)
+        self._put(
+            "/sites/points",
+            self._server.scene.add_point_cloud,
+            {"points": np.array(positions, np.float32), "colors": colors} if positions else None,
+            point_size=_POINT * float(self._stage.model.stat.extent),
+            point_shape="circle",
+        )
+
+    def _put_arrows(
+        self,
+        name: str,
+        arrows: list[tuple[np.ndarray, np.ndarray]],
+        color: tuple[int, int, int],
+    ) -> None:
+        ends = [(start, start + arrow) for start, arrow in arrows if arrow.any()]
+        extent = float(self._stage.model.stat.extent)
+        colors = np.full((len(ends), 3), color, np.uint8)
+        self._put(
+            name,
+            self._server.scene.add_arrows,
+            {"points": np.array(ends, np.float32), "colors": colors} if ends else None,
+            shaft_radius=0.007 * extent,
+            head_radius=0.017 * extent,
+            head_length=0.03 * extent,
+        )
+
+    def _put_labels(self, drawings: list[SiteDrawing]) -> None:
+        while len(self._labels) > len(drawings):
+            self._labels.pop().remove()
+        for i, drawing in enumerate(drawings):
+            tip = drawing.position + drawing.normal_arrow
+            if i < len(self._labels):
+                self._labels[i].text = drawing.label
+                self._labels[i].position = tuple(tip)
+            else:
+                self._labels.append(
+                    self._server.scene.add_label(
+                        f"/numbers/{i}", drawing.label, position=tuple(tip)
+                    )
+                )
+
+    def _numbers(self, drawings: list[SiteDrawing]) -> str:
+        state = " (paused)" if self._stage.paused else ""
+        lines = [f"**t = {self._stage.data.time:.3f} s**{state}", ""]
+        if drawings:
+            lines += ["| site | force, depth, patch | drawn thicker |", "| --- | --- | --- |"]
+        for i, d in enumerate(drawings):
+            thicker = f"{d.stretch:.3g} x" if d.stretch > 1.0 else ""
+            lines.append(f"| {i} | {d.label} | {thicker} |")
+        return "\n".join(lines) if drawings else lines[0] + ", nothing touches"
+
+    # ---- Controls --------------------------------------------------------------------------------
+
+    def _add_controls(self) -> None:
+        gui, stage = self._server.gui, self._stage
+        pause = gui.add_button("Go on" if stage.paused else "Pause")
+        step = gui.add_button("One step")
+        reset = gui.add_button("Start again")
+        contact = gui.add_dropdown("Contact", ("volumetric", "native"), initial_value=stage.contact)
+        speed = gui.add_slider("Speed", 0.01, 2.0, 0.01, min(stage.speed, 2.0))
+        self._wanted = _Wanted(gui)
+        self._text = gui.add_markdown("")
+
+        def set_paused(paused: bool) -> None:
+            stage.paused = paused
+            pause.label = "Go on" if paused else "Pause"
+
+        @pause.on_click
+        def _(_: Any) -> None:
+            set_paused(not stage.paused)
+
+        @step.on_click
+        def _(_: Any) -> None:
+            set_paused(True)
+            stage.step()
+
+        @reset.on_click
+        def _(_: Any) -> None:
+            stage.reset()
+
+        @contact.on_update
+        def _(_: Any) -> None:
+            stage.set_contact(contact.value)
+
+        @speed.on_update
+        def _(_: Any) -> None:
+            stage.speed = speed.value
+
+
+class _Wanted:
+    """What shall be drawn: check boxes."""
+
+    def __init__(self, gui: Any) -> None:
+        with gui.add_folder("Draw"):
+            self.patches = gui.add_checkbox("patches", True)
+            self.bodies = gui.add_checkbox("overlaps", True)
+            self.thick = gui.add_checkbox("overlaps thick enough to see", True)
+            self.forces = gui.add_checkbox("forces", True)
+            self.numbers = gui.add_checkbox("numbers", False)
+
+
+def _bytes(color: np.ndarray | tuple[float, ...]) -> tuple[int, int, int]:
+    red, green, blue = (round(255.0 * float(c)) for c in color)
+    return red, green, blue

@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The live viewer: what it steps, and what it shows in MuJoCo's window and in the browser."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+from PIL import Image
+
+from volcontact.cli import main
+from volcontact.view import Stage
+from volcontact.view.geoms import geom_triangles
+
+SCENE = """
+<mujoco>
+  <option timestep="0.001"/>
+  <statistic center="0 0 0.1" extent="0.5"/>
+  <worldbody>
+    <geom name="floor" type="plane" size="1 1 1" rgba="0.9 0.9 0.9 1"/>
+    <body pos="0 0 0.12"><freejoint/>
+      <geom name="crate" type="box" size=".1 .1 .1" mass="1" rgba="0.8 0.8 0.8 1"/></body>
+  </worldbody>
+  <custom>
+    <numeric name="volcontact/option/implicit/auto" data="1"/>
+  </custom>
+</mujoco>
+"""
+GEOMS = """
+<mujoco>
+  <asset>
+    <mesh name="wedge" vertex="0 0 0  1 0 0  0 1 0  0 0 1"/>
+    <hfield name="hill" nrow="3" ncol="4" size="1 2 0.5 0.1"/>
+  </asset>
+  <worldbody>
+    <geom type="box" size=".1 .2 .3"/>
+    <geom type="sphere" size=".2"/>
+    <geom type="ellipsoid" size=".1 .2 .3"/>
+    <geom type="capsule" size=".1 .2"/>
+    <geom type="cylinder" size=".1 .2"/>
+    <geom type="mesh" mesh="wedge"/>
+    <geom type="plane" size="0 0 1"/>
+    <geom type="hfield" hfield="hill"/>
+  </worldbody>
+</mujoco>
+"""
+
+
+@pytest.fixture
+def stage():
+    with Stage(SCENE) as stage:
+        yield stage
+
+
+def rest(stage):
+    stage.step(800)
+
+
+# ---- Stage and drawings --------------------------------------------------------------------------
+
+
+def test_stage_pauses_steps_and_starts_again(stage):
+    stage.paused = True
+    stage.advance(0.1)
+    assert stage.data.time == 0.0
+    stage.step(3)
+    assert stage.data.time == pytest.approx(3e-3)
+    stage.paused = False
+    stage.speed = 0.1
+    stage.advance(0.1)
+    assert stage.data.time == pytest.approx(13e-3)
+    stage.reset()
+    assert stage.data.time == 0.0 and stage.data.qpos[2] == 0.12
+
+
+def test_contact_changes_in_mid_motion(stage):
+    rest(stage)
+    assert stage.contact == "volumetric" and stage.data.ncon == 0
+    stage.set_contact("native")
+    assert stage.data.ncon == 4 and not stage.data.qfrc_applied.any()
+    assert len(stage.sites()) == 4
+    stage.set_contact("volumetric")
+    stage.step(500)
+    assert stage.data.ncon == 0 and len(stage.sites()) == 1
+    assert abs(stage.data.qvel).max() < 1e-3
+
+
+def test_drawing_of_a_box_at_rest(stage):
+    rest(stage)
+    (drawing,) = stage.drawings()
+    points, faces = drawing.patch
+    sides = np.linalg.norm(
+        np.cross(
+            points[faces[:, 1]] - points[faces[:, 0]], points[faces[:, 2]] - points[faces[:, 0]]
+        ),
+        axis=1,
+    )
+    assert 0.5 * sides.sum() == pytest.approx(0.04, rel=0.01)
+    # The weight has the reference length; the thin overlap is made thick enough to be seen.
+    assert drawing.normal_arrow == pytest.approx([0.0, 0.0, 0.3 * 0.5], abs=1e-3)
+    assert np.ptp(drawing.body[0][:, 2]) == pytest.approx(0.08 * 0.2, rel=0.01)
+    assert drawing.label.startswith("9.81 N, ")
+    assert "400 cm²" in drawing.label
+
+
+def test_native_contacts_are_points(stage):
+    stage.set_contact("native")
+    rest(stage)
+    drawings = stage.drawings()
+    assert len(drawings) == 4
+    assert all(drawing.patch is None and drawing.body is None for drawing in drawings)
+    assert sum(d.normal_arrow[2] > 0.0 for d in drawings) == 4
+
+
+def test_every_kind_of_geom_has_triangles():
+    model = mujoco.MjModel.from_xml_string(GEOMS)
+    volumes = [8 * 0.006, 4 / 3 * np.pi * 0.008, 4 / 3 * np.pi * 0.006]
+    volumes += [np.pi * 0.01 * 0.4 + 4 / 3 * np.pi * 0.001, np.pi * 0.01 * 0.4, 1 / 6]
+    for geom in range(model.ngeom):
+        points, faces = geom_triangles(model, geom)
+        assert np.isfinite(points).all() and faces.max() < len(points)
+        if geom < len(volumes):  # the others are open
+            a, b, c = (points[faces[:, i]] for i in range(3))
+            volume = np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0
+            assert volume == pytest.approx(volumes[geom], rel=0.02)
+
+
+# ---- What is seen --------------------------------------------------------------------------------
+
+
+def like(picture, color):
+    """How many pixels have about the hue of a colour."""
+    pixels = picture.reshape(-1, 3).astype(float)
+    pixels -= pixels.mean(axis=1, keepdims=True)
+    wanted = np.array(color, float) - np.mean(color)
+    lengths = np.linalg.norm(pixels, axis=1)
+    return int(((pixels @ wanted > 0.96 * lengths * np.linalg.norm(wanted)) & (lengths > 40)).sum())
+
+
+BLUE, PINK = (47, 107, 255), (214, 36, 110)
+needs_browser = pytest.mark.skipif(
+    shutil.which("chromium") is None, reason="the program chromium is not installed"
+)
+
+
+@pytest.fixture
+def page(stage):
+    """A browser page with the stage at rest, and what went wrong on it."""
+    playwright = pytest.importorskip("playwright.sync_api")
+    from volcontact.view.browser import Page
+
+    rest(stage)
+    stage.paused = True
+    with Page(stage, port=8123) as shown, playwright.sync_playwright() as programs:
+        options = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+        browser = programs.chromium.launch(executable_path=shutil.which("chromium"), args=options)
+        page = browser.new_page(viewport={"width": 900, "height": 600})
+        faults = []
+        page.on("pageerror", lambda error: faults.append(str(error)))
+        page.on(
+            "request", lambda request: faults.append(request.url) if _far(request.url) else None
+        )
+        page.goto(shown.address)
+        page.get_by_text("One step").wait_for()
+        yield shown, page, faults
+        browser.close()
+
+
+def _far(url):
+    return url.startswith("http") and "//localhost" not in url
+
+
+def shot(page, shown, name, wanted, seconds=20.0):
+    """A screenshot, as soon as the colour is on it."""
+    path = Path(os.environ.get("VOLCONTACT_SCREENSHOTS", ".")) / name
+    for _ in range(int(seconds)):
+        shown.run(seconds=1.0)
+        page.screenshot(path=path)
+        picture = np.asarray(Image.open(path).convert("RGB"))[:, :560]  # beside the panel
+        if like(picture, wanted) > 300:
+            break
+    return picture
+
+
+@needs_browser
+def test_browser_shows_patches_and_forces_and_obeys(page, stage, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shown, page, faults = page
+    blue = like(shot(page, shown, "volumetric.png", BLUE), BLUE)
+    assert blue > 1000
+    assert page.get_by_text(re.compile(r"9\.8\d* N, 4[89]\.\d .m deep")).count() == 1
+    before = stage.data.time
+    page.get_by_text("One step").click()
+    shown.run(seconds=1.0)
+    assert stage.data.time == pytest.approx(before + 1e-3)
+    stage.set_contact("native")
+    native = shot(page, shown, "native.png", PINK)
+    assert like(native, PINK) > 300 and like(native, BLUE) < blue / 10
+    assert faults == []
+
+
+has_window = hasattr(mujoco, "Renderer") and shutil.which("Xvfb") is not None
+WINDOW = """
+import sys, threading, time
+import glfw, numpy as np
+from PIL import ImageGrab
+from volcontact.view import Stage, window
+
+def grab():
+    time.sleep(float(sys.argv[3]))
+    ImageGrab.grab(xdisplay="").save(sys.argv[2])
+
+with Stage(sys.argv[1]) as stage:
+    stage.step(800)
+    thread = threading.Thread(target=grab)
+    thread.start()
+    window.show(stage, seconds=float(sys.argv[3]) + 1.0)
+    thread.join()
+"""
+
+
+@pytest.mark.skipif(not has_window, reason="MuJoCo has no viewer to draw into, or Xvfb is missing")
+def test_window_shows_patches_and_forces(tmp_path):
+    (tmp_path / "scene.xml").write_text(SCENE)
+    path = Path(os.environ.get("VOLCONTACT_SCREENSHOTS", tmp_path)) / "window.png"
+    environment = {k: v for k, v in os.environ.items() if k not in ("MUJOCO_GL", "DISPLAY")}
+    display = ["xvfb-run", "-a", "-s", "-screen 0 1200x900x24"]
+    subprocess.run(
+        [*display, sys.executable, "-c", WINDOW, str(tmp_path / "scene.xml"), str(path), "4"],
+        check=True,
+        env={**environment, "LIBGL_ALWAYS_SOFTWARE": "1"},
+        cwd=tmp_path,
+        timeout=120,
+    )
+    assert like(np.asarray(Image.open(path).convert("RGB")), BLUE) > 1000
+
+
+def test_without_a_display_the_browser_is_named(tmp_path, monkeypatch, capsys):
+    (tmp_path / "scene.xml").write_text(SCENE)
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    assert main(["view", str(tmp_path / "scene.xml")]) == 1
+    assert "use --browser" in capsys.readouterr().err
+
+
+def test_browser_without_viser_says_what_to_install(tmp_path, monkeypatch, capsys):
+    (tmp_path / "scene.xml").write_text(SCENE)
+    monkeypatch.setitem(sys.modules, "viser", None)
+    assert main(["view", "--browser", str(tmp_path / "scene.xml")]) == 1
+    assert 'pip install "volcontact[view]"' in capsys.readouterr().err
