@@ -13,27 +13,35 @@ from collections.abc import Sequence
 import mujoco
 
 import volcontact
-from volcontact.cli import check, compare, mesh, run
+from volcontact.cli import check, compare, completion, doctor, mesh, metrics, new, run, view
 from volcontact.cli.terminal import Terminal
 
-__all__ = ["main"]
+__all__ = ["main", "make_parser"]
 
-_COMMANDS = (run, compare, check, mesh)
+_COMMANDS = (new, check, run, compare, view, metrics, mesh, doctor, completion)
 _ERROR, _INTERRUPTED = 1, 130
 
 _EXAMPLES = """\
 examples:
+  volcontact new my_scene                          a scene to start from
   volcontact check scene.xml                       what volcontact understands of a scene
   volcontact run scene.xml --duration 2            step it and say how it ended
   volcontact compare scene.xml --out report        volumetric beside native contact, with pictures
+  volcontact view scene.xml                        watch it, with contact patches and forces
+  volcontact metrics scene.xml                     its contact sites in numbers
   volcontact mesh check part.stl                   whether a mesh is a solid
+  volcontact doctor                                what is installed and whether it works
+
+exit status:
+  0 all went well, 1 the scene, the mesh or the request is at fault, 2 wrong usage,
+  3 it ran and MuJoCo or volcontact warned of the numbers, 130 interrupted
 """
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Runs the program and returns its exit status."""
-    arguments = _parser().parse_args(argv)
-    terminal = Terminal(json=arguments.json)
+    arguments = make_parser().parse_args(argv)
+    terminal = Terminal(json=getattr(arguments, "json", False))
     try:
         with terminal.python_warnings():
             status: int = arguments.execute(arguments, terminal)
@@ -46,7 +54,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _ERROR
 
 
-def _parser() -> argparse.ArgumentParser:
+def make_parser() -> argparse.ArgumentParser:
+    """The arguments of the program."""
     parser = argparse.ArgumentParser(
         prog="volcontact",
         description="Volumetric contact for MuJoCo scenes.",

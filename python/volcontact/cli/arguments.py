@@ -6,7 +6,9 @@ from __future__ import annotations
 import argparse
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import shtab
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -19,7 +21,7 @@ def add_command(
 ) -> argparse.ArgumentParser:
     """Adds a command with its help text and examples, the scene and --json."""
     parser = plain_command(commands, name, purpose, examples)
-    parser.add_argument("scene", metavar="SCENE", type=scene, help="MJCF file")
+    add_file(parser, "scene", metavar="SCENE", type=scene, help="MJCF file")
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
     return parser
 
@@ -35,6 +37,12 @@ def plain_command(
         epilog=f"examples:\n{examples}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+
+
+def add_file(parser: argparse.ArgumentParser, *names: str, **rest: Any) -> None:
+    """Adds an argument that shells complete with the names of files."""
+    argument = parser.add_argument(*names, **rest)
+    argument.complete = shtab.FILE  # type: ignore[attr-defined]
 
 
 def add_time(parser: argparse.ArgumentParser, duration: float) -> None:

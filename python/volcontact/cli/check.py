@@ -5,14 +5,18 @@ from __future__ import annotations
 
 import argparse
 import warnings
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+import mujoco
+import numpy as np
 from rich.box import SIMPLE_HEAD
 from rich.markup import escape
 from rich.table import Table
 
 import volcontact
-from volcontact.cli.arguments import add_command
+from volcontact.cli.arguments import add_command, pixels
 from volcontact.cli.terminal import Terminal
 
 if TYPE_CHECKING:
@@ -21,7 +25,10 @@ if TYPE_CHECKING:
 _EXAMPLES = """\
   volcontact check scene.xml
   volcontact check scene.xml --json
+  volcontact check scene.xml --picture start.png
 """
+_CONTAINED = 1  # status of a site without a direction
+_DEEP = 0.1  # of the smaller solid's size: deeper than this is no touch but a mistake
 
 
 def add_to(commands: Subparsers) -> None:
@@ -32,23 +39,134 @@ def add_to(commands: Subparsers) -> None:
         "print the solids, pairs, materials and options that a scene has under volcontact",
         _EXAMPLES,
     )
+    parser.add_argument(
+        "--picture", type=Path, metavar="FILE", help="draw the start with its contacts: a PNG file"
+    )
+    parser.add_argument("--camera", metavar="NAME", help="camera of the picture")
+    parser.add_argument(
+        "--width", type=pixels, default=800, metavar="PX", help="of the picture (default: 800)"
+    )
+    parser.add_argument(
+        "--height", type=pixels, default=600, metavar="PX", help="of the picture (default: 600)"
+    )
     parser.set_defaults(execute=execute)
 
 
 def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     """Runs the command and returns the exit status."""
-    from volcontact.report.description import tables
-
     model = volcontact.load(arguments.scene)
+    data = mujoco.MjData(model)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # they are part of the description
         with volcontact.attach(model) as contact:
             description = contact.description
+            mujoco.mj_forward(model, data)
+            sites = contact.sites(data)
     description["userdata"]["line"] = size_line(description["userdata"])
+    description["advice"] = _step_advice(model, description)
+    description["warnings"] += _mistakes(model, sites, description)
+    if arguments.picture is not None:
+        _draw(arguments, model, data, sites)
+        description["picture"] = str(arguments.picture)
     if terminal.json:
         terminal.result(description)
-        return 0
-    for part in tables(description, sources=False):
+    else:
+        _print(description, terminal)
+    return 0
+
+
+def _stiffest(description: dict[str, Any]) -> tuple[str, float, bool] | None:
+    """Geoms of the stiffest pair, the longest explicit step for them [s], whether steps may be
+    implicit; None where nothing is known.
+    """
+    pairs = [pair for pair in description["pairs"] if pair["explicit_step"]]
+    if not pairs:
+        return None
+    pair = min(pairs, key=lambda pair: pair["explicit_step"])
+    names = f"{pair['geom_a']} and {pair['geom_b']}"
+    return names, float(pair["explicit_step"]), pair["implicit"] != "off"
+
+
+def _step_advice(model: mujoco.MjModel, description: dict[str, Any]) -> str:
+    step, stiffest = float(model.opt.timestep), _stiffest(description)
+    if stiffest is None:
+        return ""
+    names, longest, implicit = stiffest
+    if step <= longest:
+        return (
+            f"steps of {step:g} s suit all pairs: the stiffest, {names}, bears {longest:.2g} s "
+            "without implicit steps"
+        )
+    if implicit:
+        return (
+            f"steps of {step:g} s are implicit where contact is stiff; without that {names} would "
+            f"bear {longest:.2g} s"
+        )
+    return ""
+
+
+def _mistakes(
+    model: mujoco.MjModel, sites: np.ndarray, description: dict[str, Any]
+) -> Iterator[str]:
+    """What is allowed and hardly meant."""
+    if not description["pairs"]:
+        yield (
+            "no two geoms can touch: give a body a joint, and look at contype, conaffinity, "
+            "<exclude> and volcontact/option/pairs"
+        )
+    step, stiffest = float(model.opt.timestep), _stiffest(description)
+    if stiffest is not None and step > stiffest[1] and not stiffest[2]:
+        yield (
+            f"steps of {step:g} s are too long for {stiffest[0]}: write <option "
+            f'timestep="{stiffest[1]:.2g}"/>, or let steps be implicit with '
+            'volcontact/option/implicit/auto and integrator="Euler"'
+        )
+    for site in sites:
+        a, b = (_geom_name(model, int(site[key])) for key in ("geom_a", "geom_b"))
+        if site["status"] == _CONTAINED:
+            yield f"{a} and {b}: one is inside the other at the start: move them apart"
+        elif site["depth"] > _DEEP * _smaller_size(model, site):
+            yield (
+                f"{a} and {b} overlap by {1e3 * site['depth']:.3g} mm at the start: move them "
+                "apart, or they fly off"
+            )
+
+
+def _smaller_size(model: mujoco.MjModel, site: np.void) -> float:
+    """Diameter of the smaller bounding sphere; planes have none [m]."""
+    radii = [float(model.geom_rbound[site[key]]) for key in ("geom_a", "geom_b")]
+    return 2.0 * min(radius for radius in radii if radius > 0.0)
+
+
+def _geom_name(model: mujoco.MjModel, geom: int) -> str:
+    return mujoco.mj_id2name(model, int(mujoco.mjtObj.mjOBJ_GEOM), geom) or f"geom {geom}"
+
+
+def _draw(
+    arguments: argparse.Namespace,
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    sites: np.ndarray,
+) -> None:
+    from volcontact.render import Renderer, SiteStyle
+    from volcontact.report.palette import VOLUMETRIC, rgb
+    from volcontact.report.pictures import png
+    from volcontact.simulation import recorded_sites
+
+    forces = np.linalg.norm(sites["force"], axis=1)
+    style = SiteStyle(rgb(VOLUMETRIC), reference_force=float(forces.max(initial=0.0)) or 1.0)
+    with Renderer(model, width=arguments.width, height=arguments.height) as renderer:
+        picture = renderer.draw(
+            data.qpos, sites=recorded_sites(sites), style=style, view=arguments.camera
+        )
+    arguments.picture.write_bytes(png(picture))
+
+
+def _print(description: dict[str, Any], terminal: Terminal) -> None:
+    from volcontact.report.description import tables
+
+    shown = {key: value for key, value in description.items() if key not in ("advice", "picture")}
+    for part in tables(shown, sources=False):
         terminal.out.print(part.title, style="bold")
         if part.note:
             terminal.out.print(part.note, markup=False)
@@ -56,9 +174,13 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
         for row in part.rows:
             table.add_row(*(escape(cell) for cell in row))
         terminal.out.print(table)
-    for warning in description.get("warnings", ()):
+    if description["advice"]:
+        terminal.out.print("Time step", style="bold")
+        terminal.out.print(description["advice"], markup=False)
+    if "picture" in description:
+        terminal.out.print(f"picture: {description['picture']}", markup=False)
+    for warning in description["warnings"]:
         terminal.warning(str(warning))
-    return 0
 
 
 def size_line(userdata: dict[str, int]) -> str:

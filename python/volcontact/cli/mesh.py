@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rich.markup import escape
 
-from volcontact.cli.arguments import plain_command, positive
+from volcontact.cli.arguments import add_file, plain_command, positive
 from volcontact.cli.terminal import Terminal
 from volcontact.meshes.triangles import MeshFileError, counted
 
@@ -49,7 +49,7 @@ def _add_check(ways: Subparsers) -> None:
         "say whether meshes bound a volume, and if not, why and where",
         _CHECK_EXAMPLES,
     )
-    parser.add_argument("files", metavar="FILE", nargs="+", help="STL, OBJ, PLY or OFF file")
+    add_file(parser, "files", metavar="FILE", nargs="+", help="STL, OBJ, PLY or OFF file")
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
     parser.set_defaults(execute=check)
 
@@ -61,7 +61,7 @@ def _add_repair(ways: Subparsers) -> None:
         "weld, orient, stitch and fill a mesh, and say what that changed",
         _REPAIR_EXAMPLES,
     )
-    parser.add_argument("source", metavar="IN", help="STL, OBJ, PLY or OFF file")
+    add_file(parser, "source", metavar="IN", help="STL, OBJ, PLY or OFF file")
     parser.add_argument(
         "target", metavar="OUT", help="file to write; PLY, OBJ and OFF keep every digit, STL rounds"
     )

@@ -14,7 +14,7 @@ Record = Mapping[str, Any]
 _PREFIXES = ("volcontact/material/", "volcontact/pair/", "volcontact/solid/")
 _LISTED = 3  # so many entries of a long list are named
 # What only programs want to know, and what another column says already.
-_HIDDEN = frozenset({"id", "id_a", "id_b", "key", "pair"})
+_HIDDEN = frozenset({"explicit_step", "id", "id_a", "id_b", "key", "pair"})
 _FIRST = ("name", "pairs", "geom", "geoms", "engine", "shape", "body", "material", "normal_law")
 _LAST = ("sources",)
 _WHO = frozenset({"name", "pairs", "geom", "geoms"})

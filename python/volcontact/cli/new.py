@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`volcontact new`: a scene to start from, with comments."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rich.markup import escape
+
+from volcontact.cli.arguments import plain_command
+from volcontact.cli.terminal import Terminal
+
+if TYPE_CHECKING:
+    from volcontact.cli.arguments import Subparsers
+
+TEMPLATES = {
+    "drop": "a box falls onto a floor",
+    "incline": "a box sticks to a slope",
+    "peg_in_hole": "a peg falls through a hole that is cut exactly",
+    "mesh_in_hole": "a mesh falls through the hole of another mesh",
+}
+
+_FOLDER = Path(__file__).parents[1] / "templates"
+_EXAMPLES = """\
+  volcontact new my_scene
+  volcontact new my_scene --template mesh_in_hole
+  volcontact check my_scene/scene.xml
+"""
+
+
+def add_to(commands: Subparsers) -> None:
+    """Adds the command to the program."""
+    parser = plain_command(
+        commands,
+        "new",
+        "write a scene to start from, with comments, into a new folder",
+        _EXAMPLES + "\ntemplates:\n" + "".join(f"  {k:<16}{v}\n" for k, v in TEMPLATES.items()),
+    )
+    parser.add_argument("folder", metavar="FOLDER", type=Path, help="folder to make")
+    parser.add_argument(
+        "--template",
+        choices=tuple(TEMPLATES),
+        default="drop",
+        help="what to start from (default: %(default)s)",
+    )
+    parser.add_argument("--json", action="store_true", help="print the result as JSON")
+    parser.set_defaults(execute=execute)
+
+
+def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
+    """Runs the command and returns the exit status."""
+    folder: Path = arguments.folder
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise FileExistsError(f"{folder} exists already: name a new folder, or an empty one")
+    scene = folder / "scene.xml"
+    template = _FOLDER / arguments.template
+    written = []
+    for source in sorted(path for path in template.rglob("*") if path.is_file()):
+        target = folder / source.relative_to(template)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        # The comments of the template say what to type next.
+        content = source.read_text(encoding="utf-8")
+        target.write_text(re.sub(r"\bSCENE\b", str(scene), content), encoding="utf-8")
+        written.append(str(target))
+    if terminal.json:
+        terminal.result({"scene": str(scene), "files": written})
+        return 0
+    for name in written:
+        terminal.out.print(f"written: {escape(name)}", soft_wrap=True)
+    terminal.out.print(f"next: volcontact check {escape(str(scene))}", soft_wrap=True)
+    return 0
