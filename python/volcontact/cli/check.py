@@ -76,9 +76,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
 
 
 def _stiffest(description: dict[str, Any]) -> tuple[str, float, bool] | None:
-    """Geoms of the stiffest pair, the longest explicit step for them [s], whether steps may be
-    implicit; None where nothing is known.
-    """
+    """The stiffest pair: its geoms, its longest explicit step [s], whether steps may be implicit."""
     pairs = [pair for pair in description["pairs"] if pair["explicit_step"]]
     if not pairs:
         return None
