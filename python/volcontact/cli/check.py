@@ -76,7 +76,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
 
 
 def _stiffest(description: dict[str, Any]) -> tuple[str, float, bool] | None:
-    """The stiffest pair: its geoms, its longest explicit step [s], whether steps may be implicit."""
+    """The stiffest pair: its geoms, its longest explicit step [s], whether implicit ones may be."""
     pairs = [pair for pair in description["pairs"] if pair["explicit_step"]]
     if not pairs:
         return None
