@@ -50,6 +50,7 @@ void bind_makers(nb::module_& m) {
         return make_by_name<NormalForce>(&make_normal, name, parameters);
       },
       nb::arg("name"), nb::arg("parameters"),
+      nb::sig("def make_normal(name: str, **parameters: float | str) -> NormalForce"),
       "The normal law called `name`, as in MJCF keys, with its parameters as keywords: also one "
       "that was built in by VOLCONTACT_LAWS");
   m.def(
@@ -57,7 +58,9 @@ void bind_makers(nb::module_& m) {
       [](const std::string& name, const nb::kwargs& parameters) {
         return make_by_name<Friction>(&make_friction, name, parameters);
       },
-      nb::arg("name"), nb::arg("parameters"), "The same for friction laws");
+      nb::arg("name"), nb::arg("parameters"),
+      nb::sig("def make_friction(name: str, **parameters: float | str) -> Friction"),
+      "The same for friction laws");
 }
 
 void bind_layers(nb::module_& m) {

@@ -40,6 +40,7 @@ from volcontact._volcontact import (
     series_stiffness,
 )
 from volcontact.own_laws import FrictionLaw, LawField, LawState, NormalLaw
+from volcontact.recorder import Recorder
 from volcontact.scene import Contact, attach, contact_forces, load
 from volcontact.surface import SiteSurface
 
@@ -73,6 +74,7 @@ __all__ = [
     "NormalLaw",
     "NormalOutput",
     "Pair",
+    "Recorder",
     "RegularizedCoulomb",
     "SignedDistance",
     "SiteReport",

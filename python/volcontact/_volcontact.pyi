@@ -917,12 +917,12 @@ class Bristle(Friction):
     def coupling(self) -> str:
         """how sliding and spinning share the friction"""
 
-def make_normal(name: str, **parameters) -> NormalForce:
+def make_normal(name: str, **parameters: float | str) -> NormalForce:
     """
     The normal law called `name`, as in MJCF keys, with its parameters as keywords: also one that was built in by VOLCONTACT_LAWS
     """
 
-def make_friction(name: str, **parameters) -> Friction:
+def make_friction(name: str, **parameters: float | str) -> Friction:
     """The same for friction laws"""
 
 def layer_stiffness(*, modulus: float, thickness: float, poisson_ratio: float | None = None) -> float:

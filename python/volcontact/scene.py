@@ -175,7 +175,8 @@ class Contact:
         these come from, and `warnings`.
         """
         text = self._adaptor.text("describe", self._require_open()._address)
-        return json.loads(text.rstrip("\0"))
+        description: dict[str, Any] = json.loads(text.rstrip("\0"))
+        return description
 
     def sites(self, data: mujoco.MjData) -> np.ndarray:
         """Contact sites at the state of the last evaluation.

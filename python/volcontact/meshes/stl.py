@@ -33,9 +33,8 @@ def stl_bytes(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> bytes:
         normals = np.cross(wide[:, 1] - wide[:, 0], wide[:, 2] - wide[:, 0])
         lengths = np.linalg.norm(normals, axis=1, keepdims=True)
     facets["normal"] = np.where(lengths > 0.0, normals / np.where(lengths > 0.0, lengths, 1.0), 0.0)
-    return (
-        b"volcontact".ljust(80) + np.uint32(len(faces)).astype("<u4").tobytes() + facets.tobytes()
-    )
+    count = len(faces).to_bytes(4, "little")
+    return b"volcontact".ljust(80) + count + facets.tobytes()
 
 
 def _promised_size(content: bytes) -> int:

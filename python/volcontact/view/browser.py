@@ -287,7 +287,7 @@ class Page:
 
         @contact.on_update
         def _(_: Any) -> None:
-            stage.set_contact(contact.value)
+            stage.set_contact("native" if contact.value == "native" else "volumetric")
 
         @speed.on_update
         def _(_: Any) -> None:

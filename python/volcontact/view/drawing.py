@@ -104,7 +104,8 @@ def _arrow(force: np.ndarray, reference: float, extent: float) -> np.ndarray:
     length = _FULL * extent * np.sqrt(magnitude / reference)
     if length < _SHORTEST * extent:
         return np.zeros(3)
-    return force * (min(length, _LONGEST * extent) / magnitude)
+    arrow: np.ndarray = force * (min(length, _LONGEST * extent) / magnitude)
+    return arrow
 
 
 def _label(site: np.void, normal_force: float, friction: float) -> str:
