@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws the pictures of the scenes with meshes: `./run python mjcf_models/make_pictures.py`.
+"""Draws the pictures of the scenes: `./run python mjcf_models/make_pictures.py`.
 
 Panels from left to right: some instants under volumetric contact, then, for some scenes and behind
 a white line, the end of the same run under MuJoCo's native contact.
@@ -17,6 +17,7 @@ import numpy as np
 
 import volcontact as vc
 from volcontact.render import Renderer
+from volcontact.simulation import to_start
 
 MODELS = Path(__file__).parent
 
@@ -39,11 +40,27 @@ class Picture:
 
 
 PICTURES = {
+    "acu_insert/picture.png": Picture(
+        "acu_insert/scene.xml",
+        ((0.0, "overview"), (24.0, "overview"), (24.0, "seat")),
+        native=(24.0, "seat"),
+        size=(400, 400),
+    ),
+    "battery_insert_0g/picture.png": Picture(
+        "battery_insert_0g/scene.xml",
+        ((0.0, "carrier"), (8.0, "corner"), (30.0, "carrier")),
+        size=(480, 420),
+    ),
     "battery_box_mesh/picture.png": Picture(
         "battery_box_mesh/scene.xml",
         ((0.0, "overview"), (0.2, "overview"), (1.0, "overview")),
         native=(3.0, "overview"),
         size=(400, 360),
+    ),
+    "canadarm_berth/picture.png": Picture(
+        "canadarm_berth/scene.xml",
+        ((0.0, "arm"), (0.0, "grasp"), (45.0, "grasp")),
+        size=(520, 400),
     ),
     "gear_pair/picture.png": Picture(
         "gear_pair/scene.xml",
@@ -55,12 +72,18 @@ PICTURES = {
         ((0.0, "overview"), (0.05, "overview"), (0.35, "overview")),
         native=(0.35, "overview"),
     ),
+    "rpcm_rails/picture.png": Picture(
+        "rpcm_rails/scene.xml",
+        ((0.0, "overview"), (9.0, "tongue"), (34.0, "overview")),
+        size=(400, 400),
+    ),
 }
 
 
 def poses(model: mujoco.MjModel, panels: tuple[tuple[float, str], ...]) -> list[np.ndarray]:
     """The positions at the instants of the panels, each of shape (nq,)."""
     data = mujoco.MjData(model)
+    to_start(model, data)
     found = []
     for time, _ in panels:
         while data.time < time - 0.5 * model.opt.timestep:

@@ -40,7 +40,7 @@ def simulate(
     frame_interval: float | None = 0.2,
     progress: Progress | None = None,
 ) -> Recording:
-    """Steps a scene for a while and records it.
+    """Steps a scene for a while, from its keyframe `start` if it has one, and records it.
 
     Args:
         scene: path of an MJCF file, MJCF text, or a model (which is not changed).
@@ -66,6 +66,7 @@ def simulate(
         raise SimulationError(f"frame interval {frame_interval:g} s must be positive")
     steps = round(duration / step)
     data = mujoco.MjData(model)
+    to_start(model, data)
     with _probe(contact, model) as probe:
         recorder = _Recorder(model, probe, steps, frame_interval)
         every = max(1, steps // _PROGRESS_CALLS)
@@ -79,6 +80,13 @@ def simulate(
         if progress is not None:
             progress(steps, steps)
         return recorder.recording(contact, probe.description)
+
+
+def to_start(model: mujoco.MjModel, data: mujoco.MjData) -> None:
+    """Puts data of a model at its keyframe `start`; without one they stay as they are."""
+    key = mujoco.mj_name2id(model, int(mujoco.mjtObj.mjOBJ_KEY), "start")
+    if key >= 0:
+        mujoco.mj_resetDataKeyframe(model, data, key)
 
 
 def native_model(scene: str | os.PathLike[str]) -> mujoco.MjModel:

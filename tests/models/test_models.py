@@ -15,6 +15,7 @@ import pytest
 
 import volcontact as vc
 from volcontact._mujoco_views import dense
+from volcontact.simulation import to_start
 
 MODELS = Path(__file__).parents[2] / "mjcf_models"
 
@@ -40,6 +41,7 @@ class Run:
     start: np.ndarray  # positions of the bodies [m]
     unaccounted: float  # change of kinetic + potential + elastic + dissipated energy, relative
     peak_sites: int = 0
+    peaks: dict[str, float] = field(default_factory=dict)  # of the norms of sensors
     warnings: list[str] = field(default_factory=list)
 
 
@@ -47,15 +49,16 @@ def run(scene: Path, duration: float, timestep: float) -> Run:
     model = vc.load(str(scene))
     model.opt.timestep = timestep
     data = mujoco.MjData(model)
-    start_key = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_KEY, "start")
-    if start_key >= 0:
-        mujoco.mj_resetDataKeyframe(model, data, start_key)
+    to_start(model, data)
     with vc.attach(model) as contact:
         mujoco.mj_forward(model, data)
         start, first = data.xpos.copy(), energies(data, contact)
-        peak = 0
+        peak, groups = 0, sensor_groups(model)
+        peaks = dict.fromkeys(groups, 0.0)
         for step in range(round(duration / timestep)):
             mujoco.mj_step(model, data)
+            for name, numbers in groups.items():
+                peaks[name] = max(peaks[name], float(np.linalg.norm(data.sensordata[numbers])))
             if step % 5 == 0:
                 peak = max(peak, len(contact.sites(data)))
         assert data.time == pytest.approx(duration)
@@ -63,11 +66,24 @@ def run(scene: Path, duration: float, timestep: float) -> Run:
         last = energies(data, contact)
         turned_over = first[1] + last[1] + abs(last[0] - first[0])
         unaccounted = abs(sum(last) - sum(first)) / turned_over if turned_over > 0.0 else 0.0
-        result = Run(model, data, contact.sites(data).copy(), start, unaccounted, peak)
+        result = Run(model, data, contact.sites(data).copy(), start, unaccounted, peak, peaks)
     for kind in range(len(data.warning)):
         if data.warning[kind].number:
             result.warnings.append(str(mujoco.mjtWarning(kind)))
     return result
+
+
+def sensor_groups(model: mujoco.MjModel) -> dict[str, list[int]]:
+    """Places in sensordata by name; NAME_x, NAME_y and NAME_z are one."""
+    groups: dict[str, list[int]] = {}
+    for sensor in range(model.nsensor):
+        name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_SENSOR, sensor)
+        start = int(model.sensor_adr[sensor])
+        numbers = range(start, start + int(model.sensor_dim[sensor]))
+        groups.setdefault(name.removesuffix("_x").removesuffix("_y").removesuffix("_z"), []).extend(
+            numbers
+        )
+    return groups
 
 
 def energies(data: mujoco.MjData, contact: vc.Contact) -> tuple[float, float]:
@@ -108,6 +124,11 @@ def test_scene_meets_its_numbers(scene: Path, expected: dict[str, Any], timestep
         assert low <= math.degrees(math.acos(np.clip(upright, -1.0, 1.0))) <= high
     if "energy_tolerance" in expected:
         assert result.unaccounted < expected["energy_tolerance"]
+    for name, limit in expected.get("peak_limits", {}).items():
+        assert 0.0 < result.peaks[name] < limit
+    for name, (value, tolerance) in expected.get("final_sensors", {}).items():
+        address = int(result.model.sensor(name).adr[0])
+        assert result.data.sensordata[address] == pytest.approx(value, abs=tolerance)
     for joint, speed in expected.get("joint_speeds", {}).items():
         found = result.data.joint(joint).qvel[0]
         assert found == pytest.approx(speed, rel=expected["joint_speed_relative_tolerance"])
@@ -125,6 +146,8 @@ def check_design_pose(result: Run, expected: dict[str, Any]) -> None:
         tilt_degrees(body.xquat, expected["design_quaternion"])
         < (expected["angle_tolerance_degrees"])
     )
+    if "rest_drop" not in expected:
+        return
     assert -offset[2] == pytest.approx(expected["rest_drop"], abs=expected["rest_drop_tolerance"])
     # Every run within half the spread of the one equilibrium: all agree within the spread, over
     # time steps and MuJoCo releases.

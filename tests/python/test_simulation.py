@@ -59,6 +59,14 @@ def test_row_holds_the_state_its_step_began_with(kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
+def test_scene_starts_at_its_keyframe(kind):
+    key = '<keyframe><key name="start" qpos="0.1 0 3 1 0 0 0" qvel="1 0 0 0 0 0"/></keyframe>'
+    run = simulate(ball(2.0).replace("</mujoco>", f"{key}</mujoco>"), contact=kind, duration=0.01)
+    assert run.qpos[0].tolist() == [0.1, 0.0, 3.0, 1.0, 0.0, 0.0, 0.0]
+    assert run.qvel[0].tolist() == [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize("kind", KINDS)
 def test_runge_kutta_rows_lie_on_the_parabola(kind):
     # The last stage of a step is not its beginning: energies read there would not add up.
     run = simulate(ball(2.0, integrator="RK4"), contact=kind, duration=0.05)
