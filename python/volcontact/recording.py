@@ -23,11 +23,14 @@ SITE = np.dtype(
         ("position", "f8", (3,)),  # centroid of the patch, or MuJoCo's contact point [m], world
         ("normal", "f8", (3,)),  # on a, from b to a [-]
         ("force", "f8", (3,)),  # total force on a [N], world
+        ("torque", "f8", (3,)),  # on a, about the position [N m], world
         ("area", "f8"),  # projected patch [m^2]; 0 for a native contact, which is a point
         ("depth", "f8"),  # penetration along the normal [m]
         ("volume", "f8"),  # interference volume [m^3]; 0 for a native contact
     ]
 )
+# A site among those of a whole run: `row` is its instant.
+SITE_IN_RUN = np.dtype([("row", "i8"), *((name, SITE[name]) for name in SITE.names or ())])
 
 
 @dataclass(frozen=True)
@@ -74,6 +77,8 @@ class Recording:
         stopped: why the run ended early, or None.
         dropped: evaluations in which volcontact left out a force that was no finite number.
         frames: the instants to draw.
+        sites: all contact sites: structured array of `SITE_IN_RUN`.
+        geoms: names of the geoms by id, for the sites.
         description: what volcontact understood of the scene; {} under native contact.
         weight: of all that moves [N]; 0 without gravity.
     """
@@ -101,6 +106,8 @@ class Recording:
     stopped: str | None
     dropped: int
     frames: tuple[Frame, ...]
+    sites: np.ndarray
+    geoms: tuple[str, ...]
     description: dict[str, Any]
     weight: float
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from volcontact import scene as volumetric_scene
 from volcontact._mujoco_views import dense
-from volcontact.recording import CHANNELS, SITE, ContactKind, Frame, Recording
+from volcontact.recording import CHANNELS, SITE, SITE_IN_RUN, ContactKind, Frame, Recording
 
 Progress = Callable[[int, int], None]
 
@@ -109,7 +109,7 @@ def native_model(scene: str | os.PathLike[str]) -> mujoco.MjModel:
 def recorded_sites(found: np.ndarray) -> np.ndarray:
     """What a recording keeps of the sites that `Contact.sites` returns: an array of `SITE`."""
     sites = np.zeros(len(found), SITE)
-    for name in ("geom_a", "geom_b", "normal", "force", "area", "depth", "volume"):
+    for name in ("geom_a", "geom_b", "normal", "force", "torque", "area", "depth", "volume"):
         sites[name] = found[name]
     sites["position"] = found["centroid"]
     return sites
@@ -124,16 +124,17 @@ def native_sites(model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:
     contact = data.contact
     frames = contact.frame[:n].reshape(n, 3, 3)  # rows are axes; the first is the normal
     wrench = np.zeros(6)
-    in_frame = np.zeros((n, 3))
+    in_frame, turning = np.zeros((n, 3)), np.zeros((n, 3))
     for i in range(n):
         mujoco.mj_contactForce(model, data, i, wrench)
-        in_frame[i] = wrench[:3]
+        in_frame[i], turning[i] = wrench[:3], wrench[3:]
     sites["geom_a"] = contact.geom1[:n]
     sites["geom_b"] = contact.geom2[:n]
     sites["position"] = contact.pos[:n]
     # MuJoCo's normal points from geom 1 to geom 2 and its force is the one on geom 2.
     sites["normal"] = -frames[:, 0]
     sites["force"] = -np.einsum("nij,ni->nj", frames, in_frame)
+    sites["torque"] = -np.einsum("nij,ni->nj", frames, turning)
     sites["depth"] = np.maximum(-contact.dist[:n], 0.0)
     # Inside its margin MuJoCo lists a contact that does not push yet: that is no contact.
     return sites[(sites["depth"] > 0.0) | np.any(in_frame != 0.0, axis=1)]
@@ -247,6 +248,7 @@ class _Recorder:
         self._contact = np.zeros((rows, 4))  # sum and largest of forces, count, depth
         self._microseconds = np.zeros(steps)
         self._frames: list[Frame] = []
+        self._sites: list[np.ndarray] = []
         self._frame_rows = _frame_rows(steps, float(model.opt.timestep), frame_interval)
         self._warnings: dict[str, int] = {}
         self._dropped = 0
@@ -311,6 +313,8 @@ class _Recorder:
             stopped=self.stopped,
             dropped=self._dropped,
             frames=tuple(self._frames),
+            sites=np.concatenate([np.zeros(0, SITE_IN_RUN), *self._sites]),
+            geoms=tuple(_geom_name(self._model, i) for i in range(self._model.ngeom)),
             description=description,
             weight=float(gravity * self._model.body_mass[self._model.body_weldid != 0].sum()),
         )
@@ -345,6 +349,7 @@ class _Recorder:
             forces = np.linalg.norm(sites["force"], axis=1)
             depth = sites["depth"].max()
             self._contact[row] = forces.sum(), forces.max(), len(sites), depth
+            self._sites.append(_in_run(sites, row))
         if row in self._frame_rows:
             self._frames.append(Frame(row=row, time=float(self._time[row]), sites=sites))
 
@@ -360,6 +365,18 @@ def _bodies_followed(model: mujoco.MjModel) -> list[int]:
 
 def _body_name(model: mujoco.MjModel, body: int) -> str:
     return mujoco.mj_id2name(model, int(mujoco.mjtObj.mjOBJ_BODY), body) or f"body {body}"
+
+
+def _geom_name(model: mujoco.MjModel, geom: int) -> str:
+    return mujoco.mj_id2name(model, int(mujoco.mjtObj.mjOBJ_GEOM), geom) or f"geom {geom}"
+
+
+def _in_run(sites: np.ndarray, row: int) -> np.ndarray:
+    rows = np.zeros(len(sites), SITE_IN_RUN)
+    rows["row"] = row
+    for name in SITE.names or ():
+        rows[name] = sites[name]
+    return rows
 
 
 def _frame_rows(steps: int, timestep: float, interval: float | None) -> frozenset[int]:

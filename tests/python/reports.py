@@ -5,7 +5,7 @@ import dataclasses
 
 import numpy as np
 
-from volcontact.recording import SITE, Frame, Recording
+from volcontact.recording import SITE, SITE_IN_RUN, Frame, Recording
 from volcontact.report import Comparison
 from volcontact.report.design_pose import DesignPose
 from volcontact.report.findings import findings
@@ -36,6 +36,14 @@ def floor_pair(index: int, geom: str, friction: float, source: str = LARGER) -> 
     }
 
 
+def in_run(sites: np.ndarray, row: int) -> np.ndarray:
+    rows = np.zeros(len(sites), SITE_IN_RUN)
+    rows["row"] = row
+    for name in SITE.names:
+        rows[name] = sites[name]
+    return rows
+
+
 def recording(contact: str = "volumetric", **changes) -> Recording:
     """A box that sinks from 0.5 m to 0.2 m in 2 s and then lies still: 101 rows."""
     n = 101
@@ -49,6 +57,8 @@ def recording(contact: str = "volumetric", **changes) -> Recording:
     sites["normal"] = (0.0, 0.0, 1.0)
     sites["force"] = (0.0, 0.0, 50.0)
     sites["area"] = 0.01
+    sites["geom_b"] = 1
+    sites["torque"] = (0.0, 2.0, 0.0)
     sites["depth"] = 1e-5
     potential = 100.0 * height
     dissipated = np.zeros((n, 4))
@@ -76,6 +86,8 @@ def recording(contact: str = "volumetric", **changes) -> Recording:
         warnings={},
         stopped=None,
         dropped=0,
+        sites=np.concatenate([in_run(sites, row) for row in range(n) if touching[row]]),
+        geoms=("floor", "box"),
         frames=(Frame(0, 0.0, sites[:0]), Frame(n - 1, 2.0, sites)),
         description={
             "options": {"tolerance": 1e-3, "engine": "auto"},

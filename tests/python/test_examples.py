@@ -65,7 +65,7 @@ def test_record_and_plot(run, tmp_path):
     states, sites = (pq.read_table(tmp_path / f"{name}.parquet") for name in ("states", "sites"))
     heights = states["qpos_2"].to_numpy()
     assert len(heights) == 3000 and 0 < len(sites) < len(heights)
-    # The second flight rises by e^2 of the drop of 0.2 m; an impact takes a dozen of the steps.
+    # The second flight rises by e^2 of the drop of 0.2 m; an impact takes some twenty of the steps.
     second = heights[(states["time"].to_numpy() > 0.25) & (states["time"].to_numpy() < 0.5)]
     assert second.max() - 0.05 == pytest.approx(0.64 * 0.2, rel=0.04)
     assert (tmp_path / "bounces.svg").stat().st_size > 1000

@@ -1,18 +1,27 @@
 # SPDX-License-Identifier: Apache-2.0
 """The report: curves, a page that needs nothing, files."""
 
+import csv
+import dataclasses
 import json
 import re
+import xml.etree.ElementTree as ElementTree
 
+import imageio_ffmpeg
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+from PIL import Image
 from reports import comparison, pair
 
 from volcontact.report import write_report
-from volcontact.report.figures import curves, thin
+from volcontact.report.figures import curves, thin, write_figures
 from volcontact.report.page import label_of, page, title_of
-from volcontact.report.pictures import png, side_by_side, write_frames
+from volcontact.report.pictures import png, side_by_side, write_frames, write_movie
+
+
+def page_of(made, pairs=()):
+    return page(made, list(pairs), curves(made))
 
 
 def test_thinned_curve_keeps_its_peaks():
@@ -43,7 +52,7 @@ def test_curves_take_their_colours_from_the_page_and_repeat_exactly():
 
 
 def test_page_is_one_file_that_asks_nobody():
-    text = page(comparison(), [pair(), pair(with_native=False)])
+    text = page_of(comparison(), [pair(), pair(with_native=False)])
     addresses = set(re.findall(r"https?://[^\"' >]+", text))
     assert all(address.startswith("http://www.w3.org/") for address in addresses)  # XML names
     assert not re.search(r"<link[^>]+href=\"(?!data:)|src=\"(?!data:|\")|@import|<script src", text)
@@ -55,7 +64,7 @@ def test_page_is_one_file_that_asks_nobody():
 
 
 def test_page_shows_settings_parameters_with_units_and_warnings():
-    text = page(comparison(), [])
+    text = page_of(comparison())
     for expected in (
         "<h1>Battery box</h1>",
         "9.9.9",
@@ -68,11 +77,11 @@ def test_page_shows_settings_parameters_with_units_and_warnings():
         "17 more",
     ):
         assert expected in text
-    assert "<script" not in text  # nothing to play without pictures
+    assert 'id="slider"' not in text  # nothing to play without pictures
 
 
 def test_page_escapes_what_the_user_wrote():
-    text = page(comparison(scene="a<b>x</b>.xml"), [])
+    text = page_of(comparison(scene="a<b>x</b>.xml"))
     assert "<b>x</b>" not in text
     assert "a&lt;b&gt;x&lt;/b&gt;.xml" in text
 
@@ -121,3 +130,60 @@ def test_report_writes_every_file(tmp_path):
     )
     assert table.schema.field("penetration").metadata == {b"unit": b"m"}
     assert table.column("qpos")[100].as_py() == [0.0, 0.0, 0.2, 1.0, 0.0, 0.0, 0.0]
+    sites = pq.read_table(report.parent / "sites.parquet")
+    assert sites.num_rows == len(made.volumetric.sites) + len(made.native.sites)
+    assert sites.column("geom_b")[0].as_py() == "box"
+    assert sites.schema.field("torque_y").metadata == {b"unit": b"N m"}
+
+
+def test_csv_files_hold_what_the_parquet_files_hold(tmp_path):
+    write_report(comparison(), tmp_path, renderer=None)
+    for name in ("trajectory", "sites"):
+        table = pq.read_table(tmp_path / f"{name}.parquet")
+        with (tmp_path / f"{name}.csv").open(newline="") as file:
+            rows = list(csv.DictReader(file))
+        assert len(rows) == table.num_rows
+        assert rows[-1]["time [s]"] == str(table.column("time")[-1].as_py()).removesuffix(".0")
+    assert rows[0]["force_z [N]"] == "50"
+
+
+def test_every_figure_is_a_file_that_stands_alone(tmp_path):
+    made = curves(comparison())
+    files = write_figures(made, tmp_path)
+    assert {file.name for file in files} == {
+        f"{curve.name}.{suffix}" for curve in made for suffix in ("svg", "png")
+    }
+    for file in files:
+        if file.suffix == ".png":
+            with Image.open(file) as picture:
+                assert picture.width > 600 and picture.convert("L").getextrema() != (255, 255)
+        else:
+            text = file.read_text(encoding="utf-8")
+            ElementTree.fromstring(text)
+            assert "var(--" not in text and '<rect width="100%"' in text
+
+
+def test_film_has_one_picture_a_frame_and_the_time_of_the_run(tmp_path):
+    pairs = [dataclasses.replace(pair(), time=0.2 * i) for i in range(5)]
+    path = tmp_path / "run.mp4"
+    assert write_movie(pairs, path)
+    _, meta = (film := imageio_ffmpeg.read_frames(str(path))), next(film)
+    assert meta["fps"] == pytest.approx(5.0)
+    sheet = side_by_side(pairs[0])
+    assert meta["size"] == (sheet.width - sheet.width % 2, sheet.height - sheet.height % 2)
+    assert sum(1 for _ in film) == 5
+    assert not write_movie(pairs[:1], path) and not path.exists()
+
+
+def test_numbers_of_the_curves_stand_in_the_page():
+    made = comparison()
+    text = page_of(made)
+    data = json.loads(re.search(r'id="data">(.*?)</script>', text, re.DOTALL).group(1))
+    height = data["curves"]["height"]
+    assert [series["label"] for series in height["series"]] == ["volumetric", "native"]
+    assert height["series"][0]["y"][-1] == 0.2
+    assert 0.0 < height["left"] < 0.3 and 0.9 < height["right"] <= 1.0
+    assert (height["start"], height["end"]) == (0.0, 2.0)
+    rows = data["sites"]["volumetric"]
+    assert rows[0] == []
+    assert rows[1][0] == ["floor with box", "50.0 N", "0 N", "2.00 N m", "10.0 µm", "100 cm²"]

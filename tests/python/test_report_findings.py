@@ -8,10 +8,12 @@ import pytest
 from reports import comparison, recording, sentence, shifted
 
 from volcontact.report.comparison import (
+    Limits,
     first_touch,
     largest_rise,
     unbalance,
 )
+from volcontact.report.figures import curves
 from volcontact.report.findings import findings
 from volcontact.report.page import page
 
@@ -120,4 +122,20 @@ def test_runs_that_never_touch_or_have_no_weight_are_described():
     )
     made = comparison(volumetric=recording(**free), native=recording("native", **free), design=None)
     assert "nothing touches" in sentence(made, "Contact force")
-    assert "never" in page(made, [])
+    assert "never" in page(made, [], curves(made))
+
+
+@pytest.mark.parametrize(
+    ("limits", "verdict", "phrase"),
+    [
+        (Limits(), "plain", "the largest force of one place is 50.0 N, at 1.00 s between"),
+        (Limits(force=60.0), "good", "within the limit of 60 N"),
+        (Limits(force=40.0), "bad", "above the limit of 40 N"),
+        (Limits(force=60.0, torque=1.0), "bad", "above the limit of 1 N m"),
+    ],
+)
+def test_load_of_one_place_is_told_against_its_limit(limits, verdict, phrase):
+    made = comparison(limits=limits)
+    (finding,) = (f for f in findings(made) if f.title == "Load of one place")
+    assert finding.verdict == verdict
+    assert phrase in finding.text

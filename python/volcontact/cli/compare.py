@@ -62,6 +62,15 @@ def add_to(commands: Subparsers) -> None:
     )
     parser.add_argument("--camera", metavar="NAME", help="camera of the scene (default: its first)")
     parser.add_argument(
+        "--force-limit", type=positive, metavar="N", help="what one contact may carry at most [N]"
+    )
+    parser.add_argument(
+        "--torque-limit",
+        type=positive,
+        metavar="NM",
+        help="the same for its torque about its place [N m]",
+    )
+    parser.add_argument(
         "--no-frames", action="store_true", help="leave the pictures out (needs no OpenGL)"
     )
     parser.set_defaults(execute=execute)
@@ -69,7 +78,7 @@ def add_to(commands: Subparsers) -> None:
 
 def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     """Runs the command and returns the exit status."""
-    from volcontact.report import Comparison, write_report
+    from volcontact.report import Comparison, Limits, write_report
     from volcontact.report.design_pose import read_design_pose
     from volcontact.simulation import simulate
 
@@ -96,6 +105,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             design=design,
             mujoco_version=mujoco.mj_versionString(),
             volcontact_version=volcontact.__version__,
+            limits=Limits(arguments.force_limit, arguments.torque_limit),
         )
         report = write_report(
             comparison,

@@ -8,12 +8,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 from volcontact.render import Renderer
-from volcontact.report.comparison import Comparison
+from volcontact.report.comparison import Comparison, Limits
+from volcontact.report.figures import curves, write_figures
 from volcontact.report.page import write_page
-from volcontact.report.pictures import draw_frames, write_frames
+from volcontact.report.pictures import draw_frames, write_frames, write_movie
 from volcontact.report.table import write_table
 
-__all__ = ["Comparison", "write_report"]
+__all__ = ["Comparison", "Limits", "write_report"]
 
 
 def write_report(
@@ -24,7 +25,11 @@ def write_report(
     camera: str | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Path:
-    """Writes `report.html`, `summary.json`, `trajectory.parquet` and `frames/*.png`.
+    """Writes the report, all its numbers and all its pictures.
+
+    These are `report.html`, `summary.json`, `trajectory.parquet` and `.csv` (every instant),
+    `sites.parquet` and `.csv` (every contact site of every instant), `figures/*.svg` and `*.png`,
+    `frames/*.png` and `run.mp4`.
 
     Args:
         comparison: what to report.
@@ -42,4 +47,7 @@ def write_report(
     write_table(comparison.runs, out / "trajectory.parquet")
     pairs = [] if renderer is None else draw_frames(comparison, renderer, camera, progress)
     write_frames(pairs, out / "frames")
-    return write_page(comparison, pairs, out / "report.html")
+    write_movie(pairs, out / "run.mp4")
+    made = curves(comparison)
+    write_figures(made, out / "figures")
+    return write_page(comparison, pairs, made, out / "report.html")

@@ -4,12 +4,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from volcontact.recording import Recording
 from volcontact.report.design_pose import DesignPose, angle_between
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What one contact site may carry at most; None where nothing is said.
+
+    Attributes:
+        force: [N].
+        torque: about the place of the contact [N m].
+    """
+
+    force: float | None = None
+    torque: float | None = None
 
 
 @dataclass(frozen=True)
@@ -23,6 +36,7 @@ class Comparison:
         design: the pose it should end in, or None.
         mujoco_version: of the library that ran.
         volcontact_version: of this package.
+        limits: of one contact site.
     """
 
     scene: str
@@ -31,6 +45,7 @@ class Comparison:
     design: DesignPose | None
     mujoco_version: str
     volcontact_version: str
+    limits: Limits = Limits()
 
     @property
     def runs(self) -> tuple[Recording, Recording]:
@@ -96,6 +111,30 @@ def first_touch(run: Recording) -> float | None:
     return float(run.time[rows[0]]) if len(rows) else None
 
 
+class Peak(NamedTuple):
+    """The largest load that one contact site ever carried.
+
+    Attributes:
+        value: [N] or [N m]; 0 without any contact.
+        time: when [s].
+        geoms: where.
+    """
+
+    value: float
+    time: float
+    geoms: tuple[str, str]
+
+
+def peak(run: Recording, load: Literal["force", "torque"]) -> Peak:
+    """The largest force, or torque about its place, of one contact site."""
+    if len(run.sites) == 0:
+        return Peak(0.0, 0.0, ("", ""))
+    sizes = np.linalg.norm(run.sites[load], axis=1)
+    site = run.sites[int(sizes.argmax())]
+    names = run.geoms[int(site["geom_a"])], run.geoms[int(site["geom_b"])]
+    return Peak(float(sizes.max()), float(run.time[site["row"]]), names)
+
+
 def largest_rise(energy: np.ndarray) -> float:
     """The most that an energy ever stood above an earlier value of its own [J]."""
     return float(np.max(energy - np.minimum.accumulate(energy)))
@@ -129,6 +168,8 @@ def run_summary(run: Recording, design: DesignPose | None) -> dict[str, Any]:
             zip(("normal", "roll", "slide", "spin"), run.dissipated[-1].tolist(), strict=True)
         ),
         "first_touch": first_touch(run),
+        "max_site_force": peak(run, "force").value,
+        "max_site_torque": peak(run, "torque").value,
     }
     if design is not None:
         offset = offset_from(run, design)

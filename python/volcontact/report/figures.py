@@ -8,6 +8,7 @@ import itertools
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import matplotlib
@@ -20,13 +21,14 @@ from volcontact.recording import CHANNELS, Recording
 from volcontact.report import palette
 from volcontact.report.comparison import Comparison, offset_from
 
+_PAPER = '<rect width="100%" height="100%" fill="#fff"/>'
 _SIZE = (4.2, 2.8)  # inches: readable when shrunk to a phone
 _POINTS = 900  # per curve; more cannot be seen at this size
 _FORCE_FLOOR = 1.0  # [N], lowest value of the logarithmic axis
 _DEPTH_FLOOR = 1e-6  # [m]
 
-# Placeholders of the SVG and the CSS variables of the page that replace them.
-_INK, _MUTED, _LINE = "#010101", "#020202", "#030303"
+# Colours on white paper, and the CSS variables of the page that replace them there.
+_INK, _MUTED, _LINE = "#1b1f27", "#5b6472", "#dfe3e8"
 _VARIABLES = {
     _INK: "var(--ink)",
     _MUTED: "var(--muted)",
@@ -62,6 +64,23 @@ _STYLE: dict[Any, Any] = {
 
 
 @dataclass(frozen=True)
+class Series:
+    """One line, or one layer of a stack, for reading off its numbers.
+
+    Attributes:
+        label: what it is.
+        color: "#rrggbb".
+        x: time [s], shape (n,).
+        y: in the unit of the axis, shape (n,).
+    """
+
+    label: str
+    color: str
+    x: np.ndarray
+    y: np.ndarray
+
+
+@dataclass(frozen=True)
 class Curve:
     """One figure of the report.
 
@@ -69,74 +88,98 @@ class Curve:
         name: short, fit for a file name.
         title: above the figure.
         caption: one sentence on how to read it.
-        svg: inline SVG.
+        svg: inline SVG, in the colours of the page.
+        paper: SVG that stands alone, dark on white.
+        data: what the page needs to tell the numbers under the pointer: `left` and `right` of the
+            axes in shares of the width, the time `start` and `end` there [s], and the `series`
+            with `label`, `color`, `x` and `y`.
+        figure: matplotlib's.
     """
 
     name: str
     title: str
     caption: str
     svg: str
+    paper: str
+    data: dict[str, Any]
+    figure: Figure
+
+
+@dataclass(frozen=True)
+class _Plan:
+    name: str
+    title: str
+    caption: str
+    draw: Callable[[Axes, Comparison], list[Series]]
 
 
 def curves(comparison: Comparison) -> list[Curve]:
     """All figures of the report, in reading order."""
-    made = [
-        _curve("height", "Height", _height_caption(comparison), _draw_height, comparison),
-        _curve(
+    return [_curve(plan, comparison) for plan in _plans(comparison)]
+
+
+def write_figures(made: list[Curve], folder: Path) -> list[Path]:
+    """Writes every figure as `NAME.svg` and `NAME.png`, dark on white, and returns the files."""
+    folder.mkdir(parents=True, exist_ok=True)
+    files = []
+    for curve in made:
+        files += [folder / f"{curve.name}.svg", folder / f"{curve.name}.png"]
+        files[-2].write_text(curve.paper, encoding="utf-8")
+        curve.figure.savefig(files[-1], dpi=150, facecolor="white", transparent=False)
+    return files
+
+
+def _plans(comparison: Comparison) -> list[_Plan]:
+    plans = [
+        _Plan("height", "Height", _height_caption(comparison), _draw_height),
+        _Plan(
             "force",
             "Contact force",
             "Magnitudes of all site forces added up; logarithmic.",
             _draw_force,
-            comparison,
         ),
-        _curve(
+        _Plan(
             "penetration",
             "Penetration",
             "Depth of the deepest site; logarithmic.",
             _draw_penetration,
-            comparison,
         ),
-        _curve(
+        _Plan(
             "energy_volumetric",
             "Energy, volumetric",
             "Stacked; the dashed line is the energy at the start. Where the stack meets it, every "
             "joule is accounted for.",
             _draw_volumetric_energy,
-            comparison,
         ),
-        _curve(
+        _Plan(
             "energy_native",
             "Energy, native",
             "Stacked; native contact stores and dissipates without an account, which leaves the "
             "grey part.",
             _draw_native_energy,
-            comparison,
         ),
-        _curve(
+        _Plan(
             "sites",
             "Contact places",
             "Volumetric: connected overlap regions. Native: contact points that push or overlap.",
             _draw_sites,
-            comparison,
         ),
-        _curve(
+        _Plan(
             "timing",
             "Time of one step",
             "Wall time of mj_step alone; running median over a hundredth of the run.",
             _draw_timing,
-            comparison,
         ),
     ]
     if comparison.design is not None:
-        offset = _curve(
+        offset = _Plan(
             "offset",
             "Distance from the design pose",
             "Of the body frame; logarithmic. The dashed line is the tolerance.",
             _draw_offset,
-            comparison,
         )
-        made.insert(1, offset)
-    return made
+        plans.insert(1, offset)
+    return plans
 
 
 def thin(x: np.ndarray, y: np.ndarray, points: int = _POINTS) -> tuple[np.ndarray, np.ndarray]:
@@ -159,32 +202,55 @@ def thin(x: np.ndarray, y: np.ndarray, points: int = _POINTS) -> tuple[np.ndarra
     return x[rows], y[rows]
 
 
-def _curve(
-    name: str,
-    title: str,
-    caption: str,
-    draw: Callable[[Axes, Comparison], None],
-    comparison: Comparison,
-) -> Curve:
-    with matplotlib.rc_context({**_STYLE, "svg.hashsalt": name}):
-        figure = Figure(figsize=_SIZE, layout="constrained")
-        axes = figure.add_subplot()
-        axes.tick_params(length=0)
-        draw(axes, comparison)
-        axes.set_xlabel("time [s]")
-        axes.xaxis.set_major_locator(MaxNLocator(6))
-        axes.set_xlim(0.0, max(run.time[-1] for run in comparison.runs) or 1.0)
-        return Curve(name, title, caption, _svg(figure, name))
+def _curve(plan: _Plan, comparison: Comparison) -> Curve:
+    with matplotlib.rc_context({**_STYLE, "svg.hashsalt": plan.name}):
+        figure, axes, series = _drawn(plan, comparison)
+        paper = _svg(figure)
+        figure.set_layout_engine("none")  # the places are found
+        place = axes.get_position()  # after the layout, which drawing makes
+        start, end = axes.get_xlim()
+        data = {
+            "left": round(float(place.x0), 5),
+            "right": round(float(place.x1), 5),
+            "start": start,
+            "end": end,
+            "series": [
+                {"label": s.label, "color": s.color, "x": _short(s.x), "y": _short(s.y)}
+                for s in series
+            ],
+        }
+        inline = _inline(paper, plan.name)
+        return Curve(plan.name, plan.title, plan.caption, inline, paper, data, figure)
 
 
-def _svg(figure: Figure, name: str) -> str:
-    """Inline SVG: page colours for ink, and ids that no other figure of the page has."""
+def _drawn(plan: _Plan, comparison: Comparison) -> tuple[Figure, Axes, list[Series]]:
+    figure = Figure(figsize=_SIZE, layout="constrained")
+    axes = figure.add_subplot()
+    axes.tick_params(length=0)
+    series = plan.draw(axes, comparison)
+    axes.set_xlabel("time [s]")
+    axes.xaxis.set_major_locator(MaxNLocator(6))
+    axes.set_xlim(0.0, max(run.time[-1] for run in comparison.runs) or 1.0)
+    return figure, axes, series
+
+
+def _short(values: np.ndarray) -> list[float]:
+    """Five digits, which is more than can be read off."""
+    return [float(f"{value:.5g}") for value in values]
+
+
+def _svg(figure: Figure) -> str:
     buffer = io.StringIO()
     figure.savefig(buffer, format="svg", metadata={"Date": None})
-    text = buffer.getvalue()
-    text = re.sub(r"<metadata>.*?</metadata>", "", text[text.index("<svg") :], flags=re.DOTALL)
-    for placeholder, variable in _VARIABLES.items():
-        text = text.replace(placeholder, variable)
+    text = re.sub(r"<metadata>.*?</metadata>", "", buffer.getvalue(), flags=re.DOTALL)
+    return re.sub(r"(<svg[^>]*>)", rf"\1{_PAPER}", text, count=1)
+
+
+def _inline(paper: str, name: str) -> str:
+    """For the page: its colours for ink, and ids that no other figure of it has."""
+    text = paper[paper.index("<svg") :].replace(_PAPER, "")
+    for color, variable in _VARIABLES.items():
+        text = text.replace(color, variable)
     opening, rest = text.split(">", 1)
     opening = re.sub(r' (width|height)="[^"]*"', "", opening)  # the page decides; viewBox stays
     text = f"{opening}>{rest}"
@@ -193,11 +259,17 @@ def _svg(figure: Figure, name: str) -> str:
     return re.sub(r'href="#', f'href="#{name}-', text)
 
 
-def _both(axes: Axes, comparison: Comparison, values: Callable[[Recording], np.ndarray]) -> None:
+def _both(
+    axes: Axes, comparison: Comparison, values: Callable[[Recording], np.ndarray]
+) -> list[Series]:
     # The native run first: where both coincide the volumetric one stays visible.
+    series = []
     for run in reversed(comparison.runs):
         x, y = thin(run.time, values(run))
-        axes.plot(x, y, color=palette.RUN_COLORS[run.contact], label=run.contact)
+        color = palette.RUN_COLORS[run.contact]
+        axes.plot(x, y, color=color, label=run.contact)
+        series.append(Series(run.contact, color, x, y))
+    return series[::-1]
 
 
 def _legend(axes: Axes, columns: int = 2) -> None:
@@ -219,61 +291,77 @@ def _height_caption(comparison: Comparison) -> str:
     return f"World height of the frame of {body.replace('_', ' ')}."
 
 
-def _draw_height(axes: Axes, comparison: Comparison) -> None:
+def _draw_height(axes: Axes, comparison: Comparison) -> list[Series]:
+    series = []
     if comparison.volumetric.bodies:
-        _both(axes, comparison, lambda run: run.height[:, 0])
+        series = _both(axes, comparison, lambda run: run.height[:, 0])
     axes.set_ylabel("height [m]")
     _legend(axes)
+    return series
 
 
-def _draw_offset(axes: Axes, comparison: Comparison) -> None:
+def _draw_offset(axes: Axes, comparison: Comparison) -> list[Series]:
     design = comparison.design
     assert design is not None
-    _both(axes, comparison, lambda run: 1e3 * np.maximum(offset_from(run, design).distance, 1e-7))
-    axes.axhline(1e3 * design.position_tolerance, color=_MUTED, linewidth=0.9, linestyle="--")
+    series = _both(
+        axes, comparison, lambda run: 1e3 * np.maximum(offset_from(run, design).distance, 1e-7)
+    )
+    _dashed(axes, 1e3 * design.position_tolerance)
     axes.set_yscale("log")
     axes.set_ylabel("distance [mm]")
     _legend(axes)
+    return series
 
 
-def _draw_force(axes: Axes, comparison: Comparison) -> None:
-    _both(axes, comparison, lambda run: np.maximum(run.contact_force, _FORCE_FLOOR))
+def _dashed(axes: Axes, y: float, label: str | None = None) -> None:
+    color = matplotlib.rcParams["axes.labelcolor"]
+    axes.axhline(y, color=color, linewidth=0.9, linestyle="--", label=label)
+
+
+def _draw_force(axes: Axes, comparison: Comparison) -> list[Series]:
+    series = _both(axes, comparison, lambda run: np.maximum(run.contact_force, _FORCE_FLOOR))
     weight = comparison.volumetric.weight
     if weight > 0.0:
-        axes.axhline(weight, color=_MUTED, linewidth=0.9, linestyle="--", label="weight")
+        _dashed(axes, weight, "weight")
     axes.set_yscale("log")
     axes.set_ylim(bottom=1.25 * _FORCE_FLOOR)  # hides the line along the floor
     axes.set_ylabel("force [N]")
     _legend(axes, columns=3)
+    return series
 
 
-def _draw_penetration(axes: Axes, comparison: Comparison) -> None:
-    _both(axes, comparison, lambda run: 1e3 * np.maximum(run.penetration, _DEPTH_FLOOR))
+def _draw_penetration(axes: Axes, comparison: Comparison) -> list[Series]:
+    series = _both(axes, comparison, lambda run: 1e3 * np.maximum(run.penetration, _DEPTH_FLOOR))
     axes.set_yscale("log")
     axes.set_ylim(bottom=1.25e3 * _DEPTH_FLOOR)
     axes.set_ylabel("depth [mm]")
     _legend(axes)
+    return series
 
 
-def _draw_sites(axes: Axes, comparison: Comparison) -> None:
-    _both(axes, comparison, lambda run: run.site_count)
+def _draw_sites(axes: Axes, comparison: Comparison) -> list[Series]:
+    series = _both(axes, comparison, lambda run: run.site_count)
     axes.yaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_ylim(bottom=0.0)
     axes.set_ylabel("number at once")
     _legend(axes)
+    return series
 
 
-def _draw_timing(axes: Axes, comparison: Comparison) -> None:
-    top = 0.0
+def _draw_timing(axes: Axes, comparison: Comparison) -> list[Series]:
+    top, series = 0.0, []
     for run in reversed(comparison.runs):
         if run.steps == 0:
             continue
         x, y = _running_median(run.time[:-1], run.step_microseconds)
         top = max(top, 1.25 * float(np.quantile(y, 0.99)))
-        axes.plot(x, y, color=palette.RUN_COLORS[run.contact], label=run.contact)
+        color = palette.RUN_COLORS[run.contact]
+        axes.plot(x, y, color=color, label=run.contact)
+        series.append(Series(run.contact, color, x, y))
     axes.set_ylim(0.0, top or 1.0)
     axes.set_ylabel("time [µs]")
     _legend(axes)
+    return series[::-1]
 
 
 def _running_median(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -285,22 +373,22 @@ def _running_median(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarra
     )
 
 
-def _draw_volumetric_energy(axes: Axes, comparison: Comparison) -> None:
+def _draw_volumetric_energy(axes: Axes, comparison: Comparison) -> list[Series]:
     run = comparison.volumetric
     layers = _mechanical_layers(comparison, run)
     layers.append(("elastic", palette.ELASTIC, run.elastic))
     for i, channel in enumerate(CHANNELS):
         if run.dissipated[:, i].max() > 1e-6 * max(run.energy[0], 1e-12):
             layers.append((channel, palette.DISSIPATED[channel], run.dissipated[:, i]))
-    _stack(axes, run, layers)
+    return _stack(axes, run, layers)
 
 
-def _draw_native_energy(axes: Axes, comparison: Comparison) -> None:
+def _draw_native_energy(axes: Axes, comparison: Comparison) -> list[Series]:
     run = comparison.native
     layers = _mechanical_layers(comparison, run)
     missing = np.maximum(run.energy[0] - run.energy, 0.0)
     layers.append(("not accounted for", palette.UNEXPLAINED, missing))
-    _stack(axes, run, layers)
+    return _stack(axes, run, layers)
 
 
 def _mechanical_layers(comparison: Comparison, run: Recording) -> list[tuple[str, str, np.ndarray]]:
@@ -311,7 +399,7 @@ def _mechanical_layers(comparison: Comparison, run: Recording) -> list[tuple[str
     ]
 
 
-def _stack(axes: Axes, run: Recording, layers: list[tuple[str, str, np.ndarray]]) -> None:
+def _stack(axes: Axes, run: Recording, layers: list[tuple[str, str, np.ndarray]]) -> list[Series]:
     rows = np.unique(np.linspace(0, len(run.time) - 1, _POINTS // 2).astype(int))
     values = [layer[2][rows] for layer in layers]
     axes.stackplot(
@@ -323,7 +411,7 @@ def _stack(axes: Axes, run: Recording, layers: list[tuple[str, str, np.ndarray]]
         linewidth=0.0,
     )
     start = sum(float(layer[2][0]) for layer in layers)
-    axes.axhline(start, color=_INK, linewidth=0.9, linestyle="--")
+    axes.axhline(start, color=matplotlib.rcParams["text.color"], linewidth=0.9, linestyle="--")
     axes.set_ylim(0.0, 1.1 * max(start, float(np.sum(values, axis=0).max()), 1e-12))
     axes.set_ylabel("energy [J]")
     handles, labels = axes.get_legend_handles_labels()
@@ -338,3 +426,7 @@ def _stack(axes: Axes, run: Recording, layers: list[tuple[str, str, np.ndarray]]
         handletextpad=0.4,
         columnspacing=0.9,
     )
+    return [
+        Series(label, color, run.time[rows], y)
+        for (label, color, _), y in zip(layers, values, strict=True)
+    ]

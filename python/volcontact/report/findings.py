@@ -16,6 +16,7 @@ from volcontact.report.comparison import (
     is_seated,
     largest_rise,
     offset_from,
+    peak,
     unbalance,
 )
 from volcontact.report.design_pose import DesignPose, angle_between
@@ -50,6 +51,7 @@ def findings(comparison: Comparison) -> list[Finding]:
     found.append(_rest(comparison))
     found.extend(_final_pose(comparison))
     found.extend(_forces(comparison))
+    found.extend(_peaks(comparison))
     found.extend(_penetration(comparison))
     found.extend(_places(comparison))
     found.append(_energy(comparison))
@@ -146,6 +148,33 @@ def _forces(comparison: Comparison) -> Iterator[Finding]:
     if a > 0.0 and b > 0.0:
         sentences.append(f"The native peak is {ratio(b, a)}.")
     yield Finding("Contact force", " ".join(sentences))
+
+
+def _peaks(comparison: Comparison) -> Iterator[Finding]:
+    limits = comparison.limits
+    verdict: Verdict = "plain"
+    sentences = []
+    loads: tuple[tuple[Literal["force", "torque"], str, float | None], ...] = (
+        ("force", "N", limits.force),
+        ("torque", "N m", limits.torque),
+    )
+    for run in comparison.runs:
+        for load, unit, limit in loads:
+            most = peak(run, load)
+            if most.value == 0.0:
+                continue
+            text = (
+                f"{_name(run)}: the largest {load} of one place is {quantity(most.value, unit)}, "
+                f"at {digits(most.time)} s between {most.geoms[0]} and {most.geoms[1]}"
+            )
+            if limit is not None:
+                over = most.value > limit
+                text += f", {'above' if over else 'within'} the limit of {nominal(limit, unit)}"
+                if run is comparison.volumetric and verdict != "bad":
+                    verdict = "bad" if over else "good"
+            sentences.append(text + ".")
+    if sentences:
+        yield Finding("Load of one place", " ".join(sentences), verdict)
 
 
 def _share_of_weight(run: Recording) -> str:

@@ -4,21 +4,23 @@
 from __future__ import annotations
 
 import base64
+import json
 from dataclasses import dataclass
 from pathlib import Path
 
 import jinja2
 import numpy as np
+from markupsafe import Markup
 
-from volcontact.recording import Recording
+from volcontact.recording import Frame, Recording
 from volcontact.report import palette
-from volcontact.report.comparison import Comparison, first_touch, is_seated, offset_from
+from volcontact.report.comparison import Comparison, first_touch, is_seated, offset_from, peak
 from volcontact.report.description import tables
 from volcontact.report.design_pose import DesignPose
-from volcontact.report.figures import curves
+from volcontact.report.figures import Curve
 from volcontact.report.findings import findings
 from volcontact.report.pictures import FramePair, png, reference_force
-from volcontact.report.units import angle, digits, nominal, quantity
+from volcontact.report.units import angle, area, digits, nominal, quantity
 
 _PALETTE_COLORS = 200  # of the embedded pictures; the files in frames/ keep all
 
@@ -32,14 +34,16 @@ class Row:
     native: str
 
 
-def write_page(comparison: Comparison, pairs: list[FramePair], path: Path) -> Path:
+def write_page(
+    comparison: Comparison, pairs: list[FramePair], made: list[Curve], path: Path
+) -> Path:
     """Writes the report and returns its path."""
-    path.write_text(page(comparison, pairs), encoding="utf-8")
+    path.write_text(page(comparison, pairs, made), encoding="utf-8")
     return path
 
 
-def page(comparison: Comparison, pairs: list[FramePair]) -> str:
-    """The report as HTML text."""
+def page(comparison: Comparison, pairs: list[FramePair], made: list[Curve]) -> str:
+    """The report as HTML text, of its pictures and its curves."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
         autoescape=True,
@@ -57,7 +61,8 @@ def page(comparison: Comparison, pairs: list[FramePair]) -> str:
         findings=findings(comparison),
         rows=figures_side_by_side(comparison),
         frames=[_embedded(pair) for pair in pairs],
-        curves=curves(comparison),
+        curves=made,
+        data=_script_data(comparison, made),
         tables=[table for table in parts if len(table.rows) <= 12],
         long_tables=[table for table in parts if len(table.rows) > 12],
         scene_warnings=run.description.get("warnings", ()),
@@ -106,6 +111,8 @@ def figures(run: Recording, design: DesignPose | None) -> list[tuple[str, str]]:
         ("First touch", "never" if touch is None else f"{digits(touch)} s"),
         ("Most contact places at once", f"{run.site_count.max()}"),
         ("Largest contact force", quantity(run.contact_force.max(), "N")),
+        ("Largest force of one place", quantity(peak(run, "force").value, "N")),
+        ("Largest torque of one place", quantity(peak(run, "torque").value, "N m")),
         ("Contact force at the end", quantity(run.contact_force[-1], "N")),
         ("Largest penetration", quantity(run.penetration.max(), "m")),
         ("Penetration at the end", quantity(run.penetration[-1], "m")),
@@ -115,6 +122,43 @@ def figures(run: Recording, design: DesignPose | None) -> list[tuple[str, str]]:
         ("Time of one step (median)", quantity(1e-6 * run.microseconds_per_step, "s")),
         ("MuJoCo warnings", f"{sum(run.warnings.values())}"),
     ]
+
+
+_MOST_ROWS = 40  # of the sites of a frame; more are counted, not listed
+
+
+def _script_data(comparison: Comparison, made: list[Curve]) -> Markup:
+    """What the page's script reads: the numbers of the curves, and the sites of every frame."""
+    data = {
+        "curves": {curve.name: curve.data for curve in made},
+        "sites": {
+            run.contact: [_site_rows(run, frame) for frame in run.frames] for run in comparison.runs
+        },
+        "times": [round(frame.time, 6) for frame in comparison.volumetric.frames],
+    }
+    # Nothing in it may end the script element.
+    return Markup(json.dumps(data, separators=(",", ":")).replace("<", "\\u003c"))
+
+
+def _site_rows(run: Recording, frame: Frame) -> list[list[str]]:
+    forces = np.linalg.norm(frame.sites["force"], axis=1)
+    rows = []
+    for i in np.argsort(-forces)[:_MOST_ROWS]:
+        site = frame.sites[i]
+        along = abs(float(site["force"] @ site["normal"]))
+        rows.append(
+            [
+                f"{run.geoms[site['geom_a']]} with {run.geoms[site['geom_b']]}",
+                quantity(along, "N"),
+                quantity(float(np.sqrt(max(forces[i] ** 2 - along**2, 0.0))), "N"),
+                quantity(float(np.linalg.norm(site["torque"])), "N m"),
+                quantity(float(site["depth"]), "m"),
+                area(float(site["area"])) if site["area"] > 0.0 else "a point",
+            ]
+        )
+    if len(frame.sites) > _MOST_ROWS:
+        rows.append([f"and {len(frame.sites) - _MOST_ROWS} more", "", "", "", "", ""])
+    return rows
 
 
 def _settings(comparison: Comparison) -> list[tuple[str, str]]:

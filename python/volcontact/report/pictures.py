@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import imageio_ffmpeg
 import matplotlib
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
@@ -106,6 +107,30 @@ def write_frames(pairs: list[FramePair], folder: Path) -> list[Path]:
         side_by_side(pair).save(path)
         paths.append(path)
     return paths
+
+
+def write_movie(pairs: list[FramePair], path: Path) -> bool:
+    """Writes the frames as an MP4 film in real time; False where there are not two of them."""
+    if len(pairs) < 2:
+        path.unlink(missing_ok=True)
+        return False
+    sheets = [np.asarray(side_by_side(pair)) for pair in pairs]
+    # The codec wants even sizes.
+    height, width = (size - size % 2 for size in sheets[0].shape[:2])
+    rate = (len(pairs) - 1) / (pairs[-1].time - pairs[0].time)
+    film = imageio_ffmpeg.write_frames(
+        str(path),
+        (width, height),
+        fps=rate,
+        quality=8,
+        macro_block_size=1,
+        ffmpeg_log_level="error",
+    )
+    film.send(None)
+    for sheet in sheets:
+        film.send(np.ascontiguousarray(sheet[:height, :width]))
+    film.close()
+    return True
 
 
 def png(picture: np.ndarray, colors: int | None = None) -> bytes:

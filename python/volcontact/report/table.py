@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All recorded numbers of the runs as one Parquet file."""
+"""All recorded numbers of the runs, as Parquet and as CSV."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.csv as csv
 import pyarrow.parquet as pq
 
 from volcontact.recording import CHANNELS, Recording
@@ -27,13 +28,76 @@ _UNITS = {
 _POSE = (("x", "m"), ("y", "m"), ("z", "m"), ("qw", "1"), ("qx", "1"), ("qy", "1"), ("qz", "1"))
 
 
+_SITE_UNITS = {
+    "position": "m",
+    "normal": "1",
+    "force": "N",
+    "torque": "N m",
+    "area": "m^2",
+    "depth": "m",
+    "volume": "m^3",
+}
+
+
 def write_table(runs: tuple[Recording, ...], path: Path) -> None:
     """Writes one row per run and instant; the column `contact` tells the runs apart.
 
-    Every column carries its unit in the field metadata. `qpos` and `qvel` are list columns.
+    Every column carries its unit in the field metadata. `qpos` and `qvel` are list columns. Beside
+    it comes the same as CSV, with a column a component and units in the heads, and for both the
+    contact sites, as `sites.parquet` and `sites.csv`: one row per run, instant and site.
+
+    Args:
+        runs: whose bodies are the same.
+        path: of the Parquet file of the instants.
     """
-    tables = [_table(run) for run in runs]
-    pq.write_table(pa.concat_tables(tables), path, compression="zstd")
+    instants = pa.concat_tables([_table(run) for run in runs])
+    sites = pa.concat_tables([_site_table(run) for run in runs])
+    for table, file in ((instants, path), (sites, path.with_name("sites.parquet"))):
+        pq.write_table(table, file, compression="zstd")
+        csv.write_csv(_flat(table), file.with_suffix(".csv"))
+
+
+def _site_table(run: Recording) -> pa.Table:
+    sites, names = run.sites, np.array([*run.geoms, ""], dtype=object)
+    columns: dict[str, tuple[pa.Array, str]] = {
+        "contact": (pa.array([run.contact] * len(sites), pa.string()), "1"),
+        "time": (pa.array(run.time[sites["row"]]), "s"),
+        "geom_a": (pa.array(names[sites["geom_a"]], pa.string()), "1"),
+        "geom_b": (pa.array(names[sites["geom_b"]], pa.string()), "1"),
+    }
+    for name, unit in _SITE_UNITS.items():
+        values = sites[name]
+        if values.ndim == 1:
+            columns[name] = pa.array(np.ascontiguousarray(values)), unit
+        else:
+            for i, axis in enumerate("xyz"):
+                columns[f"{name}_{axis}"] = pa.array(np.ascontiguousarray(values[:, i])), unit
+    return _with_units(columns)
+
+
+def _with_units(columns: dict[str, tuple[pa.Array, str]]) -> pa.Table:
+    fields = [
+        pa.field(name, array.type, metadata={"unit": unit})
+        for name, (array, unit) in columns.items()
+    ]
+    return pa.table([array for array, _ in columns.values()], schema=pa.schema(fields))
+
+
+def _flat(table: pa.Table) -> pa.Table:
+    """A column a component, heads with units: what CSV can hold."""
+    arrays, names = [], []
+    for field, column in zip(table.schema, table.columns, strict=True):
+        unit = field.metadata[b"unit"].decode()
+        head = f" [{unit}]" if unit != "1" else ""
+        if pa.types.is_fixed_size_list(field.type):
+            rows = np.array(column.to_pylist()).reshape(len(column), field.type.list_size)
+            arrays += [pa.array(rows[:, i]) for i in range(rows.shape[1])]
+            names += [f"{field.name}_{i}{head}" for i in range(rows.shape[1])]
+        else:
+            text = pa.types.is_dictionary(field.type)
+            arrays.append(column.cast(pa.string()) if text else column)
+            names.append(field.name + head)
+    return pa.table(arrays, names=names)
 
 
 def _table(run: Recording) -> pa.Table:
