@@ -4,12 +4,9 @@
 from __future__ import annotations
 
 import ctypes
-import difflib
 import json
 import os
 import warnings
-import xml.etree.ElementTree as ElementTree
-from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple
 
@@ -17,6 +14,7 @@ import mujoco
 import numpy as np
 
 from volcontact._adaptor import CONTACT_DTYPE, SITE_DTYPE, RawEnergy, RawSurfaceSize, adaptor
+from volcontact.compiling import compile_scene
 from volcontact.surface import SiteSurface
 
 
@@ -64,7 +62,7 @@ def load(path_or_xml_text: str | os.PathLike[str]) -> mujoco.MjModel:
     if not isinstance(path_or_xml_text, (str, os.PathLike)):
         raise TypeError(f"load takes a path or MJCF text, got {type(path_or_xml_text).__name__}")
     library = adaptor()
-    model = _compile(os.fspath(path_or_xml_text))
+    model = compile_scene(os.fspath(path_or_xml_text))
     library.call("reserve", model._address)
     return model
 
@@ -347,56 +345,3 @@ class Contact:
             return
         self._reported = text
         warnings.warn(text, RuntimeWarning, stacklevel=4)
-
-
-def _compile(path_or_text: str) -> mujoco.MjModel:
-    is_text = path_or_text.lstrip().startswith("<")
-    if not is_text and not Path(path_or_text).is_file():
-        raise FileNotFoundError(f"no such scene: {path_or_text}")
-    try:
-        if is_text:
-            return mujoco.MjModel.from_xml_string(path_or_text)
-        if path_or_text.endswith(".mjb"):
-            return mujoco.MjModel.from_binary_path(path_or_text)
-        return mujoco.MjModel.from_xml_path(path_or_text)
-    except ValueError as error:
-        hint = _misspelt_reference(path_or_text, is_text=is_text)
-        if hint is None:
-            raise
-        raise ValueError(hint) from error
-
-
-def _misspelt_reference(path_or_text: str, *, is_text: bool) -> str | None:
-    """MuJoCo refuses a tuple that names what is not there; says which name was meant."""
-    try:
-        roots = _roots(path_or_text, is_text=is_text)
-    except (ElementTree.ParseError, OSError):
-        return None
-    bodies = [element for root in roots for element in root.iter()]
-    for kind in ("geom", "body"):
-        names = [e.get("name", "") for e in bodies if e.tag == kind and e.get("name")]
-        for element in bodies:
-            wanted = element.get("objname")
-            if element.tag != "tuple" or "volcontact/" not in element.get("name", ""):
-                continue
-            for member in element.iter("element"):
-                wanted = member.get("objname", "")
-                if member.get("objtype") != kind or wanted in names:
-                    continue
-                near = difflib.get_close_matches(wanted, names, n=1)
-                meant = f" (did you mean {near[0]!r}?)" if near else ""
-                return f"{element.get('name')}: there is no {kind} {wanted!r}{meant}"
-    return None
-
-
-def _roots(path_or_text: str, *, is_text: bool) -> list[ElementTree.Element]:
-    """The document and all it includes."""
-    if is_text:
-        return [ElementTree.fromstring(path_or_text)]
-    top = Path(path_or_text)
-    roots, waiting = [], [top]
-    while waiting:
-        root = ElementTree.parse(waiting.pop()).getroot()
-        roots.append(root)
-        waiting += [top.parent / include.get("file", "") for include in root.iter("include")]
-    return roots

@@ -54,8 +54,11 @@ def add_to(commands: Subparsers) -> None:
 
 def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     """Runs the command and returns the exit status."""
+    from volcontact.simulation import to_start
+
     model = volcontact.load(arguments.scene)
     data = mujoco.MjData(model)
+    to_start(model, data)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # they are part of the description
         with volcontact.attach(model) as contact:

@@ -130,12 +130,11 @@ def _of_metrics(metrics: volcontact.VolumeMetrics) -> dict[str, Any]:
 
 
 def _print_scene(scene: str, time: float | None, terminal: Terminal) -> None:
+    from volcontact.simulation import to_start
+
     model = volcontact.load(scene)
     data = mujoco.MjData(model)
-    if model.nkey:
-        start = mujoco.mj_name2id(model, int(mujoco.mjtObj.mjOBJ_KEY), "start")
-        if start >= 0:
-            mujoco.mj_resetDataKeyframe(model, data, start)
+    to_start(model, data)
     with volcontact.attach(model) as contact:
         steps = round((time or 0.0) / model.opt.timestep)
         with terminal.progress() as bars:

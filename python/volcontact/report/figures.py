@@ -3,9 +3,7 @@
 
 from __future__ import annotations
 
-import io
 import itertools
-import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,40 +18,31 @@ from matplotlib.ticker import MaxNLocator
 from volcontact.recording import CHANNELS, Recording
 from volcontact.report import palette
 from volcontact.report.comparison import Comparison, offset_from
+from volcontact.report.svg import INK, LINE, MUTED, inline, standing_alone
 
-_PAPER = '<rect width="100%" height="100%" fill="#fff"/>'
 _SIZE = (4.2, 2.8)  # inches: readable when shrunk to a phone
 _POINTS = 900  # per curve; more cannot be seen at this size
 _FORCE_FLOOR = 1.0  # [N], lowest value of the logarithmic axis
 _DEPTH_FLOOR = 1e-6  # [m]
 
-# Colours on white paper, and the CSS variables of the page that replace them there.
-_INK, _MUTED, _LINE = "#1b1f27", "#5b6472", "#dfe3e8"
-_VARIABLES = {
-    _INK: "var(--ink)",
-    _MUTED: "var(--muted)",
-    _LINE: "var(--line)",
-    palette.VOLUMETRIC: "var(--volumetric)",
-    palette.NATIVE: "var(--native)",
-}
 
 _STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",
     "font.family": "sans-serif",
     "font.size": 10.0,
-    "text.color": _INK,
-    "axes.labelcolor": _MUTED,
-    "axes.edgecolor": _LINE,
+    "text.color": INK,
+    "axes.labelcolor": MUTED,
+    "axes.edgecolor": LINE,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.grid": True,
     "axes.axisbelow": True,
-    "grid.color": _LINE,
+    "grid.color": LINE,
     "grid.linewidth": 0.6,
-    "xtick.color": _LINE,
-    "ytick.color": _LINE,
-    "xtick.labelcolor": _MUTED,
-    "ytick.labelcolor": _MUTED,
+    "xtick.color": LINE,
+    "ytick.color": LINE,
+    "xtick.labelcolor": MUTED,
+    "ytick.labelcolor": MUTED,
     "legend.frameon": False,
     "legend.fontsize": 9.0,
     "lines.linewidth": 1.4,
@@ -205,7 +194,7 @@ def thin(x: np.ndarray, y: np.ndarray, points: int = _POINTS) -> tuple[np.ndarra
 def _curve(plan: _Plan, comparison: Comparison) -> Curve:
     with matplotlib.rc_context({**_STYLE, "svg.hashsalt": plan.name}):
         figure, axes, series = _drawn(plan, comparison)
-        paper = _svg(figure)
+        paper = standing_alone(figure)
         figure.set_layout_engine("none")  # the places are found
         place = axes.get_position()  # after the layout, which drawing makes
         start, end = axes.get_xlim()
@@ -219,8 +208,8 @@ def _curve(plan: _Plan, comparison: Comparison) -> Curve:
                 for s in series
             ],
         }
-        inline = _inline(paper, plan.name)
-        return Curve(plan.name, plan.title, plan.caption, inline, paper, data, figure)
+        in_page = inline(paper, plan.name)
+        return Curve(plan.name, plan.title, plan.caption, in_page, paper, data, figure)
 
 
 def _drawn(plan: _Plan, comparison: Comparison) -> tuple[Figure, Axes, list[Series]]:
@@ -237,26 +226,6 @@ def _drawn(plan: _Plan, comparison: Comparison) -> tuple[Figure, Axes, list[Seri
 def _short(values: np.ndarray) -> list[float]:
     """Five digits, which is more than can be read off."""
     return [float(f"{value:.5g}") for value in values]
-
-
-def _svg(figure: Figure) -> str:
-    buffer = io.StringIO()
-    figure.savefig(buffer, format="svg", metadata={"Date": None})
-    text = re.sub(r"<metadata>.*?</metadata>", "", buffer.getvalue(), flags=re.DOTALL)
-    return re.sub(r"(<svg[^>]*>)", rf"\1{_PAPER}", text, count=1)
-
-
-def _inline(paper: str, name: str) -> str:
-    """For the page: its colours for ink, and ids that no other figure of it has."""
-    text = paper[paper.index("<svg") :].replace(_PAPER, "")
-    for color, variable in _VARIABLES.items():
-        text = text.replace(color, variable)
-    opening, rest = text.split(">", 1)
-    opening = re.sub(r' (width|height)="[^"]*"', "", opening)  # the page decides; viewBox stays
-    text = f"{opening}>{rest}"
-    text = re.sub(r'\bid="', f'id="{name}-', text)
-    text = re.sub(r"url\(#", f"url(#{name}-", text)
-    return re.sub(r'href="#', f'href="#{name}-', text)
 
 
 def _both(

@@ -13,7 +13,7 @@ import numpy as np
 
 from volcontact.recording import ContactKind
 from volcontact.scene import Contact, attach, load
-from volcontact.simulation import native_sites, recorded_sites
+from volcontact.simulation import native_sites, recorded_sites, to_start
 from volcontact.view.drawing import SiteDrawing, draw_sites
 
 _SHARE = 0.7  # of real time that may go into stepping
@@ -70,12 +70,8 @@ class Stage:
     def reset(self) -> None:
         """Goes back to the start: the keyframe `start` where the scene has one."""
         with self.lock:
-            kind = int(mujoco.mjtObj.mjOBJ_KEY)
-            start = mujoco.mj_name2id(self.model, kind, "start") if self.model.nkey else -1
-            if start >= 0:
-                mujoco.mj_resetDataKeyframe(self.model, self.data, start)
-            else:
-                mujoco.mj_resetData(self.model, self.data)
+            mujoco.mj_resetData(self.model, self.data)
+            to_start(self.model, self.data)
             self._behind = 0.0
             mujoco.mj_forward(self.model, self.data)
 
