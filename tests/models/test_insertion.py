@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 import math
+import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
@@ -96,6 +98,18 @@ def test_arm_has_the_masses_of_its_source() -> None:
     assert np.linalg.norm(elbow) == pytest.approx(math.hypot(7.11, 0.475))
     assert np.linalg.norm(data.body("arm_6").xpos - data.body("arm_5").xpos) == pytest.approx(7.11)
     assert data.site("grasp").xpos == pytest.approx(arm_path.GRASP, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "folder", ["acu_insert", "battery_insert_0g", "canadarm_berth", "rpcm_rails"]
+)
+def test_check_finds_nothing_wrong(folder: str) -> None:
+    """Looking at where the scene starts, not at the seated pose."""
+    command = [sys.executable, "-m", "volcontact.cli", "check", "--json"]
+    done = subprocess.run(
+        [*command, MODELS / folder / "scene.xml"], check=True, capture_output=True, text=True
+    )
+    assert json.loads(done.stdout)["warnings"] == []
 
 
 def native_end(folder: str, duration: float) -> tuple[float, float]:
