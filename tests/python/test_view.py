@@ -159,7 +159,8 @@ def page(stage):
     with Page(stage, port=8123) as shown, playwright.sync_playwright() as programs:
         options = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
         browser = programs.chromium.launch(executable_path=shutil.which("chromium"), args=options)
-        page = browser.new_page(viewport={"width": 900, "height": 600})
+        page = browser.new_page(viewport={"width": 720, "height": 420})
+        page.set_default_timeout(90e3)  # all of it is drawn by the processor, which may be busy
         faults = []
         page.on("pageerror", lambda error: faults.append(str(error)))
         page.on(
@@ -181,7 +182,7 @@ def shot(page, shown, name, wanted, seconds=20.0):
     for _ in range(int(seconds)):
         shown.run(seconds=1.0)
         page.screenshot(path=path)
-        picture = np.asarray(Image.open(path).convert("RGB"))[:, :560]  # beside the panel
+        picture = np.asarray(Image.open(path).convert("RGB"))[:, :380]  # beside the panel
         if like(picture, wanted) > 300:
             break
     return picture
@@ -192,7 +193,7 @@ def test_browser_shows_patches_and_forces_and_obeys(page, stage, tmp_path, monke
     monkeypatch.chdir(tmp_path)
     shown, page, faults = page
     blue = like(shot(page, shown, "volumetric.png", BLUE), BLUE)
-    assert blue > 1000
+    assert blue > 500
     assert page.get_by_text(re.compile(r"9\.8\d* N, 4[89]\.\d .m deep")).count() == 1
     before = stage.data.time
     page.get_by_text("One step").click()

@@ -53,6 +53,7 @@ class Page:
         self._bodies = list(self._add_geoms())
         self._labels: list[Any] = []
         self._things: dict[str, Any] = {}
+        self._shown: tuple[object, ...] = ()
         self._look()
         self._add_controls()
         self._move_bodies()
@@ -65,9 +66,14 @@ class Page:
             now = time.monotonic()
             self._stage.advance(now - last)
             last = now
+            seen = self._seen()
+            if seen == self._shown:
+                time.sleep(_PERIOD)
+                continue
             self._move_bodies()
             if now - drawn > _OVERLAY_PERIOD:
                 self._draw()
+                self._shown = seen
                 # Where drawing takes long, half of the time is left for stepping.
                 drawn = time.monotonic() + (time.monotonic() - now) - _OVERLAY_PERIOD / 2
             time.sleep(max(0.0, _PERIOD - (time.monotonic() - now)))
@@ -87,6 +93,14 @@ class Page:
         trace: TracebackType | None,
     ) -> None:
         self.close()
+
+    def _seen(self) -> tuple[object, ...]:
+        """All that the page depends on: while it stays, nothing is sent."""
+        stage, wanted = self._stage, self._wanted
+        with stage.lock:
+            state = (stage.contact, stage.paused, stage.data.time, stage.data.qpos.tobytes())
+        boxes = (wanted.patches, wanted.bodies, wanted.thick, wanted.forces, wanted.numbers)
+        return (*state, *(box.value for box in boxes))
 
     # ---- Bodies ----------------------------------------------------------------------------------
 
