@@ -33,7 +33,14 @@ myst_heading_anchors = 4
 
 # The navigation is added here: the pages are Markdown that reads well without Sphinx too.
 SECTIONS = {
-    "Start": ["README", "docs/start", "docs/choosing", "docs/python", "python/examples/README"],
+    "Start": [
+        "README",
+        "docs/start",
+        "docs/choosing",
+        "docs/python",
+        "python/examples/README",
+        "docs/troubleshooting",
+    ],
     "Scenes": [
         "docs/writing_a_scene",
         "docs/components",
