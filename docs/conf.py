@@ -40,6 +40,7 @@ SECTIONS = {
         "docs/python",
         "python/examples/README",
         "docs/troubleshooting",
+        "docs/faq",
     ],
     "Scenes": [
         "docs/writing_a_scene",
