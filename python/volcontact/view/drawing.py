@@ -16,6 +16,7 @@ _THINNEST = 0.08  # what a body is stretched to, of the size of its patch
 _FULL = 0.3  # length of the arrow of the reference force, in scene extents
 _LONGEST = 0.8  # arrow, in scene extents
 _SHORTEST = 0.01
+_LIFT = 0.002  # of patches into the moving body, in scene extents: else the other one hides them
 
 Triangles = tuple[np.ndarray, np.ndarray]
 
@@ -30,7 +31,8 @@ class SiteDrawing:
         normal_arrow: from the position to the tip of the arrow of the normal force on the moving
             body [m], shape (3,); its length grows with the square root of the force.
         friction_arrow: the same of the force across the normal, on the same scale.
-        patch: points [m] and triangles of the middle of the overlap, or None.
+        patch: points [m] and triangles of the middle of the overlap, a little lifted into the
+            moving body, or None.
         body: points [m] and triangles of the overlap, made thicker by `stretch`, or None.
         stretch: how many times thicker the body is than it is.
         label: its numbers.
@@ -92,11 +94,15 @@ def _drawing(
         normal=normal,
         normal_arrow=_arrow(along, reference, extent),
         friction_arrow=_arrow(force - along, reference, extent),
-        patch=None if shape is None else shape.patch,
+        patch=None if shape is None else _lifted(shape.patch, _LIFT * extent * normal),
         body=None if shape is None else shape.body(stretch),
         stretch=stretch,
         label=_label(site, float(np.linalg.norm(along)), float(np.linalg.norm(force - along))),
     )
+
+
+def _lifted(triangles: Triangles, shift: np.ndarray) -> Triangles:
+    return triangles[0] + shift, triangles[1]
 
 
 def _arrow(force: np.ndarray, reference: float, extent: float) -> np.ndarray:
