@@ -45,7 +45,6 @@ struct Cell {
   /// Signed distances of a sampled field, by owner: at the centre and the eight corners.
   std::array<std::array<double, 9>, 2> samples;
 
-  bool divided = false;    ///< has children instead
   bool empty = false;      ///< certainly no overlap in it
   bool rough = false;      ///< only the bounds are worked out, and `sums.volume` between them
   std::uint8_t split = 7;  ///< bits of the axes to halve next

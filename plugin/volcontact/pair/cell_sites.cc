@@ -10,24 +10,27 @@ namespace volcontact {
 namespace {
 
 constexpr double kSpeck = 1e-3;  // of the volume
+constexpr int kLeavesPerTask = 16;
 
 // The leaves and their regions: disjoint sets.
 class Regions {
  public:
-  Regions(std::span<const Cell> cells, const std::vector<int>& leaves, SiteScratch& scratch)
-      : cells_(cells), leaves_(leaves), s_(scratch), count_(static_cast<int>(leaves.size())) {
+  Regions(Crew& crew, std::span<const Cell> cells, const std::vector<int>& leaves,
+          SiteScratch& scratch)
+      : s_(scratch), count_(static_cast<int>(leaves.size())) {
     make_sets(s_.parent, leaves.size());
-    s_.boxes.resize(leaves.size());
-    for (int i = 0; i < count_; ++i) {
-      s_.boxes[i].min = cell(i).center + cell(i).content_low;
-      s_.boxes[i].max = cell(i).center + cell(i).content_high;
-    }
+    s_.leaves.resize(leaves.size());
+    crew.for_each(count_, kLeavesPerTask, [&](int i) {
+      const Cell& cell = cells[leaves[i]];
+      s_.leaves[i] = {{cell.center + cell.content_low, cell.center + cell.content_high},
+                      cell.sums.volume,
+                      cell.low > 0.0};
+    });
   }
 
-  const Cell& cell(int i) const { return cells_[leaves_[i]]; }
-  // Box of the volume in the leaf.
-  const Vec3& low(int i) const { return s_.boxes[i].min; }
-  const Vec3& high(int i) const { return s_.boxes[i].max; }
+  double volume(int i) const { return s_.leaves[i].volume; }
+  const Vec3& low(int i) const { return s_.leaves[i].box.min; }
+  const Vec3& high(int i) const { return s_.leaves[i].box.max; }
   int root(int i) { return root_of(s_.parent, i); }
   void join(int i, int j) { join_sets(s_.parent, i, j); }
 
@@ -37,8 +40,6 @@ class Regions {
  private:
   int sweep_axis() const;
 
-  std::span<const Cell> cells_;
-  const std::vector<int>& leaves_;
   SiteScratch& s_;
   const int count_;
 };
@@ -61,7 +62,7 @@ void Regions::join_neighbours(double slack) {
   const auto start = [&](int i) { return low(i)[axis]; };
   s_.order.clear();
   for (int i = 0; i < count_; ++i) {
-    if (cell(i).sums.volume > 0.0) s_.order.push_back(i);
+    if (volume(i) > 0.0) s_.order.push_back(i);
   }
   std::sort(s_.order.begin(), s_.order.end(),
             [&](int i, int j) { return start(i) != start(j) ? start(i) < start(j) : i < j; });
@@ -80,10 +81,10 @@ void Regions::join_neighbours(double slack) {
 // A speck of estimated volume beside the overlap would come and go with the pose.
 void Regions::join_specks() {
   double total = 0.0;
-  for (int i = 0; i < count_; ++i) total += cell(i).sums.volume;
-  s_.weight.assign(leaves_.size(), 0.0);
+  for (int i = 0; i < count_; ++i) total += volume(i);
+  s_.weight.assign(s_.leaves.size(), 0.0);
   for (int i = 0; i < count_; ++i) {
-    s_.weight[root(i)] += cell(i).sums.volume + (cell(i).low > 0.0 ? total : 0.0);
+    s_.weight[root(i)] += volume(i) + (s_.leaves[i].certain ? total : 0.0);
   }
   const auto stands = [&](int i) { return s_.weight[root(i)] > kSpeck * total; };
   int last = 0;
@@ -95,11 +96,12 @@ void Regions::join_specks() {
       continue;
     }
     int nearest = last;  // good enough where there is no volume at all
-    if (cell(i).sums.volume > 0.0) {
+    if (volume(i) > 0.0) {
+      const Vec3 middle = s_.leaves[i].box.center();
       double least = kInfinity;
       for (int j = 0; j < count_; ++j) {
-        const double distance = (cell(j).center - cell(i).center).squaredNorm();
-        if (!(distance < least) || !(cell(j).sums.volume > 0.0) || !stands(j)) continue;
+        const double distance = (s_.leaves[j].box.center() - middle).squaredNorm();
+        if (!(distance < least) || !(volume(j) > 0.0) || !stands(j)) continue;
         least = distance;
         nearest = j;
       }
@@ -112,11 +114,11 @@ void Regions::join_specks() {
 
 }  // namespace
 
-void sort_by_site(std::span<const Cell> cells, double slack, std::vector<int>& leaves,
+void sort_by_site(Crew& crew, std::span<const Cell> cells, double slack, std::vector<int>& leaves,
                   std::vector<int>& ends, SiteScratch& scratch) {
   ends.clear();
   if (leaves.empty()) return;
-  Regions regions(cells, leaves, scratch);
+  Regions regions(crew, cells, leaves, scratch);
   regions.join_neighbours(slack);
   regions.join_specks();
   const int count = static_cast<int>(leaves.size());

@@ -4,13 +4,20 @@
 #include <span>
 #include <vector>
 
+#include "volcontact/base/crew.h"
 #include "volcontact/pair/cell.h"
 
 namespace volcontact {
 
 /// Memory of sort_by_site, reused from call to call.
 struct SiteScratch {
-  std::vector<Aabb> boxes;  ///< of the volume in the leaves
+  /// What is asked of a leaf again and again.
+  struct Leaf {
+    Aabb box;  ///< of the volume in it
+    double volume;
+    bool certain;  ///< that there is any
+  };
+  std::vector<Leaf> leaves;
   std::vector<int> parent;  ///< union-find over leaves
   std::vector<int> order;
   std::vector<int> sorted;
@@ -21,7 +28,7 @@ struct SiteScratch {
 /// writes to `ends` where each region ends. Leaves whose contents share a part of a side, up to
 /// `slack` [m], belong together when both hold volume. A speck of which no volume is certain is no
 /// site of its own and goes with the nearest region that is. docs/theory.md, "Sites".
-void sort_by_site(std::span<const Cell> cells, double slack, std::vector<int>& leaves,
+void sort_by_site(Crew& crew, std::span<const Cell> cells, double slack, std::vector<int>& leaves,
                   std::vector<int>& ends, SiteScratch& scratch);
 
 }  // namespace volcontact

@@ -21,6 +21,10 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // sides nor the halvings coincide with faces of the solids.
 constexpr double kMarginLow = 0.0137, kMarginHigh = 0.0091;
 
+bool is_sampled(const SolidView& view, const PieceList& list) {
+  return list.size() == 0 && !view.curvature_bound;
+}
+
 }  // namespace
 
 void CellTree::plant() {
@@ -107,14 +111,13 @@ void CellTree::add_root(int first_face, const CutPolytope& hull) {
 
 Cell& CellTree::new_cell() {
   if (s_.cell_count == static_cast<int>(s_.cells.size())) s_.cells.resize(2 * s_.cells.size() + 64);
-  Cell& cell = s_.cells[s_.cell_count++];
-  cell.divided = false;
-  return cell;
+  return s_.cells[s_.cell_count++];
 }
 
 // Asks a field, all cells at once, for the signed distances at the centres, and at the corners of
 // those it may pass through.
-void CellTree::sample(int owner, int first, int last) {
+void CellTree::sample(int owner, int first) {
+  const int last = s_.cell_count;
   const SolidView& view = task_.solid(owner);
   const Pose& X_SW = task_.X_SW(owner);
   const auto ask = [&] {
@@ -153,38 +156,68 @@ void CellTree::sample(int owner, int first, int last) {
   }
 }
 
-void CellTree::sample_fields(int first, int last) {
-  const auto sampled = [](const SolidView& view, const PieceList& list) {
-    return list.size() == 0 && !view.curvature_bound;
-  };
-  if (first == last) return;
-  if (sampled(task_.a, s_.pieces_a)) sample(0, first, last);
-  if (sampled(task_.b, s_.pieces_b)) sample(1, first, last);
+bool CellTree::samples_fields() const {
+  return is_sampled(task_.a, s_.pieces_a) || is_sampled(task_.b, s_.pieces_b);
 }
 
-void CellTree::evaluate(int first, int last, double rough_above) {
-  sample_fields(first, last);
-  const int count = last - first;
+void CellTree::sample_fields(int first) {
+  if (is_sampled(task_.a, s_.pieces_a)) sample(0, first);
+  if (is_sampled(task_.b, s_.pieces_b)) sample(1, first);
+}
+
+// A new cell becomes a part of its parent.
+void CellTree::bear(int index, const OctreeScratch::Birth& birth) {
+  const Cell& parent = s_.cells[birth.parent];
+  Cell& cell = s_.cells[index];
+  cell.center = parent.center;
+  cell.half = parent.half;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(parent.split >> axis & 1)) continue;
+    cell.half[axis] *= 0.5;
+    cell.center[axis] += birth.child >> axis & 1 ? cell.half[axis] : -cell.half[axis];
+  }
+  cell.first_face = parent.first_face;
+  cell.face_count = parent.face_count;
+  cell.listed = parent.listed;
+  cell.list = parent.list;
+}
+
+// All cells from `first` on, which are those of `births` but for roots.
+void CellTree::evaluate(int first, double rough_above) {
+  const int count = s_.cell_count - first;
+  const auto born = static_cast<int>(s_.births.size());
+  s_.fresh.resize(count);
+  const bool sampled = count > 0 && samples_fields();
+  if (sampled) {  // of all cells at once
+    for (int i = 0; i < born; ++i) bear(first + i, s_.births[i]);
+    sample_fields(first);
+  }
   task_.crew.for_each(count, kEvaluateGrain, [&](int i) {
-    s_.cutters[task_.thread()].evaluate(s_.faces, s_.cells[first + i], rough_above);
+    if (!sampled && i < born) bear(first + i, s_.births[i]);
+    Cell& cell = s_.cells[first + i];
+    s_.cutters[task_.thread()].evaluate(s_.faces, cell, rough_above);
+    s_.fresh[i] = {cell.empty ? -1 : first + i, cell.split, cell.sums.volume, cell.low, cell.high};
   });
 }
 
 // New leaves: those without doubt are settled, the others pending.
-void CellTree::take_up(int first, int last) {
-  for (int i = first; i < last; ++i) {
-    const Cell& cell = s_.cells[i];
-    if (cell.empty) continue;
-    if (cell.high > cell.low) {
-      s_.next_pending.push_back({i, cell.sums.volume, cell.low, cell.high});
+void CellTree::take_up() {
+  s_.is_leaf.resize(std::max(s_.is_leaf.size(), s_.cells.size()));
+  int index = s_.cell_count - static_cast<int>(s_.fresh.size());
+  for (const OctreeScratch::Leaf& leaf : s_.fresh) {
+    s_.is_leaf[index++] = leaf.cell >= 0;
+    if (leaf.cell < 0) continue;
+    if (leaf.high > leaf.low) {
+      s_.next_pending.push_back(leaf);
     } else {
-      settled_ += cell.sums.volume;
+      settled_ += leaf.volume;
     }
   }
+  s_.fresh.clear();
   s_.pending = s_.next_pending;  // no swap: that would make either one grow again later
   s_.next_pending.clear();
   low_ = volume_ = high_ = settled_;
-  for (const OctreeScratch::Pending& leaf : s_.pending) {
+  for (const OctreeScratch::Leaf& leaf : s_.pending) {
     low_ += leaf.low;
     volume_ += leaf.volume;
     high_ += leaf.high;
@@ -211,27 +244,6 @@ double CellTree::threshold() const {
   return std::bit_cast<double>((top - bin) << kShift);
 }
 
-void CellTree::divide(int index) {
-  s_.cells[index].divided = true;
-  const std::uint8_t split = s_.cells[index].split;
-  for (int child = 0; child < 8; ++child) {
-    if (child & ~split) continue;
-    Cell& cell = new_cell();  // may move the parent
-    const Cell& parent = s_.cells[index];
-    cell.center = parent.center;
-    cell.half = parent.half;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!(split >> axis & 1)) continue;
-      cell.half[axis] *= 0.5;
-      cell.center[axis] += child >> axis & 1 ? cell.half[axis] : -cell.half[axis];
-    }
-    cell.first_face = parent.first_face;
-    cell.face_count = parent.face_count;
-    cell.listed = parent.listed;
-    cell.list = parent.list;
-  }
-}
-
 bool CellTree::precise() const {
   return std::max(high_ - volume_, volume_ - low_) <=
          std::max(task_.tolerance * volume_, task_.rounding);
@@ -242,7 +254,7 @@ bool CellTree::precise() const {
 void CellTree::smooth() {
   const int count = static_cast<int>(s_.pending.size());
   task_.crew.for_each(count, kEvaluateGrain, [&](int i) {
-    OctreeScratch::Pending& leaf = s_.pending[i];
+    OctreeScratch::Leaf& leaf = s_.pending[i];
     Cell& cell = s_.cells[leaf.cell];
     if (!cell.rough) return;
     s_.cutters[task_.thread()].evaluate(s_.faces, cell);
@@ -250,7 +262,7 @@ void CellTree::smooth() {
   });
   s_.next_pending = s_.pending;
   s_.pending.clear();
-  take_up(0, 0);
+  take_up();
 }
 
 // Divides the leaves with much doubt. False when the budget of cells does not allow it.
@@ -259,18 +271,24 @@ bool CellTree::divide_worst() {
   const int first = s_.cell_count;
   int children = 0;
   for (const auto& leaf : s_.pending) {
-    if (leaf.high - leaf.low >= least) children += 1 << std::popcount(s_.cells[leaf.cell].split);
+    if (leaf.high - leaf.low >= least) children += 1 << std::popcount(leaf.split);
   }
   if (first + children > task_.most_cells) return false;
+  s_.births.clear();
   for (const auto& leaf : s_.pending) {
-    if (leaf.high - leaf.low >= least) {
-      divide(leaf.cell);
-    } else {
+    if (!(leaf.high - leaf.low >= least)) {
       s_.next_pending.push_back(leaf);
+      continue;
+    }
+    s_.is_leaf[leaf.cell] = false;
+    for (std::uint8_t child = 0; child < 8; ++child) {
+      if (child & ~leaf.split) continue;
+      new_cell();
+      s_.births.push_back({leaf.cell, child});
     }
   }
-  evaluate(first, s_.cell_count, kRoughShare * least);
-  take_up(first, s_.cell_count);
+  evaluate(first, kRoughShare * least);
+  take_up();
   return true;
 }
 
@@ -296,14 +314,15 @@ bool CellTree::grow() {
     plant();
     s_.pending.clear();
     s_.next_pending.clear();
-    evaluate(0, s_.cell_count, 0.0);
-    take_up(0, s_.cell_count);
+    s_.births.clear();
+    evaluate(0, 0.0);
+    take_up();
     planted_ = true;
   }
   if (!refine()) return false;
   s_.leaves.clear();
   for (int i = 0; i < s_.cell_count; ++i) {
-    if (!s_.cells[i].divided && !s_.cells[i].empty) s_.leaves.push_back(i);
+    if (s_.is_leaf[i]) s_.leaves.push_back(i);
   }
   return true;
 }

@@ -28,17 +28,18 @@ class CellTree {
   bool cut_by_planes(int first_face);
   void add_root(int first_face, const CutPolytope& hull);
   Cell& new_cell();
-  void sample_fields(int first, int last);
-  void sample(int owner, int first, int last);
-  void evaluate(int first, int last, double rough_above);
-  void take_up(int first, int last);
+  bool samples_fields() const;
+  void sample_fields(int first);
+  void sample(int owner, int first);
+  void bear(int index, const OctreeScratch::Birth& birth);
+  void evaluate(int first, double rough_above);
+  void take_up();
   bool precise() const;
   void smooth();
   bool divide_worst();
   bool wants_crew() const;
   bool refine();
   double threshold() const;
-  void divide(int index);
 
   OctreeTask& task_;
   OctreeScratch& s_;

@@ -97,8 +97,8 @@ void measure(const OctreeTask& task, OctreeScratch& s, const CellTree& tree, Int
   if (task.a.convex && task.b.convex) {  // the overlap is convex too
     s.site_ends.assign(1, static_cast<int>(s.leaves.size()));
   } else {
-    sort_by_site({s.cells.data(), static_cast<std::size_t>(s.cell_count)}, 1e-12 * task.scale,
-                 s.leaves, s.site_ends, s.sites);
+    sort_by_site(task.crew, {s.cells.data(), static_cast<std::size_t>(s.cell_count)},
+                 1e-12 * task.scale, s.leaves, s.site_ends, s.sites);
   }
   LeafRange leaves;
   leaves.all = s.site_ends.size() == 1;

@@ -9,7 +9,7 @@
 namespace volcontact {
 namespace {
 
-constexpr int kLeavesPerTask = 4;
+constexpr int kLeavesPerTask = 2;     // few: threads that wait for the last one do nothing
 constexpr double kColumnShare = 2.0;  // of the tolerance, for the volume that columns add up to
 constexpr double kColumnTolerance = 1e-4;  // ... which is not asked to be finer than this
 constexpr double kPatches = 4.0;  // over the tolerance: to so many leaves are divided for columns

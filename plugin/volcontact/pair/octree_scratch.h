@@ -14,10 +14,17 @@ namespace volcontact {
 
 /// Memory of the octree, reused from call to call; no value depends on what it holds.
 struct OctreeScratch {
-  /// A leaf that still has a doubt about its volume.
-  struct Pending {
+  /// A leaf, as far as the division goes by it: cells themselves are large, and half of them lie in
+  /// the cache of another core. No leaf where `cell` is -1.
+  struct Leaf {
     int cell;
+    std::uint8_t split;
     double volume, low, high;
+  };
+  /// Where a new cell comes from.
+  struct Birth {
+    int parent;
+    std::uint8_t child;  ///< which half of each axis, by bits
   };
   /// Sums over cells, about the origin of W.
   struct Totals {
@@ -49,8 +56,11 @@ struct OctreeScratch {
   std::vector<CellFace> faces;
   std::vector<Cell> cells;  ///< all cells ever made, in order; grown, never shrunk
   int cell_count = 0;
-  std::vector<Pending> pending, next_pending;
-  std::vector<int> leaves;  ///< by site
+  std::vector<char> is_leaf;                ///< by cell: not divided, and perhaps not empty
+  std::vector<Birth> births;                ///< of the cells of this round
+  std::vector<Leaf> fresh;                  ///< what they came to
+  std::vector<Leaf> pending, next_pending;  ///< leaves with a doubt about their volume
+  std::vector<int> leaves;                  ///< by site
   std::vector<int> site_ends;
   SiteScratch sites;
   std::vector<int> sampled;  ///< cells that a field passes through, perhaps

@@ -29,7 +29,8 @@ Sorted sorted(const std::vector<Cell>& cells) {
   SiteScratch scratch;
   s.leaves.resize(cells.size());
   std::iota(s.leaves.begin(), s.leaves.end(), 0);
-  sort_by_site(cells, 1e-12, s.leaves, s.ends, scratch);
+  Crew alone;
+  sort_by_site(alone, cells, 1e-12, s.leaves, s.ends, scratch);
   return s;
 }
 
