@@ -9,8 +9,8 @@
 namespace volcontact {
 namespace {
 
-constexpr double kMargin = 0.02;             // of the box around what the window leaves
-constexpr double kTargets[] = {1e-4, 1e-8};  // of a flux, relative
+constexpr double kMargin = 0.02;                   // of the box around what the window leaves
+constexpr double kTargets[] = {1e-4, 1e-6, 1e-8};  // of a flux, relative
 constexpr double kGood = 1e-4;       // error of V at which the first target will do, relative
 constexpr double kWorst = 1e-3;      // error of V with which an answer is one, relative
 constexpr double kSamePlace = 1e-6;  // of the box: two ends in one place
@@ -71,23 +71,28 @@ class ShellRun {
       s_.families.push_back(family);
     }
     if (s_.patches.size() < s_.families.size()) s_.patches.resize(s_.families.size());
-    for (ShellPatch& patch : s_.patches) patch.hints.clear();
+    for (ShellPatch& patch : s_.patches) {
+      patch.hints.clear();
+      patch.swept = false;
+    }
     return !s_.families.empty();
   }
 
   bool sweep(double target) {
+    for (ShellPatch& patch : s_.patches) patch.stale = true;
     for (int round = 0; round < kRounds; ++round) {
-      s_.surface.strips.clear();
-      s_.surface.places.clear();
-      s_.surface.tips.clear();
+      s_.surface.clear();
       const auto count = static_cast<int>(s_.family_of.size());
       for (int f = 0; f < count; ++f) {
         const int k = s_.family_of[f];
         if (k < 0) continue;
-        if (!sweep_face(s_.solids, f, s_.families[k], target, s_.patch, s_.patches[k],
-                        s_.surface)) {
-          return false;
+        ShellPatch& patch = s_.patches[k];
+        if (patch.stale) {
+          if (!sweep_face(s_.solids, f, s_.families[k], target, s_.patch, patch)) return false;
+          patch.stale = false;
         }
+        patch.base = static_cast<int>(s_.surface.strips.size());
+        s_.surface.append(patch.surface);
       }
       const auto strips = static_cast<int>(s_.surface.strips.size());
       for (int i = 0; i < strips; ++i) s_.surface.strips[i].site = i;
@@ -114,8 +119,10 @@ class ShellRun {
     for (int f = 0; f < count; ++f) {
       if (s_.family_of[f] < 0) continue;
       join_stretches(f);
-      for (const ShellStretch& stretch : s_.patches[s_.family_of[f]].stretches) {
-        for (int i = stretch.first; i < stretch.first + stretch.count; ++i) {
+      const ShellPatch& patch = s_.patches[s_.family_of[f]];
+      for (const ShellStretch& stretch : patch.stretches) {
+        const int first = patch.base + stretch.first;
+        for (int i = first; i < first + stretch.count; ++i) {
           const ShellStrip& strip = s_.surface.strips[i];
           more |= join_across(i, strip.low, strip.at_low);
           more |= join_across(i, strip.high, strip.at_high);
@@ -130,6 +137,7 @@ class ShellRun {
     const int k = s_.family_of[f];
     const ShellFamily& family = s_.families[k];
     const std::vector<ShellStretch>& all = s_.patches[k].stretches;
+    const int base = s_.patches[k].base;
     const double beside = 1e-9 * (family.high() - family.low());
     const auto join_two = [&](const ShellStretch& a, const ShellStretch& b) {
       if (a.count == 0 || b.count == 0) return;
@@ -138,7 +146,7 @@ class ShellRun {
       if (spans_.count != a.count || other_.count != b.count) return;
       for (int i = 0; i < spans_.count; ++i) {
         for (int j = 0; j < other_.count; ++j) {
-          if (meet(spans_.span[i], other_.span[j])) join(a.first + i, b.first + j);
+          if (meet(spans_.span[i], other_.span[j])) join(base + a.first + i, base + b.first + j);
         }
       }
     };
@@ -151,12 +159,12 @@ class ShellRun {
       find_spans(s_.solids, family.curve(0.5 * (stretch.low + stretch.high)), f, s_.patch.curve,
                  spans_);
       if (spans_.count == stretch.count && spans_.is_rest()) {
-        join(stretch.first, stretch.first + stretch.count - 1);
+        join(base + stretch.first, base + stretch.first + stretch.count - 1);
       }
       for (int i = 0; i + 1 < std::min(spans_.count, stretch.count); ++i) {
         const double gap = spans_.span[i + 1].low.t - spans_.span[i].high.t;
         if (gap <= 1e-9 * (1.0 + std::abs(spans_.span[i].high.t))) {
-          join(stretch.first + i, stretch.first + i + 1);
+          join(base + stretch.first + i, base + stretch.first + i + 1);
         }
       }
     }
@@ -197,13 +205,15 @@ class ShellRun {
       for (const ShellStretch& stretch : s_.patches[k].stretches) {
         if (place < stretch.low || place > stretch.high) continue;
         if (stretch.count == spans_.count) {
-          join(strip, stretch.first + span);
+          join(strip, s_.patches[k].base + stretch.first + span);
           joined = true;
           return false;
         }
         std::vector<double>& hints = s_.patches[k].hints;
         if (std::find(hints.begin(), hints.end(), place) != hints.end()) return false;
         hints.push_back(place);
+        s_.patches[k].stale = true;
+        s_.patches[k].swept = false;
         return true;
       }
     }

@@ -33,11 +33,10 @@ class SpanFinder {
     out_.count = 0;
     out_.overflow = false;
     s_.toggles.clear();
-    inner_ = outer_ = solids_.within;
+    inner_ = outer_ = 0;
     const auto parts = static_cast<int>(solids_.parts.size());
     for (int p = 0; p < parts; ++p) {
       const ShellPart& part = solids_.parts[p];
-      if (part.first == part.last) continue;
       part_ = p;
       on_ = 0;
       for (int f = part.first; f < part.last; ++f) {

@@ -26,7 +26,7 @@ constexpr double kLineNode = 0.28867513459481288;  // of the rule with two nodes
 class FaceSweep {
  public:
   FaceSweep(const ShellSolids& solids, int face, const ShellFamily& family, double target,
-            ShellPatchScratch& s, ShellPatch& patch, ShellSurface& surface)
+            ShellPatchScratch& s, ShellPatch& patch)
       : solids_(solids),
         face_(face),
         family_(family),
@@ -34,9 +34,31 @@ class FaceSweep {
         range_(family.high() - family.low()),
         s_(s),
         patch_(patch),
-        surface_(surface) {}
+        surface_(patch.surface) {}
 
   bool run() {
+    if (patch_.swept && sweep_again()) return true;
+    patch_.swept = sweep();
+    if (patch_.swept) patch_.events = s_.events;
+    return patch_.swept;
+  }
+
+ private:
+  using Sample = ShellPatchScratch::Sample;
+
+  // Between events that are known from a sweep for another target.
+  bool sweep_again() {
+    s_.samples.clear();
+    s_.events = patch_.events;
+    patch_.stretches.clear();
+    surface_.clear();
+    if (integrate()) return true;
+    again_ = failed_ = false;
+    curves_ = 0;
+    return false;
+  }
+
+  bool sweep() {
     s_.samples.clear();
     for (int i = 0; i < kPlaces; ++i) {
       look(family_.low() + range_ * (i + kOffset) / kPlaces);
@@ -50,22 +72,15 @@ class FaceSweep {
     }
     for (const double u : patch_.hints) look(u);
     for (round_ = 0; round_ < kMostRounds; ++round_) {
-      const std::size_t strips = surface_.strips.size(), places = surface_.places.size(),
-                        tips = surface_.tips.size();
       patch_.stretches.clear();
+      surface_.clear();
       again_ = false;
       if (!find_events()) return false;
       if (integrate()) return true;
       if (failed_) return false;
-      surface_.strips.resize(strips);
-      surface_.places.resize(places);
-      surface_.tips.resize(tips);
     }
     return false;
   }
-
- private:
-  using Sample = ShellPatchScratch::Sample;
 
   ShellSpans spans_at(double u) {
     ShellSpans spans;
@@ -363,9 +378,24 @@ class FaceSweep {
 
 }  // namespace
 
+void ShellSurface::clear() {
+  strips.clear();
+  places.clear();
+  tips.clear();
+}
+
+void ShellSurface::append(const ShellSurface& part) {
+  const auto base = static_cast<int>(strips.size());
+  strips.insert(strips.end(), part.strips.begin(), part.strips.end());
+  for (const ShellPlace& place : part.places) {
+    places.push_back({place.x, place.n, base + place.strip});
+  }
+  for (const ShellTip& tip : part.tips) tips.push_back({tip.x, base + tip.strip});
+}
+
 bool sweep_face(const ShellSolids& solids, int face, const ShellFamily& family, double target,
-                ShellPatchScratch& scratch, ShellPatch& patch, ShellSurface& surface) {
-  return FaceSweep(solids, face, family, target, scratch, patch, surface).run();
+                ShellPatchScratch& scratch, ShellPatch& patch) {
+  return FaceSweep(solids, face, family, target, scratch, patch).run();
 }
 
 }  // namespace volcontact

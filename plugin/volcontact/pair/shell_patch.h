@@ -59,16 +59,25 @@ struct ShellTip {
   int strip;
 };
 
-/// The surface of an overlap in one face.
-struct ShellPatch {
-  std::vector<ShellStretch> stretches;  ///< in order
-  std::vector<double> hints;            ///< curves to look at besides
-};
-
 struct ShellSurface {
   std::vector<ShellStrip> strips;
   std::vector<ShellPlace> places;
   std::vector<ShellTip> tips;
+
+  void clear();
+  /// Adds a part of the surface, its strips numbered on.
+  void append(const ShellSurface& part);
+};
+
+/// The surface of an overlap in one face.
+struct ShellPatch {
+  std::vector<ShellStretch> stretches;  ///< in order; their strips are counted within the patch
+  std::vector<double> hints;            ///< curves to look at besides
+  ShellSurface surface;
+  int base = 0;        ///< number of its first strip in the whole surface
+  bool stale = true;   ///< to be swept (again)
+  bool swept = false;  ///< for some target, so that what follows is known; it has all hints
+  std::vector<double> events;
 };
 
 /// Memory of the sweep over a face.
@@ -83,8 +92,9 @@ struct ShellPatchScratch {
 };
 
 /// Sweeps over the curves of a face, which is its own twin: finds where the overlap has surface
-/// there, and integrates. False when it gives up. docs/theory.md, "Shells".
+/// there, and integrates. Events of an earlier sweep of the patch serve again unless a hint has
+/// come since. False when it gives up. docs/theory.md, "Shells".
 bool sweep_face(const ShellSolids& solids, int face, const ShellFamily& family, double target,
-                ShellPatchScratch& scratch, ShellPatch& patch, ShellSurface& surface);
+                ShellPatchScratch& scratch, ShellPatch& patch);
 
 }  // namespace volcontact

@@ -70,11 +70,11 @@ bool ShellSolids::read(const Shape& a, const Pose& X_WA, const Shape& b, const P
                        const Vec3& box) {
   faces.clear();
   parts.clear();
-  within = 0;
   half = box;
   for (auto& steps : steps_) steps.clear();
   if (!read_solid(a, X_WA, Owner::kA) || !read_solid(b, X_WB, Owner::kB)) return false;
   prune();
+  for (const Owner owner : {Owner::kA, Owner::kB}) fill_table(owner);
   find_twins();
   return true;
 }
@@ -178,9 +178,10 @@ void ShellSolids::end_part(int first, Owner owner) {
   parts.push_back({first, static_cast<int>(faces.size()), owner});
 }
 
-// Drops faces that hold all of the box, and parts that a face keeps out of it.
+// Drops faces that hold all of the box, and parts that hold all of it or nothing.
 void ShellSolids::prune() {
   std::size_t kept = 0;
+  std::uint64_t dropped = 0, within = 0;
   for (std::size_t p = 0; p < parts.size(); ++p) {
     ShellPart& part = parts[p];
     const auto begin = static_cast<int>(kept);
@@ -193,9 +194,48 @@ void ShellSolids::prune() {
     if (beyond) kept = static_cast<std::size_t>(begin);
     part.first = begin;
     part.last = static_cast<int>(kept);
-    if (!beyond && part.first == part.last) within |= std::uint64_t{1} << p;
+    const std::uint64_t bit = std::uint64_t{1} << p;
+    if (part.first == part.last) dropped |= bit;
+    if (part.first == part.last && !beyond) within |= bit;
   }
   faces.resize(kept);
+  drop_parts(dropped, within);
+}
+
+void ShellSolids::drop_parts(std::uint64_t dropped, std::uint64_t within) {
+  const auto count = static_cast<int>(parts.size());
+  for (auto& steps : steps_) {
+    for (Step& step : steps) {
+      step.always = (step.mask & within) != 0;
+      std::uint64_t mask = 0;
+      for (int p = 0, next = 0; p < count; ++p) {
+        if (dropped >> p & 1u) continue;
+        mask |= (step.mask >> p & 1u) << next++;
+      }
+      step.mask = mask;
+    }
+  }
+  std::size_t next = 0;
+  for (int p = 0; p < count; ++p) {
+    if (!(dropped >> p & 1u)) parts[next++] = parts[p];
+  }
+  parts.resize(next);
+}
+
+void ShellSolids::fill_table(Owner owner) {
+  constexpr int kMost = 6;  // 64 answers
+  Table& table = tables_[index(owner)];
+  const auto mine = [owner](const ShellPart& part) { return part.owner == owner; };
+  const auto count = static_cast<int>(std::count_if(parts.begin(), parts.end(), mine));
+  table = Table{};
+  if (count > kMost) return;
+  table.filled = true;
+  table.first = static_cast<int>(std::find_if(parts.begin(), parts.end(), mine) - parts.begin());
+  if (count == 0) table.first = 0;
+  table.mask = (std::uint64_t{1} << count) - 1;
+  for (std::uint64_t in = 0; in <= table.mask; ++in) {
+    if (evaluate(owner, in << table.first)) table.answers |= std::uint64_t{1} << in;
+  }
 }
 
 void ShellSolids::find_twins() {
@@ -242,11 +282,11 @@ bool ShellSolids::same_surface(const ShellFace& one, const ShellFace& other, int
   return (h * apart).norm() <= kSameSurface * size * unit;
 }
 
-bool ShellSolids::holds(Owner owner, std::uint64_t in_parts) const {
+bool ShellSolids::evaluate(Owner owner, std::uint64_t in_parts) const {
   std::uint64_t stack = 0;
   for (const Step& step : steps_[index(owner)]) {
     if (step.join == Join::kLeaf) {
-      stack = (stack << 1) | ((in_parts & step.mask) != 0 ? 1u : 0u);
+      stack = (stack << 1) | (step.always || (in_parts & step.mask) != 0 ? 1u : 0u);
       continue;
     }
     const std::uint64_t b = stack & 1u, a = (stack >> 1) & 1u;

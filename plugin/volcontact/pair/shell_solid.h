@@ -40,21 +40,31 @@ class ShellSolids {
   static constexpr int kMostParts = 64;
 
   std::vector<ShellFace> faces;
-  std::vector<ShellPart> parts;
-  std::uint64_t within = 0;  ///< parts that hold all of the box
-  Vec3 half;                 ///< of the box
+  std::vector<ShellPart> parts;  ///< A's, then B's; only those with a face in the box
+  Vec3 half;                     ///< of the box
 
   /// Reads two solids; false for meshes, signed distances, and more than kMostParts.
   bool read(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, const Vec3& half);
 
   /// Whether a solid holds a place that is in these parts.
-  bool holds(Owner owner, std::uint64_t in_parts) const;
+  bool holds(Owner owner, std::uint64_t in_parts) const {
+    const Table& table = tables_[index(owner)];
+    if (!table.filled) return evaluate(owner, in_parts);
+    return (table.answers >> ((in_parts >> table.first) & table.mask) & 1u) != 0;
+  }
 
  private:
   enum class Join : int { kLeaf, kUnion, kIntersection, kDifference };
   struct Step {
     Join join;
-    std::uint64_t mask;  ///< of a leaf: a member is the union of these parts
+    std::uint64_t mask;   ///< of a leaf: a member is the union of these parts
+    bool always = false;  ///< of a leaf: holds all of the box
+  };
+  /// The formula of a solid of few parts, worked out for every set of them.
+  struct Table {
+    bool filled = false;
+    int first = 0;  ///< of its parts
+    std::uint64_t mask = 0, answers = 0;
   };
 
   bool read_solid(const Shape& shape, const Pose& X_WS, Owner owner);
@@ -63,10 +73,14 @@ class ShellSolids {
   void add_parts(const S& solid, const Pose& X_WM, Owner owner);
   void end_part(int first, Owner owner);
   void prune();
+  void drop_parts(std::uint64_t dropped, std::uint64_t within);
+  void fill_table(Owner owner);
+  bool evaluate(Owner owner, std::uint64_t in_parts) const;
   void find_twins();
   bool same_surface(const ShellFace& one, const ShellFace& other, int& side) const;
 
   std::vector<Step> steps_[2];
+  Table tables_[2];
   FaceSet set_;
 };
 

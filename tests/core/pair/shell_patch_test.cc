@@ -15,16 +15,15 @@ ShellFlux surface_of(const Shape& shape, const Pose& X, std::size_t faces) {
   EXPECT_TRUE(solids.read(shape, X, kAll, {}, Vec3::Constant(1.0)));
   EXPECT_EQ(solids.faces.size(), faces);
   ShellPatchScratch scratch;
-  ShellSurface surface;
   ShellFlux sum;
   for (std::size_t f = 0; f < solids.faces.size(); ++f) {
     const ShellFamily family(solids.faces[f], solids.half);
     ShellPatch patch;
-    EXPECT_TRUE(sweep_face(solids, static_cast<int>(f), family, 1e-8, scratch, patch, surface));
-  }
-  for (const ShellStrip& strip : surface.strips) {
-    EXPECT_EQ(strip.owner, Owner::kA);
-    sum += strip.flux;
+    EXPECT_TRUE(sweep_face(solids, static_cast<int>(f), family, 1e-8, scratch, patch));
+    for (const ShellStrip& strip : patch.surface.strips) {
+      EXPECT_EQ(strip.owner, Owner::kA);
+      sum += strip.flux;
+    }
   }
   return sum;
 }

@@ -119,6 +119,42 @@ TEST(Shell, ASolidWithinAnotherIsContained) {
   EXPECT_EQ(out.total.area_vector.norm(), 0.0);
 }
 
+// A bored slab with a recess in its lower side, pressed into a bored block: two feet become one
+// site when the recess is full, and part again. Volume, force and torque about the origin are
+// closed forms of the depth all along: no jump.
+TEST(Shell, WrenchIsContinuousThroughMergeAndSplit) {
+  constexpr double kRecess = 2e-3, kHole = .008, kBore = .006;
+  const Csg bridge = box(.045, .02, .01, at(.045, 0, kRecess + .01)) +
+                     box(.015, .02, .5 * kRecess, at(.015, 0, .5 * kRecess)) +
+                     box(.005, .02, .5 * kRecess, at(.085, 0, .5 * kRecess)) -
+                     tube(kHole, .1, at(.015, 0, 0));
+  const Csg block = box(.2, .2, .1, at(0, 0, -.1)) - tube(kBore, .5, at(.055, 0, 0));
+  const double left = .03 * .04 - kPi * kHole * kHole, right = .01 * .04;
+  const double middle = .05 * .04 - kPi * kBore * kBore;
+  const double to_left = .015, to_right = .085, to_middle = .055;  // their middles
+  std::vector<double> depths = {2e-4, 1e-3, 1.9e-3, 2.1e-3, 3e-3};
+  for (const double e : {1e-4, 1e-5, 1e-6}) {
+    depths.push_back(kRecess - e);
+    depths.push_back(kRecess + e);
+  }
+  for (const double depth : depths) {
+    const Interference out = shell(bridge, block, at(0, 0, depth));
+    EXPECT_EQ(out.sites.size(), depth > kRecess ? 1u : 2u) << depth;
+    const double above = std::max(0.0, depth - kRecess);
+    const double force = (left + right) * depth + middle * above;
+    const double torque = (to_left * left + to_right * right) * depth + to_middle * middle * above;
+    Vec3 push = Vec3::Zero(), twist = Vec3::Zero();  // by V n at the centroid of each site
+    for (const VolumeMetrics& site : out.sites) {
+      push += site.volume * site.normal();
+      twist += site.centroid.cross(site.volume * site.normal());
+    }
+    EXPECT_NEAR(out.total.volume, force, 1e-5 * force) << depth;
+    EXPECT_NEAR(push.z(), force, 1e-5 * force) << depth;
+    EXPECT_NEAR(twist.y(), -torque, 1e-5 * torque) << depth;
+    EXPECT_LE(push.head<2>().norm(), 1e-5 * force) << depth;
+  }
+}
+
 TEST(Shell, GivesUpWhatIsApart) {
   shell(kPlate, Sphere({.radius = .03}), at(.1, 0, 0), false);  // in the hole
 }
