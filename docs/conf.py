@@ -38,6 +38,7 @@ SECTIONS = {
         "docs/start",
         "docs/choosing",
         "docs/python",
+        "docs/environment",
         "python/examples/README",
         "docs/troubleshooting",
         "docs/faq",

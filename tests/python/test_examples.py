@@ -90,6 +90,14 @@ def test_core_without_mujoco(run):
     assert weight == pytest.approx(9.81, rel=1e-4)
 
 
+def test_insert_oru(run):
+    ended, felt, left = run("insert_oru").splitlines()
+    assert ended.startswith("seated after")
+    force, torque = numbers(felt)
+    assert 30.0 < force < 111.0 and 0.0 < torque < 22.0
+    assert numbers(left)[0] < 1.0  # [mm]
+
+
 def test_every_example_is_tested_and_listed():
     names = {path.stem for path in EXAMPLES.glob("*.py")}
     tested = {name.removeprefix("test_") for name in globals() if name.startswith("test_")}
