@@ -38,7 +38,7 @@ def main(folder: Path) -> None:
         for i, site in enumerate(contact.sites(data)):
             points, triangles = contact.surface(data, i, resolution=48).patch
             axes.tripcolor(points[:, 0], points[:, 1], triangles, facecolors=[1.0] * len(triangles))
-            name = model.geom(int(site["geom_b"])).name
+            name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_GEOM, int(site["geom_b"]))
             axes.annotate(f"{name}\n{1e6 * site['area']:.1f} mm^2", points[:, :2].mean(axis=0))
             print(f"{name}: {1e6 * site['area']:.2f} mm^2, {1e3 * site['depth']:.3f} mm deep")
     axes.set_aspect("equal")

@@ -46,7 +46,8 @@ def main() -> None:
     """Prints the first touch, the largest force of the wall, and how the peg stands."""
     model = vc.load(SCENE)
     data = mujoco.MjData(model)
-    plate, peg = (model.geom(name).id for name in ("plate", "peg"))
+    kind = mujoco.mjtObj.mjOBJ_GEOM
+    plate, peg = (mujoco.mj_name2id(model, kind, name) for name in ("plate", "peg"))
     first, largest = None, 0.0
     with vc.attach(model) as contact:
         while data.time < 1.0:

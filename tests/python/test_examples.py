@@ -35,7 +35,8 @@ def test_drop_a_box(run):
     assert float(force) == pytest.approx(9.81, rel=0.01)
     assert "area 320.0 cm^2" in text  # 0.2 m by 0.16 m
     (lost,) = re.findall(rf"dissipated ({NUMBER}) J", text)
-    assert float(lost) == pytest.approx(9.81 * (0.3 - 0.05), rel=0.01)
+    # Steps of 1 ms resolve the impacts to a per cent or so.
+    assert float(lost) == pytest.approx(9.81 * (0.3 - 0.05), rel=0.02)
 
 
 def test_peg_in_hole(run):
