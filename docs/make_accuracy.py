@@ -49,14 +49,15 @@ anew.
 ## How it is measured
 
 Every ordered pair of solids, every engine that serves it. One solid of a kind, a few tenths of a
-metre large ([contact_poses.cc](../tests/core/support/contact_poses.cc)); two composed solids do not
-meet here. A third of the poses is random, a third shallow (depth 0.1 to 10 % of the smaller solid,
-faces opposed), a third aligned (axes along axes, corners and edges on faces, coaxial, coplanar,
-contained). The octree, being slow, gets the first of them only.
+metre large ([contact_poses.cc](../tests/core/support/contact_poses.cc)). A third of the poses is
+random, a third shallow (depth 0.1 to 10 % of the smaller solid, faces opposed), a third aligned
+(axes along axes, corners and edges on faces, coaxial, coplanar, contained). The octree, being slow,
+gets the first of them only.
 
 The judge is an integral that shares no code with the engines: exact intervals of lines in three
 directions, nested Gauss quadrature between all changes of face
-([reference_integral.h](../tests/core/support/reference_integral.h)). It knows V to about 1e-9 and
+([reference_integral.h](../tests/core/support/reference_integral.h)). Composed solids are written as
+a sum of intersections first, so that no region can be overlooked. It knows V to about 1e-9 and
 areas to about 1e-6, less where surfaces are tangent. Smaller errors than these are its own. That
 closed forms and clipping are exact to rounding is tested in `tests/core/pair` and in
 [acceptance_test.cc](../tests/core/characterisation/acceptance_test.cc).

@@ -93,7 +93,10 @@ INSTANTIATE_TEST_SUITE_P(
                       NamedPair{"cylinder", "torus"}, NamedPair{"torus", "convex_polytope"},
                       NamedPair{"torus", "torus"}, NamedPair{"box", "mesh"},
                       NamedPair{"sphere", "mesh"}, NamedPair{"cylinder", "mesh"},
-                      NamedPair{"mesh", "torus"}, NamedPair{"bored_block", "mesh"}),
+                      NamedPair{"mesh", "torus"}, NamedPair{"bored_block", "mesh"},
+                      NamedPair{"bored_block", "bored_block"},
+                      NamedPair{"bored_block", "hollow_cylinder"},
+                      NamedPair{"hollow_cylinder", "cup"}),
     [](const auto& test) { return std::string(test.param.first) + "_" + test.param.second; });
 
 TEST(Spread, MedianAndWorst) {

@@ -97,11 +97,9 @@ SurfacePoint surface_point(const Example& e, Random& random) {
 }  // namespace
 
 bool is_pair(const Example& a, const Example& b) {
-  const auto composed = [](const Example& e) { return std::holds_alternative<Csg>(e.shape); };
   const auto mesh = [](const Example& e) { return std::holds_alternative<Mesh>(e.shape); };
   if (std::isinf(a.own_volume) && std::isinf(b.own_volume)) return false;
-  if ((mesh(a) || mesh(b)) && engine_for(a.shape, b.shape) == Engine::kOctree) return false;
-  return !(composed(a) && composed(b));
+  return !((mesh(a) || mesh(b)) && engine_for(a.shape, b.shape) == Engine::kOctree);
 }
 
 namespace {

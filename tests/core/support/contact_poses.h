@@ -23,8 +23,8 @@ struct Example {
 /// One of every kind, a few tenths of a metre large.
 const std::vector<Example>& examples();
 
-/// Whether the two make a pair of the tables: not two half-spaces, which overlap without end, not
-/// two composed solids, which are many and slow, and no mesh with what the octree alone serves.
+/// Whether the two make a pair of the tables: not two half-spaces, which overlap without end, and
+/// no mesh with what the octree alone serves.
 bool is_pair(const Example& a, const Example& b);
 
 /// A pose of B in A, and where the overlap is to be looked for.

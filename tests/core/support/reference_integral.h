@@ -6,18 +6,21 @@
 
 namespace volcontact::test {
 
-// The integral that every engine is judged by. Lines in three orthogonal directions cut the overlap
-// of two ReferenceSolids in exact intervals. They are summed by nested Gauss quadrature between all
-// places where the faces that bound them change: there the integrands are smooth but for their
-// ends, whose square roots a change of variable takes out. Each direction gives V, centroid and
-// inertia; how well the three agree is the error. A direction e gives int x (n . e) dS as a sum of
-// signs, without a division by n . e: the three together give the area vector and its moment.
+// The integral that every engine is judged by. Composed solids are first written as a sum of
+// intersections, plus and minus, so that all that is integrated is convex (or has a torus), has one
+// region, and a point of it is known: none can be overlooked. Lines in three orthogonal directions
+// cut such an overlap of two ReferenceSolids in exact intervals. They are summed by nested Gauss
+// quadrature between all places where the faces that bound them change: there the integrands are
+// smooth but for their ends, whose square roots a change of variable takes out. Each direction
+// gives V, centroid and inertia; how well the three agree is the error, and errors of terms add up.
+// A direction e gives int x (n . e) dS as a sum of signs, without a division by n . e: the three
+// together give the area vector and its moment.
 
 /// Where to look. Any frame gives the same numbers; one whose z axis is the contact normal and
 /// whose origin lies in the overlap finds thin overlaps too.
 struct Lookout {
   Pose X_AF;                ///< of the frame of the lines in A
-  double half_range;        ///< the overlap lies within this distance of its origin [m]
+  double half_range;        ///< the smaller solid lies within this distance of its origin [m]
   bool all_axes = true;     ///< false: lines along z alone; no area vector and no error
   double tolerance = 1e-8;  ///< of V, of each stretch; coarser than 1e-6: fewer lines look
 };

@@ -55,6 +55,8 @@ Solid solid_of(const Frustum& f) {
   cone.hessian = Vec3(2.0, 2.0, -2.0 * slope * slope).asDiagonal();
   cone.linear = Vec3(0.0, 0.0, -2.0 * middle * slope);
   cone.constant = -middle * middle;
+  cone.nappe = Vec3(0.0, 0.0, slope);
+  cone.nappe_constant = middle;
   return Solid::piece(
       {plane(Vec3::UnitZ(), p.half_length), plane(-Vec3::UnitZ(), p.half_length), cone});
 }
@@ -174,14 +176,17 @@ ReferenceSpans either(const ReferenceSpans& a, const ReferenceSpans& b) {
   int i = 0, j = 0;
   while (i < a.size() || j < b.size()) {
     const auto take = [&]() -> const ReferenceSpan& {
-      const bool from_a = j == b.size() || (i < a.size() && a[i].enter <= b[j].enter);
+      const bool from_a = j == b.size() || (i < a.size() && a[i].enter <= b[j].enter + kSame);
       return from_a ? a[i++] : b[j++];
     };
     ReferenceSpan span = take();
-    while ((i < a.size() && a[i].enter <= span.leave) ||
-           (j < b.size() && b[j].enter <= span.leave)) {
+    // Of two that lie flush no gap is left between them, whatever rounding says.
+    while ((i < a.size() && a[i].enter <= span.leave + kSame) ||
+           (j < b.size() && b[j].enter <= span.leave + kSame)) {
       const ReferenceSpan& more = take();
-      if (more.leave > span.leave) span.leave = more.leave, span.leave_face = more.leave_face;
+      if (more.leave <= span.leave + kSame) continue;
+      span.leave = more.leave;
+      span.leave_face = more.leave_face;
     }
     result.add(span);
   }
@@ -193,12 +198,14 @@ ReferenceSpans without(const ReferenceSpans& a, const ReferenceSpans& b) {
   for (int i = 0; i < a.size(); ++i) {
     ReferenceSpan rest = a[i];
     for (int j = 0; j < b.size(); ++j) {
-      if (b[j].leave <= rest.enter || b[j].enter >= rest.leave) continue;
-      result.add({rest.enter, b[j].enter, rest.enter_face, b[j].enter_face});
+      if (b[j].leave <= rest.enter + kSame || b[j].enter >= rest.leave - kSame) continue;
+      if (b[j].enter > rest.enter + kSame) {
+        result.add({rest.enter, b[j].enter, rest.enter_face, b[j].enter_face});
+      }
       rest.enter = b[j].leave;
       rest.enter_face = b[j].leave_face;
     }
-    result.add(rest);
+    if (rest.leave > rest.enter + kSame) result.add(rest);
   }
   return result;
 }
@@ -252,6 +259,8 @@ ReferenceSolid ReferenceSolid::posed(const Pose& X_WS) const {
     face.constant += face.linear.dot(p) + 0.5 * p.dot(face.hessian * p);
     face.linear = r.transpose() * (face.linear + face.hessian * p);
     face.hessian = r.transpose() * face.hessian * r;
+    face.nappe_constant += face.nappe.dot(p);
+    face.nappe = r.transpose() * face.nappe;
   }
   solid.X_TW_ = X_TW_ * X_SW;
   for (ReferenceSolid& part : solid.parts_) part = part.posed(X_WS);
@@ -387,6 +396,110 @@ Vec3 ReferenceSolid::normal(int face, const Vec3& x) const {
       return second && kind_ == Kind::kDifference ? Vec3(-n) : n;
     }
   }
+}
+
+double ReferenceSolid::side(int face) const {
+  if (kind_ == Kind::kUnion || kind_ == Kind::kIntersection || kind_ == Kind::kDifference) {
+    return parts_[face >= parts_[1].first_face_ ? 1 : 0].side(face);
+  }
+  return inverted_ ? -1.0 : 1.0;
+}
+
+void ReferenceSolid::invert() {
+  inverted_ = !inverted_;
+  for (ReferenceSolid& part : parts_) part.invert();
+}
+
+std::vector<ReferenceTerm> ReferenceSolid::terms() const {
+  if (kind_ != Kind::kUnion && kind_ != Kind::kIntersection && kind_ != Kind::kDifference) {
+    return {{1.0, *this}};
+  }
+  const std::vector<ReferenceTerm> a = parts_[0].terms();
+  std::vector<ReferenceTerm> b = parts_[1].terms(), all;
+  if (kind_ == Kind::kDifference) {
+    for (ReferenceTerm& term : b) term.solid.invert();
+  }
+  if (kind_ != Kind::kIntersection) all = a;
+  if (kind_ == Kind::kUnion) all.insert(all.end(), b.begin(), b.end());
+  const double sign = kind_ == Kind::kIntersection ? 1.0 : -1.0;
+  for (const ReferenceTerm& x : a) {
+    for (const ReferenceTerm& y : b) all.push_back({sign * x.sign * y.sign, x.solid & y.solid});
+  }
+  return all;
+}
+
+bool ReferenceSolid::has_torus() const {
+  if (kind_ == Kind::kTorus) return true;
+  return std::any_of(parts_.begin(), parts_.end(),
+                     [](const ReferenceSolid& part) { return part.has_torus(); });
+}
+
+// The most violated of the convex functions that bound the solid, and its gradient.
+void ReferenceSolid::cut_at(const Vec3& x, double& worst, Vec3& gradient) const {
+  const auto take = [&](double value, const Vec3& slope) {
+    const double distance = value / slope.norm();
+    if (!(distance > worst)) return;
+    worst = distance;
+    gradient = slope.normalized();
+  };
+  if (kind_ == Kind::kCapsule) {
+    const Vec3 p = X_TW_ * x;
+    const Vec3 d(p.x(), p.y(), p.z() - std::clamp(p.z(), -major_radius_, major_radius_));
+    if (d.norm() > 0.0) take(d.norm() - minor_radius_, X_TW_.rotation.transpose() * d.normalized());
+    return;
+  }
+  for (const ReferenceSolid& part : parts_) part.cut_at(x, worst, gradient);
+  for (const ReferenceFace& face : faces_) {
+    const double value = 0.5 * x.dot(face.hessian * x) + face.linear.dot(x) + face.constant;
+    const Vec3 slope = face.linear + face.hessian * x;
+    const bool cone = face.nappe_constant != 0.0 || !face.nappe.isZero(0.0);
+    if (!cone) {
+      if (slope.norm() > 0.0) take(value, slope);
+      continue;
+    }
+    const double radius = face.nappe.dot(x) + face.nappe_constant;
+    const double across = std::sqrt(std::max(value + radius * radius, 0.0));
+    if (across > 0.0) {
+      take(across - radius, (0.5 * slope + radius * face.nappe) / across - face.nappe);
+    } else if (radius < 0.0) {
+      take(-radius, -face.nappe);
+    }
+  }
+}
+
+// The ellipsoid method: every cut through the middle keeps all of the common part, and leaves
+// e^(-1/8) of the volume or less. Then the middles of chords lead away from the faces.
+bool find_common_point(const ReferenceSolid& a, const ReferenceSolid& b, double range, Vec3& x) {
+  constexpr int kCuts = 300, kRounds = 4;
+  if (a.has_torus() || b.has_torus()) return false;
+  x = Vec3::Zero();
+  Mat3 shape = 3.0 * range * range * Mat3::Identity();
+  bool found = false;
+  for (int i = 0; i < kCuts && !found; ++i) {
+    double worst = 0.0;
+    Vec3 g = Vec3::Zero();
+    a.cut_at(x, worst, g);
+    b.cut_at(x, worst, g);
+    found = worst == 0.0;
+    if (found) break;
+    const Vec3 way = shape * g / std::sqrt(g.dot(shape * g));
+    if (!way.allFinite()) return false;
+    x -= 0.25 * way;
+    shape = 9.0 / 8.0 * (shape - 0.5 * way * way.transpose());
+  }
+  for (int round = 0; round < kRounds && found; ++round) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Mat3 r;  // of a frame with its z axis along the axis
+      r << Vec3::Unit((axis + 1) % 3), Vec3::Unit((axis + 2) % 3), Vec3::Unit(axis);
+      const Pose X_LW{r.transpose(), -(r.transpose() * x)};
+      const ReferenceSpans spans =
+          both(a.posed(X_LW).column(0.0, 0.0), b.posed(X_LW).column(0.0, 0.0));
+      if (spans.size() == 0) return round > 0 || axis > 0;
+      const double middle = 0.5 * (spans[0].enter + spans[0].leave);
+      if (std::isfinite(middle)) x += middle * Vec3::Unit(axis);
+    }
+  }
+  return found;
 }
 
 ReferenceSolid reference_solid(const Shape& shape) {

@@ -44,7 +44,12 @@ struct ReferenceFace {
   Mat3 hessian = Mat3::Zero();
   Vec3 linear = Vec3::Zero();
   double constant = 0.0;
+  /// Of a cone, whose F is no convex function: its radius at x is nappe . x + nappe_constant.
+  Vec3 nappe = Vec3::Zero();
+  double nappe_constant = 0.0;
 };
+
+struct ReferenceTerm;
 
 class ReferenceSolid {
  public:
@@ -70,11 +75,27 @@ class ReferenceSolid {
   /// Outward normal of the numbered face at a point of it.
   Vec3 normal(int face, const Vec3& x) const;
 
+  /// 1, or -1 for the face of a member that is cut out of the solid that this is a term of: what is
+  /// outward there is inward in that solid.
+  double side(int face) const;
+
+  /// The solid as a sum of intersections, from 1 - (1 - a)(1 - b) and a (1 - b): no unions and no
+  /// differences are left, so that every term is convex but for tori.
+  std::vector<ReferenceTerm> terms() const;
+
+  /// A point within both where there is one: false when none is, or for tori. Both are terms,
+  /// within `range` of the origin. The volume that can be missed is 1e-12 of the range's cube.
+  friend bool find_common_point(const ReferenceSolid& a, const ReferenceSolid& b, double range,
+                                Vec3& x);
+  bool has_torus() const;
+
  private:
   enum class Kind { kPiece, kTorus, kCapsule, kUnion, kIntersection, kDifference };
   static ReferenceSolid joined(Kind kind, const ReferenceSolid& a, const ReferenceSolid& b);
   ReferenceSpans piece_column(double u, double v) const;
   ReferenceSpans torus_column(double u, double v) const;
+  void cut_at(const Vec3& x, double& worst, Vec3& gradient) const;
+  void invert();
 
   Kind kind_ = Kind::kPiece;
   int first_face_ = 0;
@@ -82,6 +103,12 @@ class ReferenceSolid {
   double major_radius_ = 0.0, minor_radius_ = 0.0;  // of a capsule: half length and radius
   Pose X_TW_;                                       // of a torus or capsule
   std::vector<ReferenceSolid> parts_;
+  bool inverted_ = false;  // of a member: cut out
+};
+
+struct ReferenceTerm {
+  double sign;
+  ReferenceSolid solid;
 };
 
 /// The solid of a shape.
