@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <cstdio>
-#include <cstring>
 #include <exception>
 #include <string>
 
@@ -14,20 +13,6 @@ namespace volcontact::adaptor {
 namespace {
 
 std::atomic<bool> is_on{false};
-
-// Keys may have a prefix before `volcontact/`.
-bool has_keys(const mjModel* m) noexcept {
-  const auto is_ours = [m](int address) {
-    return std::strstr(m->names + address, "volcontact/") != nullptr;
-  };
-  for (int i = 0; i < m->nnumeric; ++i) {
-    if (is_ours(m->name_numericadr[i])) return true;
-  }
-  for (int i = 0; i < m->ntuple; ++i) {
-    if (is_ours(m->name_tupleadr[i])) return true;
-  }
-  return false;
-}
 
 // The model that was refused last: it is not asked again at every step. The first warning may be
 // lost, since MuJoCo evaluates once when it compiles and catches warnings there.
@@ -53,13 +38,15 @@ void refuse(const mjModel* m, const std::string& why) noexcept {
   write_warning(("volcontact: contact stays native: " + why).c_str());
 }
 
-void attach(mjModel* m) noexcept {
+void attach(mjModel* m, Wish wish) noexcept {
   std::string problem;
   try {
-    const std::string warning = attach_scene(m);
-    if (!warning.empty()) write_warning(("volcontact: " + warning).c_str());
-    // The program has no word for it, so it is said here.
-    std::fprintf(stderr, "volcontact: the contact of model '%s' is volumetric\n", m->names);
+    for (const std::string& warning : attach_scene(m, {}, Attacher::kItself)) {
+      write_warning(("volcontact: " + warning).c_str());
+    }
+    if (wish == Wish::kByKeys) {  // the program has no word for it, so it is said here
+      std::fprintf(stderr, "volcontact: the contact of model '%s' is volumetric\n", m->names);
+    }
     return;
   } catch (const std::exception& error) {
     problem = error.what();
@@ -74,12 +61,13 @@ void attach(mjModel* m) noexcept {
 bool attaches_by_itself() noexcept { return is_on.load(std::memory_order_relaxed); }
 void set_attaches_by_itself(bool on) noexcept { is_on = on; }
 
-const SceneContact* contact_by_itself(const mjModel* m) noexcept {
+const SceneContact* contact_by_itself(const mjModel* m, Wish wish) noexcept {
   // The host's own model, which its program may write; it does not know that it asked for this.
   auto* model = const_cast<mjModel*>(m);
   const SceneContact* contact = contact_of(m);
   if (!contact) {
-    if (!is_refused(m) && has_keys(m)) attach(model);
+    if (is_refused(m) || (wish == Wish::kByKeys && !has_scene_keys(m))) return nullptr;
+    attach(model, wish);
     return nullptr;
   }
   if (contact->options().pairs == PairRule::kListed) return contact;

@@ -11,10 +11,15 @@ namespace volcontact::adaptor {
 bool attaches_by_itself() noexcept;
 void set_attaches_by_itself(bool on) noexcept;
 
-/// The contact of a model, which is attached when no one has done so and it has a `volcontact/...`
-/// key; null where it has none, and for the one evaluation at which native contact is turned off,
-/// since that has its native contacts already. What goes wrong becomes a MuJoCo warning. Never
-/// throws.
-const SceneContact* contact_by_itself(const mjModel* m) noexcept;
+/// What makes a model one to attach by itself.
+enum class Wish : int {
+  kByKeys = 0,    ///< its `volcontact/...` keys, if it has any
+  kByPlugin = 1,  ///< that the engine plugin asks
+};
+
+/// The contact of a model, which is attached when no one has done so and there is a wish; null
+/// where there is none, and for the one evaluation at which native contact is turned off, since
+/// that has its native contacts already. What goes wrong becomes a MuJoCo warning. Never throws.
+const SceneContact* contact_by_itself(const mjModel* m, Wish wish) noexcept;
 
 }  // namespace volcontact::adaptor

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "adaptor/engine_plugin.h"
 #include "adaptor/volcontact_mujoco.h"
 
 // In the shared library alone. A program that knows nothing of volcontact, such as MuJoCo's
@@ -22,6 +23,7 @@ __attribute__((constructor)) void start() {
   const char* wish = std::getenv("VOLCONTACT_AUTO");
   const bool is_wanted = wish ? std::strcmp(wish, "1") == 0 : lies_in_a_plugin_folder();
   if (is_wanted) volcontact_set_auto(1);
+  volcontact::adaptor::register_engine_plugin();
 }
 
 }  // namespace

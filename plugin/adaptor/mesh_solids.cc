@@ -5,6 +5,20 @@
 #include <string>
 
 namespace volcontact::adaptor {
+namespace {
+
+Shape make_solid(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
+                 MeshForm form) {
+  if (form == MeshForm::kHull) return ConvexPolytope(vertices);
+  try {
+    return Mesh(vertices, triangles);
+  } catch (const std::invalid_argument&) {
+    if (form == MeshForm::kExact) throw;
+  }
+  return ConvexPolytope(vertices);
+}
+
+}  // namespace
 
 Shape mesh_solid(const mjModel* m, int geom, MeshForm form) {
   const int mesh = m->geom_dataid[geom];
@@ -19,16 +33,16 @@ Shape mesh_solid(const mjModel* m, int geom, MeshForm form) {
     triangles.push_back({face[0], face[1], face[2]});
   }
   try {
-    if (form == MeshForm::kHull) return ConvexPolytope(vertices);
-    return Mesh(vertices, triangles);
+    return make_solid(vertices, triangles, form);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(
         "geom '" + label(m, mjOBJ_GEOM, geom) + "', mesh '" + label(m, mjOBJ_MESH, mesh) +
         "' (coordinates in the geom's frame): " + error.what() +
-        (form == MeshForm::kHull
+        (form != MeshForm::kExact
              ? ""
              : ". Look at the file with `volcontact mesh check`, mend it with `volcontact mesh "
-               "repair`, or let the convex hulls stand for all meshes: "
+               "repair`, or let the convex hull stand for it: "
+               "volcontact/option/mesh/exact_or_hull, or for all meshes: "
                "volcontact/option/mesh/hull"));
   }
 }

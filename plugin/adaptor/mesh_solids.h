@@ -7,7 +7,8 @@
 
 namespace volcontact::adaptor {
 
-/// The solid inside of a mesh geom's triangles, in the geom's frame, or their convex hull. Throws
+/// The solid inside of a mesh geom's triangles, in the geom's frame, or their convex hull, of type
+/// ConvexPolytope. Throws
 /// std::invalid_argument naming geom and mesh, what is wrong with the surface and where.
 Shape mesh_solid(const mjModel* m, int geom, MeshForm form);
 

@@ -58,6 +58,8 @@ extern "C" void volcontact_passive(const mjModel* m, mjData* d) {
   using namespace volcontact::adaptor;
   if (is_inside && may_be_called_back) return;
   call_previous(m, d);
-  const SceneContact* contact = attaches_by_itself() ? contact_by_itself(m) : contact_of(m);
-  if (contact) contact->step(m, d, thread_scratch());
+  const SceneContact* contact =
+      attaches_by_itself() ? contact_by_itself(m, Wish::kByKeys) : contact_of(m);
+  // The engine plugin steps its own scenes.
+  if (contact && !contact->is_in_plugin()) contact->step(m, d, thread_scratch());
 }

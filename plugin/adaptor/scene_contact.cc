@@ -4,14 +4,11 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <map>
-#include <set>
 #include <utility>
 
 #include "adaptor/applied_ledger.h"
 #include "adaptor/energy_account.h"
 #include "adaptor/work_sharing.h"
-#include "volcontact/base/check.h"
 
 namespace volcontact::adaptor {
 namespace {
@@ -19,9 +16,6 @@ namespace {
 // The octree can share the cells of one pair among threads; the other engines are too quick for
 // that, and their pairs are shared instead.
 bool shares_its_own_work(Engine engine) { return engine == Engine::kOctree; }
-
-// An engine may use the threads that are free: the guard of the evaluation sets how many there are.
-constexpr int kInnerThreads = 0;
 
 // Typical time of a pair [s].
 double typical_time(Engine engine) {
@@ -40,43 +34,6 @@ double typical_time(Engine engine) {
 constexpr double kWorthSharing = 200e-6;
 constexpr int kPairsPerTask = 16;
 
-// Takes over and adds to `meshes`, by number; copies share their data.
-std::vector<Shape> solids_of(const mjModel* m, const SceneKeys& keys,
-                             const std::vector<GeomPair>& pairs, std::map<int, Shape>& meshes) {
-  std::vector<Shape> solids(static_cast<std::size_t>(m->ngeom), Shape(HalfSpace()));
-  std::set<int> geoms;
-  for (const GeomPair& pair : pairs) geoms.insert({pair.a, pair.b});
-  for (const int geom : geoms) {
-    Shape& solid = solids[static_cast<std::size_t>(geom)];
-    const ComposedGeoms* parts = keys.composed(geom);
-    if (parts) {
-      solid = composed_solid(m, *parts);
-    } else if (m->geom_type[geom] == mjGEOM_MESH) {
-      const int mesh = m->geom_dataid[geom];
-      const auto known = meshes.find(mesh);
-      solid = known != meshes.end() ? known->second : solid_of_geom(m, geom, keys.options.mesh);
-      meshes.emplace(mesh, solid);
-    } else {
-      solid = solid_of_geom(m, geom);
-    }
-  }
-  return solids;
-}
-
-std::vector<GeomPair> pairs_of(const mjModel* m, const SceneKeys& keys) {
-  require(m->ngeom > 0, "the model has no geoms: there is nothing that could touch");
-  return pairs_that_can_touch(m, keys);
-}
-
-// Rows for the contact sites: as many as a crowded scene has, not as many as there could be, since
-// every copy of mjData takes them along.
-int rows_for(const std::vector<GeomPair>& pairs) {
-  constexpr std::size_t kPerPair = 16, kPerGeom = 6, kBase = 32;
-  std::set<int> geoms;
-  for (const GeomPair& pair : pairs) geoms.insert({pair.a, pair.b});
-  return static_cast<int>(std::min(kPerPair * pairs.size(), kBase + kPerGeom * geoms.size()));
-}
-
 bool is_finite(const ContactReport& report) {
   double sum = report.elastic_energy + report.power.sum();
   for (const SiteReport& site : report.sites) {
@@ -90,107 +47,15 @@ bool any(const std::vector<char>& flags, std::size_t count) {
                      [](char flag) { return flag != 0; });
 }
 
+// Whether the block has an evaluation of the present simulation. A block beside mjData is not reset
+// with it, so there the time must tell.
+bool has_evaluation(const UserdataBlock& block, const mjData* d, bool is_beside) {
+  if (!block.is_ours() || block.count() == 0) return false;
+  const double elapsed = d->time - block.slot(0).time();
+  return !is_beside || (elapsed >= 0.0 && elapsed <= 1.5 * block.slot(0).step());
+}
+
 }  // namespace
-
-SceneContact::SceneContact(const mjModel* m, const SceneContact* before)
-    : keys_(read_scene_keys(m)),
-      geom_pairs_(pairs_of(m, keys_)),
-      meshes_(before != nullptr && before->options().mesh == options().mesh
-                  ? before->meshes_
-                  : std::map<int, Shape>()),
-      solids_(solids_of(m, keys_, geom_pairs_, meshes_)),
-      cull_(geom_pairs_, solids_) {
-  warn_about_model(m);
-  if (geom_pairs_.empty()) {
-    warn_once("no two geoms can touch: check contype, conaffinity and volcontact/option/pairs");
-  }
-  for (int geom = 0; geom < m->ngeom; ++geom) {
-    const Mesh* mesh = std::get_if<Mesh>(&solids_[static_cast<std::size_t>(geom)]);
-    if (mesh != nullptr && mesh->topology().turned) {
-      warn_once("mesh '" + label(m, mjOBJ_MESH, m->geom_dataid[geom]) +
-                "': all its triangles pointed inwards; they were turned");
-    }
-  }
-  pairs_.reserve(geom_pairs_.size());
-  for (const GeomPair& pair : geom_pairs_) add_pair(m, pair);
-  check_integrator(m);
-  warn_about_mixed_steps(m);
-  if (sites_.row_size > 0) sites_.rows = rows_for(geom_pairs_);
-  if (options().implicit != Implicit::kNever) solved_rows_ = rows_for(geom_pairs_);
-}
-
-void SceneContact::warn_once(const std::string& warning) {
-  if (std::find(warnings_.begin(), warnings_.end(), warning) == warnings_.end()) {
-    warnings_.push_back(warning);
-  }
-}
-
-void SceneContact::add_pair(const mjModel* m, const GeomPair& geoms) {
-  const auto side = [&](int geom) {
-    const int material = keys_.material_of_geom[static_cast<std::size_t>(geom)];
-    return Side{label(m, mjOBJ_GEOM, geom), m->geom_friction[3 * geom],
-                material < 0 ? nullptr : &keys_.materials[static_cast<std::size_t>(material)]};
-  };
-  const KeyedValues* listed =
-      geoms.listed < 0 ? nullptr : &keys_.pairs[static_cast<std::size_t>(geoms.listed)].keyed;
-  PairLaws laws = combine(side(geoms.a), side(geoms.b), listed);
-  for (const std::string& warning : laws.warnings) warn_once(warning);
-  laws.laws.formulation = keys_.options.formulation;
-
-  const Shape& a = solids_[static_cast<std::size_t>(geoms.a)];
-  const Shape& b = solids_[static_cast<std::size_t>(geoms.b)];
-  const SceneOptions& options = keys_.options;
-  Engine engine = options.engine == Engine::kAuto ? engine_for(a, b) : options.engine;
-  const int most_cells = options.engine == Engine::kOctree ? kMostCells : kMostCellsInStep;
-  if (options.formulation == Formulation::kPotential) {
-    const std::string reason = why_no_pressure_field(a, b, options.engine);
-    require(reason.empty(), "volcontact/option/formulation/potential does not serve geoms '" +
-                                label(m, mjOBJ_GEOM, geoms.a) + "' and '" +
-                                label(m, mjOBJ_GEOM, geoms.b) + "', " + name_of(a) + " with " +
-                                name_of(b) + ": " + reason +
-                                "; or use formulation/gonthier, or exclude them");
-  }
-  if (!serves(engine, a, b)) {
-    warn_once(std::string("engine ") + to_string(engine) + " does not serve " + name_of(a) +
-              " with " + name_of(b) + "; auto serves them");
-    engine = engine_for(a, b);
-  }
-  ContactModel model({{a, b, Pose{}, Pose{}}}, laws.laws,
-                     {options.tolerance, engine, kInnerThreads, most_cells});
-  sites_.row_size = std::max(sites_.row_size, model.row_size());
-  const double rate = largest_rate(m, geoms, laws);
-  pairs_.push_back({geoms, engine, std::move(laws), std::move(model), rate});
-}
-
-void SceneContact::warn_about_model(const mjModel* m) {
-  const std::string skipped = skipped_warning(m);
-  if (!skipped.empty()) warn_once(skipped);
-  if (has_flexes(m)) warn_once("flexes have no volumetric contact: they touch nothing");
-  if (keys_.options.target != Target::kXfrc) {
-    for (int i = 0; i < m->nsensor; ++i) {
-      const int type = m->sensor_type[i];
-      if (type == mjSENS_FORCE || type == mjSENS_TORQUE) {
-        warn_once(
-            "force and torque sensors see the contact only with "
-            "volcontact/option/target/xfrc");
-      }
-    }
-  }
-  for (int i = 0; i < m->nsensor; ++i) {
-    if (m->sensor_type[i] == mjSENS_TOUCH) {
-      warn_once(
-          "touch sensors see native contacts only, until contact.update_touch(data) or "
-          "volcontact_update_touch writes them");
-    }
-  }
-}
-
-std::string skipped_warning(const mjModel* m) {
-  const std::string flags = flags_that_skip_passive(m);
-  if (flags.empty()) return {};
-  return "MuJoCo does not call the passive callback with <flag " + flags +
-         "/>: there will be no contact at all";
-}
 
 UserdataLayout SceneContact::layout(const mjModel* m) const {
   const int channels = keys_.options.target == Target::kApplied ? static_cast<int>(m->nv)
@@ -200,7 +65,11 @@ UserdataLayout SceneContact::layout(const mjModel* m) const {
 }
 
 UserdataBlock SceneContact::block(const mjModel* m, const mjData* d) const {
-  return {d->userdata + m->nuserdata, layout(m)};
+  const UserdataLayout layout = this->layout(m);
+  return {is_in_plugin() ? plugin_room_end(d, plugin_)
+          : is_beside()  ? beside_->end_of(d, layout.size())
+                         : d->userdata + m->nuserdata,
+          layout};
 }
 
 SceneContact::Work SceneContact::plan_work(int threads, Scratch& scratch) const {
@@ -340,7 +209,7 @@ void SceneContact::write_forces(const mjModel* m, mjData* d, Scratch& scratch) c
 }
 
 void SceneContact::step(const mjModel* m, mjData* d, Scratch& scratch) const noexcept {
-  if (m->nuserdata < layout(m).size()) return;
+  if (!has_room(m)) return;
   const UserdataBlock our = block(m, d);
   our.claim();
   const AccountKeeper account(our, d->time, m->opt.timestep, m->opt.integrator == mjINT_RK4);
@@ -370,9 +239,9 @@ void SceneContact::step(const mjModel* m, mjData* d, Scratch& scratch) const noe
 }
 
 bool SceneContact::revisit(const mjModel* m, const mjData* d, Scratch& scratch) const noexcept {
-  if (m->nuserdata < layout(m).size()) return false;
+  if (!has_room(m)) return false;
   const UserdataBlock our = block(m, d);
-  if (!our.is_ours() || our.count() == 0) return false;
+  if (!has_evaluation(our, d, is_beside())) return false;
   Before before;
   if (our.count() > 1) {
     before = {our.slot(1).states(), our.slot(0).time() - our.slot(1).time()};
@@ -383,25 +252,25 @@ bool SceneContact::revisit(const mjModel* m, const mjData* d, Scratch& scratch) 
 }
 
 EnergyAccount SceneContact::energy(const mjModel* m, const mjData* d) const noexcept {
-  if (m->nuserdata < layout(m).size()) return {};
+  if (!has_room(m)) return {};
   const UserdataBlock our = block(m, d);
-  return our.is_ours() && our.count() > 0 ? our.slot(0).energy() : EnergyAccount{};
+  return has_evaluation(our, d, is_beside()) ? our.slot(0).energy() : EnergyAccount{};
 }
 
 double SceneContact::dropped(const mjModel* m, const mjData* d) const noexcept {
-  if (m->nuserdata < layout(m).size()) return 0.0;
+  if (!has_room(m)) return 0.0;
   const UserdataBlock our = block(m, d);
   return our.is_ours() ? our.dropped() : 0.0;
 }
 
 double SceneContact::forgotten(const mjModel* m, const mjData* d) const noexcept {
-  if (m->nuserdata < layout(m).size()) return 0.0;
+  if (!has_room(m)) return 0.0;
   const UserdataBlock our = block(m, d);
   return our.is_ours() ? our.forgotten() : 0.0;
 }
 
 void SceneContact::release(const mjModel* m, mjData* d) const noexcept {
-  if (m->nuserdata < layout(m).size()) return;
+  if (!has_room(m)) return;
   const UserdataBlock our = block(m, d);
   if (keys_.options.target == Target::kApplied) {
     release_to_user(our, layout(m).channels, d->qfrc_applied);

@@ -2,13 +2,16 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "adaptor/body_forces.h"
+#include "adaptor/engine_plugin.h"
 #include "adaptor/implicit_step.h"
 #include "adaptor/pair_list.h"
 #include "adaptor/scene_keys.h"
+#include "adaptor/side_states.h"
 #include "adaptor/site_pool.h"
 #include "adaptor/userdata_layout.h"
 #include "volcontact/model/contact_model.h"
@@ -26,7 +29,8 @@ struct PairContact {
 };
 
 /// Volumetric contact of one scene. Const once made: what lasts from step to step is in
-/// mjData.userdata, so one object serves any number of mjData, threads and copies of the model.
+/// mjData.userdata, so one object serves any number of mjData, threads and copies of the model. For
+/// models without keys and room it is beside mjData: see find_room().
 class SceneContact {
  public:
   /// Memory of one evaluation; one per thread, reused from call to call.
@@ -42,17 +46,36 @@ class SceneContact {
   };
 
   /// Reads the scene. Throws std::invalid_argument with a message for the author of the scene.
-  /// `before`: of the same model with other numbers; its meshes need not be made again.
-  explicit SceneContact(const mjModel* m, const SceneContact* before = nullptr);
+  /// `given`: keys of the program. `before`: of the same model with other numbers; its meshes need
+  /// not be made again.
+  explicit SceneContact(const mjModel* m, const std::vector<GivenKey>& given = {},
+                        const SceneContact* before = nullptr);
+
+  /// Settles where the state lies: at the end of mjData.userdata, or in plugin_state where the
+  /// model has our engine plugin. A model without keys, which nobody has made room in, has it
+  /// beside mjData, and its forces go to qfrc_passive; any other that lacks room is refused with
+  /// std::invalid_argument and the line to add.
+  void find_room(const mjModel* m, const SceneContact* before = nullptr);
 
   const SceneKeys& keys() const { return keys_; }
   const SceneOptions& options() const { return keys_.options; }
   const std::vector<Shape>& solids() const { return solids_; }
   const std::vector<PairContact>& pairs() const { return pairs_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
+  /// Those of the warnings that say the simulation will not be what its author expects.
+  const std::vector<std::string>& alerts() const { return alerts_; }
   UserdataLayout layout(const mjModel* m) const;
 
-  /// Our block in `d`; only valid where m->nuserdata has room for it.
+  /// Whether our block is beside mjData, or in its plugin_state; else it is in userdata.
+  bool is_beside() const { return beside_ != nullptr; }
+  bool is_in_plugin() const { return plugin_.is_there; }
+
+  /// False for the model and data that MuJoCo makes for itself when it compiles.
+  bool has_room(const mjModel* m) const {
+    return is_beside() || is_in_plugin() || m->nuserdata >= layout(m).size();
+  }
+
+  /// Our block of `d`; only valid where has_room().
   UserdataBlock block(const mjModel* m, const mjData* d) const;
 
   /// What the passive callback does: evaluates all pairs at the poses and velocities in `d` and
@@ -99,10 +122,12 @@ class SceneContact {
 
   void add_pair(const mjModel* m, const GeomPair& geoms);
   void warn_about_model(const mjModel* m);
+  void warn_about_meshes(const mjModel* m);
   void check_integrator(const mjModel* m);
   void warn_about_mixed_steps(const mjModel* m);
   double largest_rate(const mjModel* m, const GeomPair& geoms, const PairLaws& laws) const;
   void warn_once(const std::string& warning);
+  void alert(const std::string& warning);
   // The sites that the evaluation before left, of which `committed` is null when there was none.
   struct Before {
     const double* committed = nullptr;
@@ -129,11 +154,9 @@ class SceneContact {
   Cull cull_;
   SitePoolLayout sites_;
   int solved_rows_ = 0;
-  std::vector<std::string> warnings_;
+  std::shared_ptr<SideStates> beside_;
+  PluginRoom plugin_;
+  std::vector<std::string> warnings_, alerts_;
 };
-
-/// What to tell the author when the flags of the model make MuJoCo leave out the callback; empty
-/// when they do not.
-std::string skipped_warning(const mjModel* m);
 
 }  // namespace volcontact::adaptor

@@ -158,6 +158,9 @@ std::string describe(const mjModel* m, const SceneContact& contact) {
   json.name("userdata").begin_object();
   json.member("needed", contact.layout(m).size());
   json.member("present", static_cast<int>(m->nuserdata));
+  json.member("state", contact.is_in_plugin() ? "in plugin_state"
+                       : contact.is_beside()  ? "beside mjData"
+                                              : "in userdata");
   json.end_object();
   write_materials(m, contact, json);
   write_solids(m, contact, json);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adaptor/scene_key.h"
 
+#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 
@@ -63,6 +64,29 @@ void unknown_part(SceneKey key, std::size_t part, const std::vector<std::string>
     message += " (did you mean '" + key.stem(key.parts.size()) + "'?)";
   }
   throw std::invalid_argument(message);
+}
+
+void check_count(const SceneKey& key, std::size_t wanted, const std::vector<double>& numbers) {
+  require(numbers.size() == wanted, key.text + " takes " + std::to_string(wanted) +
+                                        (wanted == 1 ? " number, got " : " numbers, got ") +
+                                        std::to_string(numbers.size()));
+}
+
+void read_choice(const SceneKey& key, std::size_t part, const std::vector<std::string>& words,
+                 const std::vector<double>& numbers, ChoiceValues& choices) {
+  if (key.parts.size() <= part) unknown_part(key, part, words);
+  const std::string& word = key.parts[part];
+  if (std::find(words.begin(), words.end(), word) == words.end()) unknown_part(key, part, words);
+  if (key.parts.size() > part + 1) {
+    throw std::invalid_argument(key.text + ": unknown key (did you mean '" + key.stem(part + 1) +
+                                "'?)");
+  }
+  check_count(key, 1, numbers);
+  require(numbers[0] == 0.0 || numbers[0] == 1.0,
+          key.text + ": the choice is in the key; its data must be 1 (or 0 for off)");
+  if (numbers[0] == 0.0) return;
+  const auto [entry, is_new] = choices.emplace(key.parts[part - 1], word);
+  require(is_new, key.text + ": " + key.stem(part) + "/" + entry->second + " is chosen already");
 }
 
 }  // namespace volcontact::adaptor

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "volcontact/base/fields.h"
+
 namespace volcontact::adaptor {
 
 /// The first word of the names of our numerics and tuples.
@@ -36,5 +38,14 @@ std::string joined(const std::vector<std::string>& words);
 /// nearest valid spelling.
 [[noreturn]] void unknown_part(SceneKey key, std::size_t part,
                                const std::vector<std::string>& words);
+
+/// Throws std::invalid_argument where the key has not as many numbers as wanted.
+void check_count(const SceneKey& key, std::size_t wanted, const std::vector<double>& numbers);
+
+/// Puts the word of a choice into `choices`. A choice is spelled in the key, whose part number
+/// `part` is one of `words`: .../friction_law/regularized_coulomb with data 1, or 0 for "not this
+/// one", so that a program can switch it in a compiled model. Throws std::invalid_argument.
+void read_choice(const SceneKey& key, std::size_t part, const std::vector<std::string>& words,
+                 const std::vector<double>& numbers, ChoiceValues& choices);
 
 }  // namespace volcontact::adaptor

@@ -2,7 +2,7 @@
 #include "adaptor/scene_keys.h"
 
 #include <algorithm>
-#include <cmath>
+#include <string_view>
 
 #include "adaptor/scene_key.h"
 #include "adaptor/solids_of_geoms.h"
@@ -17,7 +17,8 @@ using Key = SceneKey;
 
 class KeyReader {
  public:
-  explicit KeyReader(const mjModel* m) : m_(m) {
+  KeyReader(const mjModel* m, const std::vector<GivenKey>& given) : m_(m) {
+    keys_.given = given;
     keys_.material_of_geom.assign(static_cast<std::size_t>(m->ngeom), -1);
     keys_.solid_of_geom.assign(static_cast<std::size_t>(m->ngeom), -1);
   }
@@ -33,7 +34,10 @@ class KeyReader {
     for (int i = 0; i < m_->nnumeric; ++i) {
       if (const auto key = parse_key(m_->names + m_->name_numericadr[i])) read_numeric(*key, i);
     }
-    finish_options();
+    reads_given_ = true;
+    for (const GivenKey& given : keys_.given) read_given(given);
+    keys_.options = options_.finish();
+    keys_.has_target = options_.has("target");
     for (const KeyedValues& material : keys_.materials) check_fields(material);
     for (const ListedPair& pair : keys_.pairs) check_fields(pair.keyed);
     return std::move(keys_);
@@ -189,9 +193,34 @@ class KeyReader {
   void read_numeric(const Key& key, int numeric) {
     keys_.numerics.push_back({m_->numeric_adr[numeric], m_->numeric_size[numeric]});
     const mjtNum* data = m_->numeric_data + m_->numeric_adr[numeric];
-    const std::vector<double> numbers(data, data + m_->numeric_size[numeric]);
+    read_numbers(key, {data, data + m_->numeric_size[numeric]});
+  }
+
+  // What the program gives beside the file.
+  void read_given(const GivenKey& given) {
+    const auto key = parse_key(given.name);
+    require(key.has_value(),
+            given.name + ": unknown key; it must begin with " + std::string(kRoot));
+    if (key->parts[0] == "material" && key->parts.size() > 2) add_default_material(key->stem(2));
+    read_numbers(*key, given.numbers);
+  }
+
+  // A material that no tuple names is that of all geoms without one.
+  void add_default_material(const std::string& stem) {
+    const auto is_it = [&](const KeyedValues& material) { return material.key == stem; };
+    if (std::any_of(keys_.materials.begin(), keys_.materials.end(), is_it)) return;
+    require(default_material_.empty(), stem + ": no <tuple> says which geoms it is for, and " +
+                                           default_material_ +
+                                           " is that of all geoms without a material already");
+    default_material_ = stem;
+    std::replace(keys_.material_of_geom.begin(), keys_.material_of_geom.end(), -1,
+                 static_cast<int>(keys_.materials.size()));
+    keys_.materials.push_back({stem, {}, {}});
+  }
+
+  void read_numbers(const Key& key, const std::vector<double>& numbers) {
     if (key.parts[0] == "option") {
-      read_option(key, numbers);
+      options_.read(key, numbers, reads_given_);
     } else if (key.parts[0] == "material" || key.parts[0] == "pair") {
       read_keyed(key, numbers);
     } else {
@@ -226,6 +255,7 @@ class KeyReader {
     if (!field && !choice) unknown_part(key, 2, words_after_name());
     KeyedValues& owner = owner_of(key);
     if (choice) {
+      if (reads_given_) owner.choices.erase(word);
       read_choice(key, 3, choice->words, numbers, owner.choices);
       return;
     }
@@ -253,119 +283,6 @@ class KeyReader {
     return words;
   }
 
-  static void check_count(const Key& key, std::size_t wanted, const std::vector<double>& numbers) {
-    require(numbers.size() == wanted, key.text + " takes " + std::to_string(wanted) +
-                                          (wanted == 1 ? " number, got " : " numbers, got ") +
-                                          std::to_string(numbers.size()));
-  }
-
-  // A choice is spelled in the key: .../friction_law/regularized_coulomb with data 1, or 0 for
-  // "not this one", so that a program can switch it in a compiled model.
-  static void read_choice(const Key& key, std::size_t part, const std::vector<std::string>& words,
-                          const std::vector<double>& numbers, ChoiceValues& choices) {
-    if (key.parts.size() <= part) unknown_part(key, part, words);
-    const std::string& word = key.parts[part];
-    if (std::find(words.begin(), words.end(), word) == words.end()) unknown_part(key, part, words);
-    if (key.parts.size() > part + 1) {
-      throw std::invalid_argument(key.text + ": unknown key (did you mean '" + key.stem(part + 1) +
-                                  "'?)");
-    }
-    check_count(key, 1, numbers);
-    require(numbers[0] == 0.0 || numbers[0] == 1.0,
-            key.text + ": the choice is in the key; its data must be 1 (or 0 for off)");
-    if (numbers[0] == 0.0) return;
-    const auto [entry, is_new] = choices.emplace(key.parts[part - 1], word);
-    require(is_new, key.text + ": " + key.stem(part) + "/" + entry->second + " is chosen already");
-  }
-
-  // Options of the scene itself come before those of attached models, which must agree.
-
-  struct GivenOption {
-    std::string prefix;
-    std::string key;
-    std::vector<double> numbers;
-    std::string word;
-  };
-
-  static const std::map<std::string, std::vector<std::string>>& option_choices() {
-    static const std::map<std::string, std::vector<std::string>> choices = [] {
-      std::map<std::string, std::vector<std::string>> made;
-      for (const Engine engine : kEngines) made["engine"].emplace_back(to_string(engine));
-      made["target"] = {std::begin(kTargetWords), std::end(kTargetWords)};
-      made["pairs"] = {std::begin(kPairRuleWords), std::end(kPairRuleWords)};
-      made["implicit"] = {std::begin(kImplicitWords), std::end(kImplicitWords)};
-      made["mesh"] = {std::begin(kMeshFormWords), std::end(kMeshFormWords)};
-      made["formulation"] = {std::begin(kFormulationWords), std::end(kFormulationWords)};
-      return made;
-    }();
-    return choices;
-  }
-
-  void read_option(const Key& key, const std::vector<double>& numbers) {
-    std::vector<std::string> names = field_names<OptionNumbers>();
-    for (const auto& [name, words] : option_choices()) names.push_back(name);
-    if (key.parts.size() < 2) unknown_part(key, 1, names);
-    const std::string& name = key.parts[1];
-    const auto choice = option_choices().find(name);
-    if (choice != option_choices().end()) {
-      ChoiceValues chosen;
-      const auto before = options_.find(name);
-      if (before != options_.end() && before->second.prefix == key.prefix) {
-        chosen[name] = before->second.word;
-      }
-      read_choice(key, 2, choice->second, numbers, chosen);
-      if (numbers[0] == 1.0) keep_option(name, {key.prefix, key.text, numbers, key.parts[2]});
-      return;
-    }
-    const auto* field = find_field<OptionNumbers>(name);
-    if (!field || key.parts.size() > 2) unknown_part(key, 1, names);
-    check_count(key, 1, numbers);
-    require(field->range.contains(numbers[0]) &&
-                (name != "threads" || numbers[0] == std::floor(numbers[0])),
-            out_of_range_message(key.stem(1), field->name, field->unit, numbers[0], field->range));
-    keep_option(name, {key.prefix, key.text, numbers, ""});
-  }
-
-  void keep_option(const std::string& name, GivenOption option) {
-    GivenOption& kept = options_.emplace(name, option).first->second;
-    if (option.prefix.empty()) {
-      kept = std::move(option);
-    } else if (kept.numbers != option.numbers || kept.word != option.word) {
-      disagreements_.emplace(name, option.key + " and " + kept.key + " differ; say which in " +
-                                       std::string(kRoot) + "option/" + name);
-    }
-  }
-
-  template <typename Enum, std::size_t kCount>
-  void set_choice(const std::string& name, const char* const (&words)[kCount], Enum& out) const {
-    const auto given = options_.find(name);
-    if (given == options_.end()) return;
-    for (std::size_t i = 0; i < kCount; ++i) {
-      if (given->second.word == words[i]) out = static_cast<Enum>(i);
-    }
-  }
-
-  void finish_options() {
-    for (const auto& [name, message] : disagreements_) {
-      require(options_.at(name).prefix.empty(), message);
-    }
-    OptionNumbers::Params numbers;
-    for (const auto& field : OptionNumbers::kFields) {
-      const auto given = options_.find(field.name);
-      if (given != options_.end()) field.set(numbers, 0, given->second.numbers[0]);
-    }
-    SceneOptions& options = keys_.options;
-    options.tolerance = numbers.tolerance;
-    options.threads = static_cast<int>(numbers.threads);
-    const auto engine = options_.find("engine");
-    if (engine != options_.end()) options.engine = engine_from(engine->second.word);
-    set_choice("target", kTargetWords, options.target);
-    set_choice("pairs", kPairRuleWords, options.pairs);
-    set_choice("implicit", kImplicitWords, options.implicit);
-    set_choice("mesh", kMeshFormWords, options.mesh);
-    set_choice("formulation", kFormulationWords, options.formulation);
-  }
-
   // A material that names its law may only give that law's fields.
   static void check_fields(const KeyedValues& keyed) {
     const auto normal = keyed.choices.find(kNormalLaw), friction = keyed.choices.find(kFrictionLaw);
@@ -388,12 +305,23 @@ class KeyReader {
 
   const mjModel* m_;
   SceneKeys keys_;
-  std::map<std::string, GivenOption> options_;
-  std::map<std::string, std::string> disagreements_;  // by option; moot when the scene has it too
+  bool reads_given_ = false;
+  std::string default_material_;  // given by the program
+  OptionReader options_;
 };
 
 }  // namespace
 
-SceneKeys read_scene_keys(const mjModel* m) { return KeyReader(m).read(); }
+SceneKeys read_scene_keys(const mjModel* m, const std::vector<GivenKey>& given) {
+  return KeyReader(m, given).read();
+}
+
+bool has_scene_keys(const mjModel* m) noexcept {
+  const auto is_ours = [m](int address) {  // a prefix may come before it
+    return std::string_view(m->names + address).find(kRoot) != std::string_view::npos;
+  };
+  return std::any_of(m->name_numericadr, m->name_numericadr + m->nnumeric, is_ours) ||
+         std::any_of(m->name_tupleadr, m->name_tupleadr + m->ntuple, is_ours);
+}
 
 }  // namespace volcontact::adaptor

@@ -8,66 +8,9 @@
 
 #include "adaptor/materials.h"
 #include "adaptor/mujoco_compat.h"
-#include "volcontact/pair/engine.h"
+#include "adaptor/scene_options.h"
 
 namespace volcontact::adaptor {
-
-/// Where the contact forces are written.
-enum class Target : int {
-  kApplied = 0,  ///< mjData.qfrc_applied, beside what the user wrote there
-  kPassive = 1,  ///< mjData.qfrc_passive: no user write can disturb it
-  kXfrc = 2,     ///< mjData.xfrc_applied: force and torque sensors see it
-};
-inline constexpr const char* kTargetWords[] = {"applied", "passive", "xfrc"};
-
-/// Which pairs are volumetric.
-enum class PairRule : int {
-  kNative = 0,  ///< all that MuJoCo itself would let collide, and those listed
-  kListed = 1,  ///< only those of a volcontact/pair/...; the rest stays native
-};
-inline constexpr const char* kPairRuleWords[] = {"native", "listed"};
-
-/// What stands for a mesh geom.
-enum class MeshForm : int {
-  kExact = 0,  ///< its triangles as given
-  kHull = 1,   ///< their convex hull, as MuJoCo does
-};
-inline constexpr const char* kMeshFormWords[] = {"exact", "hull"};
-
-/// Whether steps are implicit in the contact forces.
-enum class Implicit : int {
-  kAuto = 0,    ///< where a patch is too stiff for an explicit step, in its stiff directions
-  kAlways = 1,  ///< always, in all directions
-  kNever = 2,
-};
-inline constexpr const char* kImplicitWords[] = {"auto", "on", "off"};
-
-/// The options that are numbers.
-struct OptionNumbers {
-  static constexpr const char* kName = "volcontact/option";
-  struct Params {
-    double tolerance = 1e-3;
-    double threads = 0.0;
-  };
-  static constexpr std::array kFields{
-      Field<Params>{"tolerance", "-", &Params::tolerance,
-                    Range{0.0, 1.0, true, true, "> 0 and < 1"},
-                    "relative error asked of the volume"},
-      Field<Params>{"threads", "-", &Params::threads,
-                    Range{0.0, 1024.0, false, false, "a whole number from 0 to 1024"},
-                    "0 decides by work"}};
-};
-
-struct SceneOptions {
-  double tolerance = 1e-3;
-  int threads = 0;
-  Engine engine = Engine::kAuto;
-  Target target = Target::kApplied;
-  PairRule pairs = PairRule::kNative;
-  MeshForm mesh = MeshForm::kExact;
-  Implicit implicit = Implicit::kAuto;
-  Formulation formulation = Formulation::kGonthier;
-};
 
 /// A volcontact/pair/...: its values and the geom pairs it stands for, lower geom first.
 struct ListedPair {
@@ -83,6 +26,14 @@ struct ComposedGeoms {
   };
   std::string key;
   std::vector<Part> parts;
+};
+
+/// A key that the program gives beside those of the file, and before them: "volcontact/option/...",
+/// or a field of a material. A material that no tuple of the file names is the default material:
+/// that of all geoms without one.
+struct GivenKey {
+  std::string name;
+  std::vector<double> numbers;
 };
 
 /// Numbers [address, address + size) of mjModel.numeric_data that belong to volcontact.
@@ -101,6 +52,8 @@ struct SceneKeys {
   std::vector<ComposedGeoms> solids;
   std::vector<int> solid_of_geom;  ///< index into `solids`, -1 for a geom that is one by itself
   std::vector<NumericSpan> numerics;
+  std::vector<GivenKey> given;  ///< by the program
+  bool has_target = false;      ///< the target was chosen, by the file or the program
 
   /// The composed solid that the geom belongs to, or null.
   const ComposedGeoms* composed(int geom) const {
@@ -118,6 +71,9 @@ struct SceneKeys {
 /// Reads the keys; docs/plugin.md, "Keys". Names may carry the prefix that MjSpec.attach puts
 /// before `volcontact/`; materials and pairs of different prefixes are different ones. Throws
 /// std::invalid_argument naming the key, the allowed range and the nearest valid spelling.
-SceneKeys read_scene_keys(const mjModel* m);
+SceneKeys read_scene_keys(const mjModel* m, const std::vector<GivenKey>& given = {});
+
+/// Whether any name of the model is a `volcontact/...` key.
+bool has_scene_keys(const mjModel* m) noexcept;
 
 }  // namespace volcontact::adaptor

@@ -37,6 +37,7 @@ constexpr std::size_t kVariantsKept = 64;
 
 struct AttachedScene {
   const mjModel* model;
+  Attacher attacher;
   bool contact_was_disabled;
   std::vector<VariantPointer> variants;  // the latest last
   std::shared_ptr<const SceneContact> last_valid;
@@ -50,14 +51,12 @@ std::vector<AttachedScene>& registry() {
 // Grows with every attach and detach, so that threads notice.
 std::atomic<std::uint64_t> generation{1};
 
-void require_room(const mjModel* m, const SceneContact& contact) {
-  const int needed = contact.layout(m).size();
-  const long long present = m->nuserdata;
-  require(present >= needed,
-          "mjData.userdata is too small: volcontact needs " + std::to_string(needed) +
-              " numbers at its end and nuserdata is " + std::to_string(present) +
-              "; load the scene with volcontact.load, or write <size nuserdata=\"" +
-              std::to_string(needed + present) + "\"/> into it");
+std::shared_ptr<const SceneContact> make_contact(const mjModel* m,
+                                                 const std::vector<GivenKey>& given,
+                                                 const SceneContact* before = nullptr) {
+  auto contact = std::make_shared<SceneContact>(m, given, before);
+  contact->find_room(m, before);
+  return contact;
 }
 
 std::vector<AttachedScene>::iterator find_scene(const mjModel* m) {
@@ -68,6 +67,11 @@ std::vector<AttachedScene>::iterator find_scene(const mjModel* m) {
 void forget(std::vector<AttachedScene>::iterator scene) {
   if (scene->last_valid->options().pairs == PairRule::kListed) unclaim_listed_pairs();
   registry().erase(scene);
+}
+
+void restore_flags(const AttachedScene& scene, mjModel* m) {
+  m->opt.disableflags &= ~kAttachedMark;
+  if (!scene.contact_was_disabled) m->opt.disableflags &= ~mjDSBL_CONTACT;
 }
 
 // What may not change in an attached model.
@@ -85,9 +89,9 @@ VariantPointer variant_for(AttachedScene& scene, const mjModel* m) {
   }
   std::string error;
   try {
-    auto contact = std::make_shared<const SceneContact>(m, scene.last_valid.get());
-    require_same_structure(*scene.last_valid, *contact);
-    require_room(m, *contact);
+    const SceneContact& before = *scene.last_valid;
+    auto contact = make_contact(m, before.keys().given, &before);
+    require_same_structure(before, *contact);
     scene.last_valid = std::move(contact);
   } catch (const std::exception& invalid) {
     error = invalid.what();
@@ -143,25 +147,27 @@ const Variant* find_variant(const mjModel* m) {
 
 }  // namespace
 
-std::string attach_scene(mjModel* m) {
+std::vector<std::string> attach_scene(mjModel* m, const std::vector<GivenKey>& given,
+                                      Attacher attacher) {
   require(!sleep_enabled(m),
           "the model has <flag sleep=\"enable\"/>: volumetric contact never wakes a sleeping body; "
           "disable it");
-  auto contact = std::make_shared<const SceneContact>(m);
-  require_room(m, *contact);
+  const auto contact = make_contact(m, given);
   const auto first = std::make_shared<const Variant>(m, contact, "");
   const std::lock_guard lock(registry_mutex);
   const auto present = find_scene(m);
   if (present != registry().end()) {
-    if (present->variants.back()->content.is_same_model(m)) {
+    const bool is_same = present->variants.back()->content.is_same_model(m);
+    if (is_same && present->attacher == Attacher::kAuthor) {
       throw std::logic_error("the model is attached already");
     }
-    forget(present);  // deleted without a detach; this is another model at its address
+    if (is_same) restore_flags(*present, m);
+    forget(present);  // else deleted without a detach; this is another model at its address
   }
   // In a copy of an attached model the flag is ours.
   const bool was_disabled =
       (m->opt.disableflags & mjDSBL_CONTACT) != 0 && (m->opt.disableflags & kAttachedMark) == 0;
-  registry().push_back({m, was_disabled, {first}, contact});
+  registry().push_back({m, attacher, was_disabled, {first}, contact});
   m->opt.disableflags |= kAttachedMark;
   if (contact->options().pairs == PairRule::kListed) {
     claim_listed_pairs();
@@ -169,17 +175,22 @@ std::string attach_scene(mjModel* m) {
     m->opt.disableflags |= mjDSBL_CONTACT;
   }
   generation.fetch_add(1, std::memory_order_release);
-  return skipped_warning(m);
+  return contact->alerts();
 }
 
 bool detach_scene(mjModel* m) {
-  const std::lock_guard lock(registry_mutex);
-  const auto scene = find_scene(m);
-  if (scene == registry().end()) return false;
-  m->opt.disableflags &= ~kAttachedMark;
-  if (!scene->contact_was_disabled) m->opt.disableflags &= ~mjDSBL_CONTACT;
-  forget(scene);
-  generation.fetch_add(1, std::memory_order_release);
+  bool goes_on = false;
+  {
+    const std::lock_guard lock(registry_mutex);
+    const auto scene = find_scene(m);
+    if (scene == registry().end()) return false;
+    goes_on = scene->last_valid->is_in_plugin();
+    restore_flags(*scene, m);
+    forget(scene);
+    generation.fetch_add(1, std::memory_order_release);
+  }
+  // The scene itself asks for its contact; now, so that no evaluation is native.
+  if (goes_on) attach_scene(m, {}, Attacher::kItself);
   return true;
 }
 
@@ -188,9 +199,11 @@ bool is_attached(const mjModel* m) {
   return find_scene(m) != registry().end();
 }
 
-int attached_scenes() {
+int scenes_of_the_callback() {
   const std::lock_guard lock(registry_mutex);
-  return static_cast<int>(registry().size());
+  return static_cast<int>(
+      std::count_if(registry().begin(), registry().end(),
+                    [](const AttachedScene& scene) { return !scene.last_valid->is_in_plugin(); }));
 }
 
 const SceneContact* contact_of(const mjModel* m) noexcept {

@@ -63,6 +63,15 @@ int guarded(char* message, int message_size, Function&& function) noexcept {
 
 void copy_vector(const Vec3& from, double (&to)[3]) { std::copy(from.data(), from.data() + 3, to); }
 
+std::vector<GivenKey> given_keys(const volcontact_key* keys, int count) {
+  std::vector<GivenKey> given;
+  for (int i = 0; i < count; ++i) {
+    const volcontact_key& key = keys[i];
+    given.push_back({key.name, {key.numbers, key.numbers + key.count}});
+  }
+  return given;
+}
+
 volcontact_site record_of(const PairContact& pair, int index, const SiteReport& report) {
   volcontact_site site{};
   site.pair = index;
@@ -151,20 +160,38 @@ int volcontact_check_version(char* message, int message_size) {
 }
 
 int volcontact_userdata_size(const mjModel* m, char* message, int message_size) {
-  return guarded(message, message_size, [&] { return SceneContact(m).layout(m).size(); });
+  return volcontact_userdata_size_with(m, nullptr, 0, message, message_size);
+}
+
+int volcontact_userdata_size_with(const mjModel* m, const volcontact_key* keys, int count,
+                                  char* message, int message_size) {
+  return guarded(message, message_size,
+                 [&] { return SceneContact(m, given_keys(keys, count)).layout(m).size(); });
 }
 
 int volcontact_reserve(mjModel* m, char* message, int message_size) {
-  return guarded(message, message_size, [&] {
-    const int size = SceneContact(m).layout(m).size();
-    m->nuserdata += size;
-    return size;
-  });
+  return volcontact_reserve_with(m, nullptr, 0, message, message_size);
+}
+
+int volcontact_reserve_with(mjModel* m, const volcontact_key* keys, int count, char* message,
+                            int message_size) {
+  const int size = volcontact_userdata_size_with(m, keys, count, message, message_size);
+  if (size > 0) m->nuserdata += size;
+  return size;
 }
 
 int volcontact_attach(mjModel* m, char* message, int message_size) {
+  return volcontact_attach_with(m, nullptr, 0, message, message_size);
+}
+
+int volcontact_attach_with(mjModel* m, const volcontact_key* keys, int count, char* message,
+                           int message_size) {
   return guarded(message, message_size, [&] {
-    copy_text(attach_scene(m), message, message_size);
+    std::string warnings;
+    for (const std::string& warning : attach_scene(m, given_keys(keys, count))) {
+      warnings += (warnings.empty() ? "" : "\n") + warning;
+    }
+    copy_text(warnings, message, message_size);
     install_callback();
     return 0;
   });
@@ -173,7 +200,7 @@ int volcontact_attach(mjModel* m, char* message, int message_size) {
 int volcontact_detach(mjModel* m, char* message, int message_size) {
   return guarded(message, message_size, [&] {
     if (!detach_scene(m)) throw std::logic_error("the model is not attached");
-    if (attached_scenes() == 0 && !attaches_by_itself()) uninstall_callback();
+    if (scenes_of_the_callback() == 0 && !attaches_by_itself()) uninstall_callback();
     return 0;
   });
 }
@@ -186,7 +213,7 @@ int volcontact_set_auto(int on) {
   return guarded(nullptr, 0, [&] {
     set_attaches_by_itself(on != 0);
     if (on != 0) install_callback();
-    if (on == 0 && attached_scenes() == 0) uninstall_callback();
+    if (on == 0 && scenes_of_the_callback() == 0) uninstall_callback();
     return 0;
   });
 }

@@ -83,16 +83,32 @@ VOLCONTACT_API int volcontact_mujoco_version(void);
 // 0 when the MuJoCo in this process is the one this library was compiled for.
 VOLCONTACT_API int volcontact_check_version(char* message, int message_size);
 
+// A key of the program: "volcontact/option/..." or a field of "volcontact/material/<name>/...",
+// named and numbered as in a file. The functions ..._with take such keys beside those of the file,
+// and before them. A material that no tuple of the file names is that of all geoms without one.
+typedef struct volcontact_key_ {
+  const char* name;
+  const double* numbers;
+  int count;
+} volcontact_key;
+
 // How many numbers of mjData.userdata the scene needs.
 VOLCONTACT_API int volcontact_userdata_size(const mjModel* m, char* message, int message_size);
+VOLCONTACT_API int volcontact_userdata_size_with(const mjModel* m, const volcontact_key* keys,
+                                                 int count, char* message, int message_size);
 
 // Adds that many to m->nuserdata. Call it on a new model, before any mjData is made of it.
 VOLCONTACT_API int volcontact_reserve(mjModel* m, char* message, int message_size);
+VOLCONTACT_API int volcontact_reserve_with(mjModel* m, const volcontact_key* keys, int count,
+                                           char* message, int message_size);
 
 // Makes the contact of the model volumetric: native contact off, passive callback installed (one
-// that was there before keeps being called). Warnings, if any, come in `message`. Detach before the
-// model is deleted.
+// that was there before keeps being called). Warnings, if any, come in `message`, one a line.
+// Detach before the model is deleted. A model without any key needs no room in userdata:
+// docs/plugin.md, "Models without room".
 VOLCONTACT_API int volcontact_attach(mjModel* m, char* message, int message_size);
+VOLCONTACT_API int volcontact_attach_with(mjModel* m, const volcontact_key* keys, int count,
+                                          char* message, int message_size);
 
 // Restores native contact, and the callback when this was the last attached model.
 VOLCONTACT_API int volcontact_detach(mjModel* m, char* message, int message_size);

@@ -17,3 +17,15 @@ function(volcontact_target name)
     POSITION_INDEPENDENT_CODE ON
     COMPILE_WARNING_AS_ERROR ${VOLCONTACT_WARNINGS_AS_ERRORS})
 endfunction()
+
+# What a user of the core must have as well. Scope: PUBLIC for the core, INTERFACE for one that was
+# compiled before.
+function(volcontact_core_usage name scope)
+  cmake_path(GET CMAKE_CURRENT_FUNCTION_LIST_DIR PARENT_PATH plugin)
+  target_include_directories(${name} ${scope} "${plugin}")
+  target_link_libraries(${name} ${scope} Eigen3::Eigen OpenMP::OpenMP_CXX)
+  # Our tasks are the only parallel ones; Eigen's own threads would change the order of its sums.
+  target_compile_definitions(${name} ${scope} EIGEN_DONT_PARALLELIZE EIGEN_MPL2_ONLY)
+  # Equal bits on every machine: headers are inlined into users of the core, so they need it too.
+  target_compile_options(${name} ${scope} -ffp-contract=off)
+endfunction()

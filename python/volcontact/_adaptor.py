@@ -18,6 +18,8 @@ from typing import Any, NamedTuple
 import mujoco  # first: then the process has one copy of libmujoco
 import numpy as np
 
+from volcontact import _adaptor_build
+
 SITE_DTYPE = np.dtype(
     [
         ("pair", "i4"),
@@ -81,17 +83,28 @@ class RawSurfaceSize(ctypes.Structure):
     _fields_ = (("columns", ctypes.c_int), ("triangles", ctypes.c_int), ("rim", ctypes.c_int))
 
 
+class Key(ctypes.Structure):
+    """`volcontact_key`."""
+
+    _fields_ = (
+        ("name", ctypes.c_char_p),
+        ("numbers", ctypes.POINTER(ctypes.c_double)),
+        ("count", ctypes.c_int),
+    )
+
+
 class _Signature(NamedTuple):
     arguments: tuple[Any, ...]
     has_message: bool = False
 
 
+_WITH_KEYS = _Signature((ctypes.c_void_p, ctypes.POINTER(Key), ctypes.c_int), has_message=True)
 _SIGNATURES = {
     "mujoco_version": _Signature(()),
     "check_version": _Signature((), has_message=True),
-    "userdata_size": _Signature((ctypes.c_void_p,), has_message=True),
-    "reserve": _Signature((ctypes.c_void_p,), has_message=True),
-    "attach": _Signature((ctypes.c_void_p,), has_message=True),
+    "userdata_size_with": _WITH_KEYS,
+    "reserve_with": _WITH_KEYS,
+    "attach_with": _WITH_KEYS,
     "detach": _Signature((ctypes.c_void_p,), has_message=True),
     "is_attached": _Signature((ctypes.c_void_p,)),
     "is_installed": _Signature(()),
@@ -183,16 +196,31 @@ def adaptor() -> Adaptor:
     your own, docs/own_laws.md.
 
     Raises:
-        RuntimeError: the package has none for this release, or a broken one.
+        RuntimeError: the package has none for this release and cannot compile one, or it is broken.
+    """
+    return Adaptor(library_path())
+
+
+def library_path(*, may_compile: bool = True) -> Path:
+    """The library that serves the MuJoCo that was imported.
+
+    Raises:
+        RuntimeError: the package has none, and cannot or may not compile one.
     """
     own = os.environ.get("VOLCONTACT_ADAPTOR")
     if own:
-        return Adaptor(Path(own))
-    wanted = _PREFIX + mujoco.__version__ + _SUFFIX
+        return Path(own)
+    wanted = f"{_PREFIX}{mujoco.__version__}{_SUFFIX}"
     folders = _library_folders()
     for folder in folders:
         if (folder / wanted).is_file():
-            return Adaptor(folder / wanted)
+            return folder / wanted
+    reason = "nothing was compiled"
+    if may_compile:
+        try:
+            return _adaptor_build.build(wanted, folders[0] / "source")
+        except (RuntimeError, OSError) as error:
+            reason = str(error)
     present = sorted(
         path.name.removeprefix(_PREFIX).removesuffix(_SUFFIX)
         for folder in folders
@@ -200,11 +228,18 @@ def adaptor() -> Adaptor:
     )
     built_for = "MuJoCo " + " and ".join(present) if present else "no MuJoCo at all"
     raise RuntimeError(
-        f"volcontact runs with MuJoCo {mujoco.__version__} but was built for {built_for}. In a "
-        f"checkout run `MUJOCO={mujoco.__version__} ./run python ...`; elsewhere reinstall "
-        "volcontact beside this MuJoCo with `pip install --no-build-isolation --force-reinstall "
-        "--no-deps .`"
+        f"volcontact runs with MuJoCo {mujoco.__version__} but was built for {built_for}, and "
+        f"cannot be compiled for it now: {reason}"
     )
+
+
+def register_engine_plugin() -> None:
+    """Makes the engine plugin known; MuJoCo 4 calls it when it is imported."""
+    try:
+        path = library_path(may_compile=False)
+    except RuntimeError:
+        return  # who asks for volcontact itself is told
+    ctypes.CDLL(str(path))
 
 
 def _library_folders() -> list[Path]:

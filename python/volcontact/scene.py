@@ -15,6 +15,7 @@ import numpy as np
 
 from volcontact._adaptor import CONTACT_DTYPE, SITE_DTYPE, RawEnergy, RawSurfaceSize, adaptor
 from volcontact.compiling import compile_scene
+from volcontact.given_keys import GivenKeys, Values
 from volcontact.surface import SiteSurface
 
 
@@ -43,7 +44,12 @@ class Energy(NamedTuple):
     power: Channels
 
 
-def load(path_or_xml_text: str | os.PathLike[str]) -> mujoco.MjModel:
+def load(
+    path_or_xml_text: str | os.PathLike[str],
+    *,
+    material: Values | None = None,
+    options: Values | None = None,
+) -> mujoco.MjModel:
     """Loads a scene with room in `mjData.userdata` for volumetric contact.
 
     Works on every MuJoCo release; the model steps in plain MuJoCo as well. Room that the file
@@ -51,6 +57,8 @@ def load(path_or_xml_text: str | os.PathLike[str]) -> mujoco.MjModel:
 
     Args:
         path_or_xml_text: path of an MJCF (or URDF, or .mjb) file, or MJCF text.
+        material: what `attach` will be given; it may take more room.
+        options: likewise.
 
     Raises:
         TypeError: neither path nor text.
@@ -61,33 +69,44 @@ def load(path_or_xml_text: str | os.PathLike[str]) -> mujoco.MjModel:
     """
     if not isinstance(path_or_xml_text, (str, os.PathLike)):
         raise TypeError(f"load takes a path or MJCF text, got {type(path_or_xml_text).__name__}")
+    keys = GivenKeys(material, options)
     library = adaptor()
     model = compile_scene(os.fspath(path_or_xml_text))
-    library.call("reserve", model._address)
+    library.call("reserve_with", model._address, *keys.arguments)
     return model
 
 
-def attach(model: mujoco.MjModel) -> Contact:
+def attach(
+    model: mujoco.MjModel, *, material: Values | None = None, options: Values | None = None
+) -> Contact:
     """Makes the contact of a model volumetric, in all its data, until it is closed.
 
     Turns native contact off and installs the passive callback; a callback that was there before
     keeps being called. Several models may be attached at a time, each until its own `close`.
 
+    Any model will do. One from `load` has room for volcontact's state in `mjData.userdata`. One
+    without a `volcontact/...` key and without room has it beside its data, and the target
+    `passive`: docs/plugin.md, "Models without room".
+
     Args:
-        model: with room in userdata, as `load` makes it.
+        model: to attach.
+        material: of all geoms that have none by the file, `{"stiffness": 1e9, "friction": 0.4,
+            "friction_law": "bristle"}`; docs/writing_a_scene.md, "Materials".
+        options: before those of the file, `{"tolerance": 1e-4, "mesh": "hull"}`;
+            docs/writing_a_scene.md, "Options".
 
     Returns:
         A context manager that closes at exit.
 
     Raises:
-        TypeError: not an MjModel.
-        ValueError: a `volcontact/...` key is wrong, userdata is too small, the model is attached
-            already, or it uses what volumetric contact cannot serve.
+        TypeError: not an MjModel, or a value that is neither number nor word.
+        ValueError: a `volcontact/...` key is wrong, userdata is too small for the keys of the file,
+            the model is attached already, or it uses what volumetric contact cannot serve.
         RuntimeError: the package has no adaptor for this MuJoCo.
     """
     if not isinstance(model, mujoco.MjModel):
         raise TypeError(f"attach takes an mujoco.MjModel, got {type(model).__name__}")
-    return Contact(model)
+    return Contact(model, GivenKeys(material, options))
 
 
 def contact_forces(data: mujoco.MjData) -> np.ndarray:
@@ -116,14 +135,14 @@ class Contact:
     # An attached model stays attached, and alive, until `close`, whoever forgets the object.
     _open: dict[int, Contact] = {}  # noqa: RUF012
 
-    def __init__(self, model: mujoco.MjModel) -> None:
+    def __init__(self, model: mujoco.MjModel, keys: GivenKeys) -> None:
         self._adaptor = adaptor()
         self._model = model
         self._sites = np.empty(64, SITE_DTYPE)
         self._reported = ""
-        _, warning = self._adaptor.call_with_message("attach", model._address)
+        _, text = self._adaptor.call_with_message("attach_with", model._address, *keys.arguments)
         Contact._open[model._address] = self
-        if warning:
+        for warning in text.splitlines():
             warnings.warn(warning, RuntimeWarning, stacklevel=3)
 
     def __enter__(self) -> Contact:

@@ -16,6 +16,7 @@ import numpy as np
 
 from volcontact import scene as volumetric_scene
 from volcontact._mujoco_views import dense
+from volcontact.given_keys import GivenKeys, Values
 from volcontact.recording import CHANNELS, SITE, SITE_IN_RUN, ContactKind, Frame, Recording
 
 Progress = Callable[[int, int], None]
@@ -38,6 +39,8 @@ def simulate(
     duration: float,
     timestep: float | None = None,
     frame_interval: float | None = 0.2,
+    material: Values | None = None,
+    options: Values | None = None,
     progress: Progress | None = None,
 ) -> Recording:
     """Steps a scene for a while, from its keyframe `start` if it has one, and records it.
@@ -48,6 +51,8 @@ def simulate(
         duration: [s].
         timestep: [s]; None takes the scene's.
         frame_interval: time between two frames to draw [s]; None records no frames.
+        material: of volumetric contact, as `volcontact.attach` takes it.
+        options: likewise.
         progress: called now and then with (steps done, steps in all).
 
     Returns:
@@ -58,7 +63,8 @@ def simulate(
         FileNotFoundError: there is no such file.
         ValueError: the scene cannot be read or understood.
     """
-    model = _model_to_run(scene, contact, timestep)
+    keys = GivenKeys(material, options)
+    model = _model_to_run(scene, contact, timestep, keys)
     step = float(model.opt.timestep)
     if not (np.isfinite(duration) and duration >= step):
         raise SimulationError(f"duration {duration:g} s must be at least one timestep ({step:g} s)")
@@ -67,7 +73,7 @@ def simulate(
     steps = round(duration / step)
     data = mujoco.MjData(model)
     to_start(model, data)
-    with _probe(contact, model) as probe:
+    with _probe(contact, model, keys) as probe:
         recorder = _Recorder(model, probe, steps, frame_interval)
         every = max(1, steps // _PROGRESS_CALLS)
         for i in range(steps):
@@ -152,14 +158,19 @@ def warnings_of(data: mujoco.MjData) -> dict[str, int]:
 
 
 def _model_to_run(
-    scene: str | os.PathLike[str] | mujoco.MjModel, contact: ContactKind, timestep: float | None
+    scene: str | os.PathLike[str] | mujoco.MjModel,
+    contact: ContactKind,
+    timestep: float | None,
+    keys: GivenKeys,
 ) -> mujoco.MjModel:
     if contact not in ("volumetric", "native"):
         raise SimulationError(f"contact {contact!r} must be 'volumetric' or 'native'")
     if isinstance(scene, mujoco.MjModel):
         model = copy.copy(scene)
+        if contact == "volumetric":  # nobody has data of the copy yet
+            keys.make_room(model)
     elif contact == "volumetric":
-        model = volumetric_scene.load(scene)
+        model = volumetric_scene.load(scene, material=keys.material, options=keys.options)
     else:
         model = native_model(scene)
     if timestep is not None:
@@ -184,11 +195,11 @@ class _Probe(Protocol):
 
 
 @contextlib.contextmanager
-def _probe(contact: ContactKind, model: mujoco.MjModel) -> Iterator[_Probe]:
+def _probe(contact: ContactKind, model: mujoco.MjModel, keys: GivenKeys) -> Iterator[_Probe]:
     if contact == "native":
         yield _NativeProbe(model)
         return
-    with volumetric_scene.attach(model) as attached:
+    with volumetric_scene.Contact(model, keys) as attached:
         yield _VolumetricProbe(attached)
 
 

@@ -82,7 +82,7 @@ TEST_F(AutoAttach, OffAgainItIsInstalledOnlyWhereAModelIsAttached) {
     volcontact_set_auto(0);
     EXPECT_EQ(volcontact_is_installed(), 1);
   }
-  EXPECT_EQ(volcontact_is_installed(), attached_scenes() > 0 ? 1 : 0);
+  EXPECT_EQ(volcontact_is_installed(), scenes_of_the_callback() > 0 ? 1 : 0);
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ TEST(MeshSolids, AreNotMadeAgainForOtherNumbers) {
   const SceneContact before(m.get());
   m->numeric_data[0] = 1e8;
   m->geom_friction[0] = 0.3;
-  const SceneContact now(m.get(), &before);
+  const SceneContact now(m.get(), {}, &before);
   const auto tree = [](const SceneContact& contact) {
     return &std::get<Mesh>(contact.solids()[1]).tree();
   };
@@ -73,6 +73,18 @@ TEST(MeshSolids, OpenMeshIsRefusedByNameAndPlace) {
   EXPECT_TRUE(testing::contains(text, "3 boundary edges, the first at ("));
   EXPECT_TRUE(testing::contains(text, "volcontact mesh repair"));
   EXPECT_TRUE(testing::contains(text, "volcontact/option/mesh/hull"));
+}
+
+TEST(MeshSolids, HullStandsForAnOpenMeshWhereThatIsAskedFor) {
+  const std::string open = std::string(kFaces).substr(0, std::string(kFaces).size() - 7);
+  const std::string key = testing::numeric("volcontact/option/mesh/exact_or_hull", "1");
+  const SceneContact of_open(testing::compile(scene(open, key)).get());
+  EXPECT_TRUE(std::holds_alternative<ConvexPolytope>(of_open.solids()[1]));
+  ASSERT_EQ(of_open.alerts().size(), 1U);
+  EXPECT_TRUE(testing::contains(of_open.alerts()[0], "meshes that bound no solid: ell"));
+  const SceneContact of_closed(testing::compile(scene(kFaces, key)).get());
+  EXPECT_TRUE(std::holds_alternative<Mesh>(of_closed.solids()[1]));
+  EXPECT_TRUE(of_closed.alerts().empty());
 }
 
 TEST(MeshSolids, HeightFieldIsWhatIsBetweenItAndItsBase) {

@@ -90,7 +90,7 @@ TEST(SceneRegistry, ModelAtTheAddressOfOneThatWasNeverDetachedCanBeAttached) {
   EXPECT_NE(contact_of(m.get()), nullptr);
   EXPECT_EQ(volcontact_detach(m.get(), nullptr, 0), 0);
   *m = kept;
-  EXPECT_EQ(attached_scenes(), 0);
+  EXPECT_EQ(scenes_of_the_callback(), 0);
 }
 
 TEST(LiveNumbers, ChangeActsInTheNextEvaluation) {

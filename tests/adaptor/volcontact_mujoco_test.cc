@@ -35,7 +35,8 @@ TEST(Interface, VersionsAreSpeltAsMuJoCoDoes) {
 }
 
 TEST(Interface, TooSmallUserdataNamesTheLineToAdd) {
-  const ModelPointer m = testing::compile(testing::ball_scene(1.0, ""));
+  const std::string key = testing::numeric("volcontact/option/tolerance", "1e-3");
+  const ModelPointer m = testing::compile(testing::ball_scene(1.0, key));
   const int needed = ask(volcontact_userdata_size, m).code;
   EXPECT_GT(needed, 0);
   const Answer answer = ask(volcontact_attach, m);
@@ -43,9 +44,82 @@ TEST(Interface, TooSmallUserdataNamesTheLineToAdd) {
   const std::string line = "<size nuserdata=\"" + std::to_string(needed) + "\"/>";
   EXPECT_TRUE(testing::contains(answer.message, line));
   // And with that line it works.
-  const ModelPointer better = testing::compile(testing::ball_scene(1.0, line));
+  const ModelPointer better = testing::compile(testing::ball_scene(1.0, key + line));
   EXPECT_EQ(ask(volcontact_attach, better).code, 0);
   EXPECT_EQ(ask(volcontact_detach, better).code, 0);
+}
+
+TEST(Interface, KeysOfTheProgramComeBeforeThoseOfTheFile) {
+  const ModelPointer m = testing::load(testing::ball_scene(
+      0.049, testing::material("m", {{"stiffness", "2e8"}, {"damping", "0"}}, {"floor"})));
+  const testing::DataPointer d = testing::make_data(m);
+  const auto force_with = [&](std::vector<std::pair<std::string, double>> given) {
+    std::vector<volcontact_key> keys;
+    for (const auto& [name, number] : given) keys.push_back({name.c_str(), &number, 1});
+    char message[1000] = "";
+    const int code = volcontact_attach_with(m.get(), keys.data(), static_cast<int>(keys.size()),
+                                            message, sizeof message);
+    if (code < 0) throw std::invalid_argument(message);
+    mj_resetData(m.get(), d.get());
+    mj_forward(m.get(), d.get());
+    volcontact_detach(m.get(), nullptr, 0);
+    return d->qfrc_applied[2] + d->qfrc_passive[2];
+  };
+  const std::string ball = "volcontact/material/of_ball/stiffness";
+  const double one = force_with({{ball, 2e8}, {"volcontact/option/implicit/off", 1.0}});
+  EXPECT_GT(one, 0.0);
+  // In series with the floor of the file: 1e8 of two times 2e8, and 3/2 of it of 2e8 and 6e8.
+  const double other = force_with({{ball, 6e8}, {"volcontact/option/implicit/off", 1.0}});
+  EXPECT_NEAR(other, 1.5 * one, 1e-9 * one);
+  const double floor = force_with({{ball, 6e8},
+                                   {"volcontact/material/m/stiffness", 6e8},
+                                   {"volcontact/option/implicit/off", 1.0},
+                                   {"volcontact/option/target/passive", 1.0}});
+  EXPECT_NEAR(floor, 3.0 * one, 1e-9 * one);
+  EXPECT_GT(d->qfrc_passive[2], 0.0);
+  const auto error_with = [&](const char* name, double number) {
+    return testing::message_of([&] { force_with({{ball, 1e8}, {name, number}}); });
+  };
+  EXPECT_TRUE(testing::contains(error_with("volcontact/option/tolerence", 1e-3), "tolerance"));
+  EXPECT_TRUE(testing::contains(error_with("stiffness", 1e8), "begin with volcontact/"));
+  EXPECT_TRUE(testing::contains(error_with("volcontact/material/b/stiffness", 1e8),
+                                "volcontact/material/of_ball is that of all geoms"));
+  EXPECT_TRUE(
+      testing::contains(error_with("volcontact/material/m/friction", -1.0), "out of range"));
+}
+
+TEST(Interface, ModelWithoutKeysNeedsNoRoom) {
+  const ModelPointer m = testing::compile(testing::ball_scene(0.049, ""));
+  const ModelPointer roomy = testing::load(
+      testing::ball_scene(0.049, testing::numeric("volcontact/option/target/passive", "1")));
+  const testing::DataPointer d = testing::make_data(m), of_roomy = testing::make_data(roomy);
+  const testing::Attached attached(m), also(roomy);
+  for (int i = 0; i < 1000; ++i) {
+    mj_step(m.get(), d.get());
+    mj_step(roomy.get(), of_roomy.get());
+  }
+  EXPECT_EQ(d->ncon, 0);
+  EXPECT_GT(d->qfrc_passive[2], 0.0);
+  for (int i = 0; i < m->nq; ++i) EXPECT_EQ(d->qpos[i], of_roomy->qpos[i]);
+  volcontact_energy energy, of_other;
+  volcontact_get_energy(m.get(), d.get(), &energy);
+  volcontact_get_energy(roomy.get(), of_roomy.get(), &of_other);
+  EXPECT_EQ(energy.elastic, of_other.elastic);
+  EXPECT_EQ(energy.dissipated[0], of_other.dissipated[0]);
+  EXPECT_GT(energy.dissipated[0], 0.0);
+}
+
+TEST(Interface, OnlyTargetPassiveGoesWithoutRoom) {
+  const ModelPointer m = testing::compile(testing::ball_scene(0.049, ""));
+  const double one = 1.0;
+  for (const char* name : {"volcontact/option/target/applied", "volcontact/option/target/xfrc"}) {
+    const volcontact_key key{name, &one, 1};
+    char message[1000] = "";
+    EXPECT_EQ(volcontact_attach_with(m.get(), &key, 1, message, sizeof message),
+              VOLCONTACT_ERROR_SCENE);
+    EXPECT_TRUE(
+        testing::contains(message, "without room there is volcontact/option/target/passive"));
+  }
 }
 
 TEST(Interface, UsersOwnUserdataIsNotTouched) {

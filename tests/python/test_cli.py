@@ -52,6 +52,27 @@ def test_run_prints_how_it_ended(scene, capsys):
     assert output.err == ""
 
 
+def test_material_and_option_act_without_a_key_in_the_file(scene, capsys):
+    keys = ["--material", "stiffness=4e8", "--material", "friction_law=bristle"]
+    keys += ["--option", "target=passive"]
+    assert main(["check", scene, "--json", *keys]) == 0
+    description = json.loads(capsys.readouterr().out)
+    (pair,) = description["pairs"]
+    assert (pair["stiffness"], pair["friction_law"]) == (2e8, "bristle")
+    assert description["options"]["target"] == "passive"
+    depths = []
+    for stiffness in ("1e8", "4e8"):
+        arguments = ["run", scene, "--duration", "2", "--material", f"stiffness={stiffness}"]
+        assert main([*arguments, "--json"]) == 0
+        depths.append(json.loads(capsys.readouterr().out)["volumetric"]["max_penetration"])
+    assert depths[1] < 0.6 * depths[0]
+    with pytest.raises(SystemExit):
+        main(["run", scene, "--material", "stiffness"])
+    assert "must be NAME=VALUE" in capsys.readouterr().err
+    assert main(["run", scene, "--material", "stifness=1"]) == 1
+    assert "did you mean" in capsys.readouterr().err
+
+
 def test_run_prints_json_and_nothing_else(scene, capsys):
     assert main(["run", scene, "--duration", "0.1", "--contact", "native", "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
@@ -184,9 +205,11 @@ def test_bars_appear_only_when_the_work_takes_a_while(monkeypatch):
 
 
 def test_check_prints_the_line_that_a_hand_written_scene_needs(scene, tmp_path, capsys):
+    key = '<custom><numeric name="volcontact/option/tolerance" data="1e-3"/></custom></mujoco>'
+    text = Path(scene).read_text().replace("</mujoco>", key)
+    Path(scene).write_text(text)
     assert main(["check", scene]) == 0
     (line,) = re.findall(r"<size nuserdata=\"\d+\"/>", capsys.readouterr().out)
-    text = Path(scene).read_text()
     # With that line plain MuJoCo loads a model that can be attached; without, it cannot.
     with pytest.raises(ValueError, match="userdata is too small"):
         volcontact.attach(mujoco.MjModel.from_xml_string(text))

@@ -158,6 +158,13 @@ def test_assembly_page_and_its_plots_are_generated_from_the_results() -> None:
         assert f"<dc:source>{module.digest()}</dc:source>" in plot, command
 
 
+def test_third_party_page_is_generated_from_the_results() -> None:
+    module = generator("make_third_party")
+    assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
+        "run './run python docs/make_third_party.py'"
+    )
+
+
 def test_results_hold_no_path_and_no_name_of_a_machine() -> None:
     results = sorted((ROOT / "tests" / "benchmarks" / "results").glob("*.csv"))
     assert results
@@ -214,7 +221,8 @@ def test_documented_messages_are_those_of_the_code(mistake: str) -> None:
 
 
 def test_documented_message_for_too_little_userdata() -> None:
-    model = mujoco.MjModel.from_xml_string(SCENE.format(assets="", bodies="", keys=""))
+    keys = number("option/tolerance", 1e-3)
+    model = mujoco.MjModel.from_xml_string(SCENE.format(assets="", bodies="", keys=keys))
     with pytest.raises(ValueError, match="userdata") as caught:
         vc.attach(model)
     assert str(caught.value) in documented_messages()

@@ -13,6 +13,8 @@ import shtab
 if TYPE_CHECKING:
     from typing import TypeAlias
 
+    from volcontact.given_keys import Value
+
     Subparsers: TypeAlias = argparse._SubParsersAction[argparse.ArgumentParser]
 
 
@@ -57,6 +59,37 @@ def add_time(parser: argparse.ArgumentParser, duration: float) -> None:
     parser.add_argument(
         "--timestep", type=positive, metavar="S", help="timestep [s] (default: the scene's)"
     )
+
+
+def add_keys(parser: argparse.ArgumentParser) -> None:
+    """Adds --material and --option, for scenes without keys of their own."""
+    parser.add_argument(
+        "--material",
+        type=key,
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="of all geoms that have none by the file, such as stiffness=1e9; may be repeated",
+    )
+    parser.add_argument(
+        "--option",
+        type=key,
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="before that of the file, such as mesh=exact_or_hull; may be repeated",
+    )
+
+
+def key(text: str) -> tuple[str, Value]:
+    """Reads a name and a number or word."""
+    name, separator, value = text.partition("=")
+    if not (name and separator and value):
+        raise argparse.ArgumentTypeError(f"{text!r} must be NAME=VALUE")
+    try:
+        return name, float(value)
+    except ValueError:
+        return name, value
 
 
 def scene(text: str) -> str:

@@ -16,7 +16,7 @@ from rich.markup import escape
 from rich.table import Table
 
 import volcontact
-from volcontact.cli.arguments import add_command, pixels
+from volcontact.cli.arguments import add_command, add_keys, pixels
 from volcontact.cli.terminal import Terminal
 
 if TYPE_CHECKING:
@@ -49,6 +49,7 @@ def add_to(commands: Subparsers) -> None:
     parser.add_argument(
         "--height", type=pixels, default=600, metavar="PX", help="of the picture (default: 600)"
     )
+    add_keys(parser)
     parser.set_defaults(execute=execute)
 
 
@@ -56,12 +57,13 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     """Runs the command and returns the exit status."""
     from volcontact.simulation import to_start
 
-    model = volcontact.load(arguments.scene)
+    keys = {"material": dict(arguments.material), "options": dict(arguments.option)}
+    model = volcontact.load(arguments.scene, **keys)
     data = mujoco.MjData(model)
     to_start(model, data)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # they are part of the description
-        with volcontact.attach(model) as contact:
+        with volcontact.attach(model, **keys) as contact:
             description = contact.description
             mujoco.mj_forward(model, data)
             sites = contact.sites(data)
@@ -184,7 +186,7 @@ def _print(description: dict[str, Any], terminal: Terminal) -> None:
         terminal.warning(str(warning))
 
 
-def size_line(userdata: dict[str, int]) -> str:
+def size_line(userdata: dict[str, Any]) -> str:
     """What a program that does not use `volcontact.load` must find in the file.
 
     Args:

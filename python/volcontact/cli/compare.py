@@ -14,7 +14,7 @@ from rich.padding import Padding
 from rich.table import Table
 
 import volcontact
-from volcontact.cli.arguments import add_command, add_time, pixels, positive
+from volcontact.cli.arguments import add_command, add_keys, add_time, pixels, positive
 from volcontact.cli.status import report_warnings
 from volcontact.cli.terminal import Terminal
 
@@ -27,6 +27,7 @@ _EXAMPLES = """\
   volcontact compare scene.xml
   volcontact compare scene.xml --duration 3 --out report
   volcontact compare scene.xml --frame-interval 0.1 --width 960 --height 720 --camera side
+  volcontact compare scene.xml --material stiffness=1e9 --option mesh=exact_or_hull
   volcontact compare scene.xml --no-frames --json
 """
 
@@ -40,6 +41,7 @@ def add_to(commands: Subparsers) -> None:
         _EXAMPLES,
     )
     add_time(parser, duration=3.0)
+    add_keys(parser)
     parser.add_argument(
         "--out",
         type=Path,
@@ -93,6 +95,8 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
                 contact=contact,
                 duration=arguments.duration,
                 timestep=arguments.timestep,
+                material=dict(arguments.material),
+                options=dict(arguments.option),
                 frame_interval=arguments.frame_interval,
                 progress=bars.task(f"{contact} contact"),
             )

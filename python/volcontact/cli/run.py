@@ -12,7 +12,7 @@ import mujoco
 from rich.table import Table
 
 import volcontact
-from volcontact.cli.arguments import add_command, add_time
+from volcontact.cli.arguments import add_command, add_keys, add_time
 from volcontact.cli.status import report_warnings
 from volcontact.cli.terminal import Terminal
 
@@ -32,6 +32,7 @@ def add_to(commands: Subparsers) -> None:
         commands, "run", "step a scene under one kind of contact and say how it ended", _EXAMPLES
     )
     add_time(parser, duration=3.0)
+    add_keys(parser)
     parser.add_argument(
         "--contact",
         choices=("volumetric", "native"),
@@ -60,6 +61,8 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             contact=arguments.contact,
             duration=arguments.duration,
             timestep=arguments.timestep,
+            material=dict(arguments.material),
+            options=dict(arguments.option),
             frame_interval=None,
             progress=bars.task(f"{arguments.contact} contact"),
         )

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/engine_plugin.h"
+
+#include "adaptor/mujoco_compat.h"
+
+// MuJoCo 2.3 has engine plugins, too, but fails where data with one are copied.
+#if mjVERSION_HEADER >= 300
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+
+#include "adaptor/auto_attach.h"
+#include "adaptor/largest_state.h"
+#include "adaptor/passive_callback.h"
+#include "adaptor/scene_drawing.h"
+#include "adaptor/scene_registry.h"
+
+namespace volcontact::adaptor {
+namespace {
+
+constexpr const char* kName = "volcontact";
+
+// The contact of a model with our instance; null where it is refused.
+const SceneContact* contact_in_plugin(const mjModel* m) noexcept {
+  return contact_by_itself(m, Wish::kByPlugin);
+}
+
+int state_size(const mjModel* m, int /*instance*/) { return largest_state(m); }
+
+// Called when data are made, also by the compiler: a scene that cannot be used does not compile.
+int init(const mjModel* m, mjData* /*d*/, int /*instance*/) {
+  // MuJoCo's errors leave by longjmp: no object with a destructor is alive then.
+  thread_local char message[1000];
+  message[0] = '\0';
+  try {
+    if (!contact_of(m)) attach_scene(const_cast<mjModel*>(m), {}, Attacher::kItself);
+  } catch (const std::exception& error) {
+    std::snprintf(message, sizeof message, "volcontact: %s", error.what());
+  }
+  if (message[0] != '\0') mju_error("%s", message);
+  contact_in_plugin(m);  // so that native contact is off before the first evaluation
+  return 0;
+}
+
+void reset(const mjModel* m, mjtNum* state, void* /*data*/, int instance) {
+  std::fill_n(state, m->plugin_statenum[instance], 0.0);
+}
+
+void compute(const mjModel* m, mjData* d, int /*instance*/, int /*capability*/) {
+  if (const SceneContact* contact = contact_in_plugin(m)) contact->step(m, d, thread_scratch());
+}
+
+void visualize(const mjModel* m, mjData* d, const mjvOption* option, mjvScene* scene,
+               int /*instance*/) {
+  const SceneContact* contact = contact_of(m);
+  if (contact) draw_sites(*contact, m, d, option, scene, thread_scratch());
+}
+
+int slot_of_plugin() noexcept {
+  int slot = -1;
+  return mjp_getPlugin(kName, &slot) ? slot : -1;
+}
+
+}  // namespace
+
+void register_engine_plugin() {
+  if (mj_version() != mjVERSION_HEADER || slot_of_plugin() >= 0) return;
+  mjpPlugin plugin;
+  mjp_defaultPlugin(&plugin);
+  plugin.name = kName;
+  plugin.capabilityflags = mjPLUGIN_PASSIVE;
+  plugin.nstate = state_size;
+  plugin.init = init;
+  plugin.reset = reset;
+  plugin.compute = compute;
+  plugin.visualize = visualize;
+  mjp_registerPlugin(&plugin);
+}
+
+PluginRoom plugin_room(const mjModel* m) noexcept {
+  const int slot = slot_of_plugin();
+  if (slot < 0) return {};
+  const int* instance = std::find(m->plugin, m->plugin + m->nplugin, slot);
+  if (instance == m->plugin + m->nplugin) return {};
+  const auto i = instance - m->plugin;
+  return {true, m->plugin_statenum[i], m->plugin_stateadr[i] + m->plugin_statenum[i]};
+}
+
+mjtNum* plugin_room_end(const mjData* d, const PluginRoom& room) noexcept {
+  return d->plugin_state + room.end;
+}
+
+}  // namespace volcontact::adaptor
+
+#else
+
+namespace volcontact::adaptor {
+
+void register_engine_plugin() {}
+PluginRoom plugin_room(const mjModel* /*m*/) noexcept { return {}; }
+mjtNum* plugin_room_end(const mjData* /*d*/, const PluginRoom& /*room*/) noexcept {
+  return nullptr;
+}
+
+}  // namespace volcontact::adaptor
+
+#endif

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Keys that a program gives beside those of the file: a material and options."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Mapping, Sequence
+
+import mujoco
+import numpy as np
+
+from volcontact._adaptor import Key, adaptor
+
+Value = float | str | Sequence[float]
+Values = Mapping[str, Value]
+
+# No tuple of a file has this name: then it is the material of all geoms without one.
+_MATERIAL = "volcontact/material/given/"
+_OPTION = "volcontact/option/"
+
+
+class GivenKeys:
+    """`material` and `options` as MJCF keys: `arguments` are those of the functions `..._with`.
+
+    Raises:
+        TypeError: not a mapping from names to numbers and words.
+    """
+
+    def __init__(self, material: Values | None, options: Values | None) -> None:
+        self.material = material
+        self.options = options
+        self._alive: list[object] = []  # what the records point to
+        records = [
+            self._record(name, numbers)
+            for what, stem, values in (
+                ("material", _MATERIAL, material),
+                ("options", _OPTION, options),
+            )
+            for name, numbers in _keys(what, stem, values or {})
+        ]
+        self._records = (Key * len(records))(*records)
+
+    @property
+    def arguments(self) -> tuple[ctypes.Array[Key], int]:
+        """The array and its length."""
+        return self._records, len(self._records)
+
+    def make_room(self, model: mujoco.MjModel) -> None:
+        """Adds room in userdata where it lacks; no data of the model may exist yet."""
+        library = adaptor()
+        needed = library.call("userdata_size_with", model._address, *self.arguments)
+        if model.nuserdata < needed:
+            library.call("reserve_with", model._address, *self.arguments)
+
+    def _record(self, name: str, numbers: list[float]) -> Key:
+        array = (ctypes.c_double * len(numbers))(*numbers)
+        self._alive.append(array)
+        return Key(name.encode(), array, len(numbers))
+
+
+def _keys(what: str, stem: str, values: Values) -> list[tuple[str, list[float]]]:
+    """Name and numbers of each key: a choice is spelled in the name."""
+    if not isinstance(values, Mapping):
+        raise TypeError(f"{what} takes a dict of names and values, got {type(values).__name__}")
+    keys = []
+    for name, value in values.items():
+        if isinstance(value, str):
+            keys.append((f"{stem}{name}/{value}", [1.0]))
+            continue
+        numbers = np.atleast_1d(value)
+        if numbers.dtype.kind not in "iuf":
+            raise TypeError(f"{what}[{name!r}] takes a number or a word, got {value!r}")
+        keys.append((f"{stem}{name}", numbers.astype(float).tolist()))
+    return keys

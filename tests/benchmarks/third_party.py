@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs scenes of metaworld, robosuite and gymnasium-robotics, as they are, under both contacts.
+
+    ./run python tests/benchmarks/third_party.py build/third_party --install
+
+The wheels (40, 527 and 26 MB) go into the folder given, without what they depend on: their MJCF is
+all that is needed. Each scene is compiled by MuJoCo, gets its data, and is then attached without a
+key in it. Writes one row a scene to results/third_party.csv; docs/make_third_party.py makes the
+page. Needs MuJoCo 3.3 or later, to put robosuite's parts together.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import subprocess
+import time
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+
+import volcontact as vc
+from volcontact.simulation import warnings_of
+
+RESULT = Path(__file__).parent / "results" / "third_party.csv"
+PACKAGES = {"metaworld": "3.1.1", "robosuite": "1.5.2", "gymnasium-robotics": "1.4.2"}
+STEPS = 2000
+MATERIAL = {"stiffness": 1e9}  # k_v [N/m^3]; friction stays that of the geoms
+OPTIONS = {"mesh": "exact_or_hull"}
+SWING = 0.2  # of half the range of each actuator
+KINDS = ("volumetric", "native")
+MEASURES = ("us", "contacts", "depth", "speed", "warnings")
+COLUMNS = (
+    *("package", "scene", "mujoco", "dofs", "geoms", "pairs", "hulls", "timestep", "integrator"),
+    *(f"{kind}_{measure}" for kind in KINDS for measure in MEASURES),
+    *("said", "refused"),
+)
+
+Maker = Callable[[Path], mujoco.MjModel]
+
+
+def file(name: str) -> Maker:
+    """A scene in one file."""
+    return lambda folder: mujoco.MjModel.from_xml_path(str(folder / name))
+
+
+def with_implicitfast(name: str) -> Maker:
+    """One of RK4, which `attach` says does not go with stiff contact, as it advises."""
+
+    def make(folder: Path) -> mujoco.MjModel:
+        model = mujoco.MjModel.from_xml_path(str(folder / name))
+        model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+        return model
+
+    return make
+
+
+def assembled(arena: str, part: str, position: tuple[float, float, float], *, free: bool) -> Maker:
+    """A part of robosuite's in one of its arenas, as its environments put them together."""
+
+    def make(folder: Path) -> mujoco.MjModel:
+        assets = folder / "robosuite" / "models" / "assets"
+        scene = mujoco.MjSpec.from_file(str(assets / arena))
+        other = mujoco.MjSpec.from_file(str(assets / part))
+        body = other.worldbody.first_body()
+        if free:
+            body.add_freejoint()
+        frame = scene.worldbody.add_frame(pos=position)
+        frame.attach_body(body, "part_", "")
+        return scene.compile()
+
+    return make
+
+
+METAWORLD = "metaworld/assets/sawyer_xyz"
+GYMNASIUM = "gymnasium_robotics/envs/assets"
+SCENES: dict[tuple[str, str], Maker] = {
+    ("metaworld", "assembly peg"): file(f"{METAWORLD}/sawyer_assembly_peg.xml"),
+    ("metaworld", "peg insertion side"): file(f"{METAWORLD}/sawyer_peg_insertion_side.xml"),
+    ("metaworld", "hammer"): file(f"{METAWORLD}/sawyer_hammer.xml"),
+    ("metaworld", "bin picking"): file(f"{METAWORLD}/sawyer_bin_picking.xml"),
+    ("metaworld", "drawer"): file(f"{METAWORLD}/sawyer_drawer.xml"),
+    ("robosuite", "square nut on pegs"): assembled(
+        "arenas/pegs_arena.xml", "objects/square-nut.xml", (0.23, 0.1, 0.95), free=True
+    ),
+    ("robosuite", "can in bins"): assembled(
+        "arenas/bins_arena.xml", "objects/can.xml", (0.1, -0.25, 0.95), free=True
+    ),
+    ("robosuite", "panda at a table"): assembled(
+        "arenas/table_arena.xml", "robots/panda/robot.xml", (-0.56, 0.0, 0.912), free=False
+    ),
+    ("gymnasium-robotics", "fetch, pick and place"): file(f"{GYMNASIUM}/fetch/pick_and_place.xml"),
+    ("gymnasium-robotics", "hand, block"): file(f"{GYMNASIUM}/hand/manipulate_block.xml"),
+    ("gymnasium-robotics", "hand, egg"): file(f"{GYMNASIUM}/hand/manipulate_egg.xml"),
+    ("gymnasium-robotics", "adroit, pen"): file(f"{GYMNASIUM}/adroit_hand/adroit_pen.xml"),
+    ("gymnasium-robotics", "adroit, door"): file(f"{GYMNASIUM}/adroit_hand/adroit_door.xml"),
+    ("gymnasium-robotics", "franka kitchen"): file(
+        f"{GYMNASIUM}/kitchen_franka/kitchen_assets/kitchen_env_model.xml"
+    ),
+    ("gymnasium-robotics", "ant, implicitfast for RK4"): with_implicitfast(
+        "gymnasium_robotics/envs/mujoco/assets/ant.xml"
+    ),
+    ("gymnasium-robotics", "half cheetah, implicitfast for RK4"): with_implicitfast(
+        "gymnasium_robotics/envs/mujoco/assets/half_cheetah.xml"
+    ),
+}
+
+
+def main() -> None:
+    """Runs all and writes the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path, help="with a folder for each package")
+    parser.add_argument("--install", action="store_true", help="fetch the packages first")
+    parser.add_argument("--steps", type=int, default=STEPS)
+    parser.add_argument("--only", default="", help="scenes with this word in their name")
+    parser.add_argument("--out", type=Path, default=RESULT)
+    arguments = parser.parse_args()
+    if arguments.install:
+        install(arguments.folder)
+    rows = []
+    for (package, scene), make in SCENES.items():
+        if arguments.only in scene:
+            row = {"package": package, "scene": scene}
+            row |= examine(lambda p=package, m=make: m(arguments.folder / p), arguments.steps)
+            rows.append(row)
+            print(" | ".join(f"{name} {row[name]}" for name in COLUMNS if row.get(name, "") != ""))
+    with arguments.out.open("w", encoding="utf-8", newline="") as table:
+        writer = csv.DictWriter(table, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def install(folder: Path) -> None:
+    """Unpacks the wheels, each into a folder of its own."""
+    uv = Path(__file__).parents[2] / ".venv" / "tools" / "bin" / "uv"
+    for package, version in PACKAGES.items():
+        target = ["--target", str(folder / package), f"{package}=={version}"]
+        subprocess.run([str(uv), "pip", "install", "-q", "--no-deps", *target], check=True)
+
+
+def examine(make: Callable[[], mujoco.MjModel], steps: int) -> dict[str, Any]:
+    """The row of one scene, under both contacts."""
+    model = make()
+    row: dict[str, Any] = {
+        "mujoco": mujoco.__version__,
+        "dofs": model.nv,
+        "geoms": model.ngeom,
+        "timestep": model.opt.timestep,
+        "integrator": mujoco.mjtIntegrator(model.opt.integrator).name.removeprefix("mjINT_"),
+    }
+    data = mujoco.MjData(model)  # before attach, as an environment has it
+    try:
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            contact = vc.attach(model, material=MATERIAL, options=OPTIONS)
+    except ValueError as error:
+        row["refused"] = str(error)
+    else:
+        with contact:
+            alerts = [str(w.message) for w in said]
+            row["said"] = "; ".join(alert.split(":")[0] for alert in alerts)
+            hulls = [alert for alert in alerts if "convex hull" in alert]
+            row["hulls"] = hulls[0].count(", ") + 1 if hulls else 0
+            row["pairs"] = len(contact.description["pairs"])
+            row |= measured("volumetric", model, data, steps, contact)
+    row |= measured("native", model, mujoco.MjData(model), steps)
+    return row
+
+
+def measured(
+    kind: str,
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    steps: int,
+    contact: vc.Contact | None = None,
+) -> dict[str, Any]:
+    """Steps with its actuators swinging a little about the middle of their range."""
+    if model.nkey:
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+    low, high = model.actuator_ctrlrange.T
+    phase = np.arange(model.nu)
+    spent, most, depth = [], 0, 0.0
+    for _ in range(steps):
+        wave = np.sin(np.pi * data.time + phase)
+        data.ctrl[:] = 0.5 * (low + high) + 0.5 * SWING * (high - low) * wave
+        begin = time.perf_counter()
+        mujoco.mj_step(model, data)
+        spent.append(time.perf_counter() - begin)
+        if contact is not None:
+            sites = contact.sites(data)
+            most = max(most, len(sites))
+            depth = max(depth, sites["depth"].max(initial=0.0))
+        else:
+            most = max(most, data.ncon)
+            depth = max(depth, -min(data.contact.dist[: data.ncon], default=0.0))
+    numbers = {
+        "us": f"{1e6 * np.median(spent):.1f}",
+        "contacts": most,
+        "depth": f"{depth:.3g}",
+        "speed": f"{np.abs(data.qvel).max(initial=0.0):.3g}",
+        "warnings": " ".join(f"{name} {count}" for name, count in warnings_of(data).items()),
+    }
+    return {f"{kind}_{name}": value for name, value in numbers.items()}
+
+
+if __name__ == "__main__":
+    main()
