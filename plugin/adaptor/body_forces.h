@@ -19,7 +19,8 @@ class BodyForces {
   void add(const mjModel* m, const mjData* d, int body, const Vec3& point, const Vec3& force,
            const Vec3& torque) noexcept;
 
-  // Both return memory of this object, which the caller may change. Ask for one of them, once.
+  // Both return the same memory of this object, which the caller may change. Ask for each once at
+  // most, and for `generalized` last.
 
   /// The generalized force J^T f, nv numbers: what mj_applyFT, summed over all forces, would give.
   std::vector<double>& generalized(const mjModel* m, const mjData* d) noexcept;

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <cmath>
+#include <numeric>
 
 #include "adaptor/userdata_layout.h"
 
-// How dissipated energy is summed over a simulation: docs/theory.md, "Energy".
+// How work and dissipated energy are summed over a simulation: docs/theory.md, "Energy".
 
 namespace volcontact::adaptor {
 
@@ -36,6 +37,13 @@ inline EnergyAccount accounted_whole(const EnergyAccount& before, double elapsed
   return out;
 }
 
+/// Completes `now`, whose `dissipated` is there, by the `work` done since `before` [J].
+inline void add_work(const EnergyAccount& before, double work, EnergyAccount& now) {
+  const double spent = now.dissipated.sum() - before.dissipated.sum();
+  now.work = before.work + work;
+  now.numerical = before.numerical - work - (now.elastic - before.elastic) - spent;
+}
+
 /// (1 - weight) a + weight b
 inline ByChannel between(const ByChannel& a, const ByChannel& b, double weight) {
   const auto mix = [weight](double x, double y) { return (1.0 - weight) * x + weight * y; };
@@ -48,9 +56,12 @@ class AccountKeeper {
   AccountKeeper(const UserdataBlock& block, double time, double step, bool runge_kutta)
       : block_(block) {
     // Runge-Kutta evaluates the middle of a step twice, with errors that cancel in the mean.
-    const bool again = runge_kutta && block.count() > 0 && block.slot(0).time() == time &&
-                       block.slot(0).stage() == Stage::kMiddle;
-    if (again) first_middle_ = block.slot(0).energy().taken;
+    const bool redone = runge_kutta && block.count() > 0 && block.slot(0).time() == time;
+    const bool again = redone && block.slot(0).stage() == Stage::kMiddle;
+    if (again) first_middle_ = block.slot(0).energy();
+    // The last stage, at the end of a step, is the first evaluation there.
+    has_last_ = redone && block.count() > 1 && block.slot(1).stage() == Stage::kSecondMiddle;
+    if (has_last_) last_power_ = block.slot(0).energy().last_power;
     elapsed_ = open_slot(block, time, step);
     const bool half = runge_kutta && continues() && std::abs(2.0 * elapsed_ / step - 1.0) < 1e-6;
     if (!half) return;
@@ -65,21 +76,31 @@ class AccountKeeper {
   double elapsed() const { return elapsed_; }
 
   /// Writes the account of this evaluation: a whole Runge-Kutta step by its own rule, which is
-  /// Simpson's, all else by the trapezoidal rule.
-  void write(EnergyAccount now) const {
+  /// Simpson's (work with the powers of its four stages), all else by the trapezoidal rule.
+  /// `later`: power of the forces of the evaluation before at the velocities of this one [W]. They
+  /// act over all of a step, so the mean of it and of their power then is the change of kinetic
+  /// energy that they make.
+  void write(EnergyAccount now, double later) const {
     const Slot slot = block_.slot(0);
-    if (slot.stage() == Stage::kSecondMiddle) now.taken = between(first_middle_, now.taken, 0.5);
+    if (slot.stage() == Stage::kSecondMiddle) {
+      now.taken = between(first_middle_.taken, now.taken, 0.5);
+      now.force_power = std::midpoint(first_middle_.force_power, now.force_power);
+    }
     if (!continues()) {
       now.dissipated = {};
     } else if (completes_) {
       const EnergyAccount start = block_.slot(2).energy(), middle = block_.slot(1).energy();
       const ByChannel ends = between(start.taken, now.taken, 0.5);
       now = accounted(start, between(ends, middle.taken, 2.0 / 3.0), 2.0 * elapsed_, now);
+      now.last_power = has_last_ ? last_power_ : now.force_power;
+      const double mean = (start.force_power + 4.0 * middle.force_power + now.last_power) / 6.0;
+      add_work(start, 2.0 * elapsed_ * mean, now);
     } else {
       const EnergyAccount before = block_.slot(1).energy();
       now = before.implicit || now.implicit
                 ? accounted_whole(before, elapsed_, now)
                 : accounted(before, between(before.taken, now.taken, 0.5), elapsed_, now);
+      add_work(before, elapsed_ * std::midpoint(before.force_power, later), now);
     }
     slot.set_energy(now);
   }
@@ -88,7 +109,9 @@ class AccountKeeper {
   UserdataBlock block_;
   double elapsed_ = 0.0;
   bool completes_ = false;  // this evaluation ends a Runge-Kutta step
-  ByChannel first_middle_;
+  EnergyAccount first_middle_;
+  bool has_last_ = false;
+  double last_power_ = 0.0;
 };
 
 }  // namespace volcontact::adaptor

@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "adaptor/applied_ledger.h"
@@ -42,6 +43,10 @@ bool is_finite(const ContactReport& report) {
   return sum - sum == 0.0;
 }
 
+double dot(const double* a, const double* b, std::ptrdiff_t count) {
+  return std::inner_product(a, a + count, b, 0.0);
+}
+
 bool any(const std::vector<char>& flags, std::size_t count) {
   return std::any_of(flags.begin(), flags.begin() + static_cast<std::ptrdiff_t>(count),
                      [](char flag) { return flag != 0; });
@@ -61,7 +66,7 @@ UserdataLayout SceneContact::layout(const mjModel* m) const {
   const int channels = keys_.options.target == Target::kApplied ? static_cast<int>(m->nv)
                        : keys_.options.target == Target::kXfrc  ? 6 * static_cast<int>(m->nbody)
                                                                 : 0;
-  return {sites_.size(), channels, solved_rows_};
+  return {sites_.size(), channels, solved_rows_, static_cast<int>(m->nv)};
 }
 
 UserdataBlock SceneContact::block(const mjModel* m, const mjData* d) const {
@@ -206,6 +211,9 @@ void SceneContact::write_forces(const mjModel* m, mjData* d, Scratch& scratch) c
       }
       break;
   }
+  std::vector<double>& acting = cartesian ? forces.generalized(m, d) : numbers;
+  if (cartesian) drop_non_finite(acting);
+  std::copy(acting.begin(), acting.end(), our.slot(0).forces());
 }
 
 void SceneContact::step(const mjModel* m, mjData* d, Scratch& scratch) const noexcept {
@@ -234,8 +242,9 @@ void SceneContact::step(const mjModel* m, mjData* d, Scratch& scratch) const noe
     now.slide_energy += report.bristle_energy.slide;
     now.spin_energy += report.bristle_energy.spin;
   }
-  account.write(now);
   write_forces(m, d, scratch);
+  now.force_power = dot(our.slot(0).forces(), d->qvel, m->nv);
+  account.write(now, account.continues() ? dot(our.slot(1).forces(), d->qvel, m->nv) : 0.0);
 }
 
 bool SceneContact::revisit(const mjModel* m, const mjData* d, Scratch& scratch) const noexcept {

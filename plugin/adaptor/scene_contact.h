@@ -26,6 +26,8 @@ struct PairContact {
   ContactModel model;
   /// k/m of a patch as large as the smaller solid's box against a displacement [1/s^2].
   double largest_rate;
+  double bristle_rate;          ///< the same of its bristles against sliding [1/s^2]
+  double bristle_damping_rate;  ///< and of their damping [1/s]
 };
 
 /// Volumetric contact of one scene. Const once made: what lasts from step to step is in
@@ -99,6 +101,7 @@ class SceneContact {
   /// Whether and from which patch on steps are implicit in the contact of a pair.
   struct ImplicitUse {
     bool is_possible = false;     ///< for `auto`
+    bool by_bristles = false;     ///< these need it in every contact
     double largest_number = 0.0;  ///< h^2 k/m of a patch as large as the smaller solid's box [-]
     double least_area = 0.0;      ///< of a patch that `auto` makes implicit [m^2]
     double explicit_step = 0.0;   ///< the longest that an explicit step should be there [s]
@@ -125,7 +128,7 @@ class SceneContact {
   void warn_about_meshes(const mjModel* m);
   void check_integrator(const mjModel* m);
   void warn_about_mixed_steps(const mjModel* m);
-  double largest_rate(const mjModel* m, const GeomPair& geoms, const PairLaws& laws) const;
+  void set_rates(const mjModel* m, PairContact& pair) const;
   void warn_once(const std::string& warning);
   void alert(const std::string& warning);
   // The sites that the evaluation before left, of which `committed` is null when there was none.

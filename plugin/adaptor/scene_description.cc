@@ -117,6 +117,7 @@ std::string implicit_text(const mjModel* m, const SceneContact& contact, const P
     return "off";
   if (contact.options().implicit == Implicit::kAlways) return "on";
   const SceneContact::ImplicitUse use = contact.implicit_use(m, pair);
+  if (use.by_bristles) return "always, for its bristles";
   const Friction* friction = pair.laws.laws.friction.get();
   const bool by_friction =
       friction && friction->states().empty() && contact.options().pairs != PairRule::kListed;

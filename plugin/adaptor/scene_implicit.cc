@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 
 #include "adaptor/applied_ledger.h"
 #include "adaptor/scene_contact.h"
@@ -37,15 +38,32 @@ InverseMass inverse_mass(const mjModel* m, const GeomPair& geoms) {
           m->body_invweight0[2 * a + 1] + m->body_invweight0[2 * b + 1]};
 }
 
+// Of a field of the laws; another where they have none of this name, as one of the user's own may.
+double number_of(const PairLaws& laws, std::string_view name, double otherwise) {
+  for (const PairField& field : laws.fields) {
+    if (field.name == name) return field.value[0];
+  }
+  return otherwise;
+}
+
+// The mass at the patch is that of a solid ball: 1/m and 5/2 of it for the arm.
+constexpr double kBall = 3.5;
+
 // Whether friction without memory would throw the bodies back in an explicit step, faster than they
 // slide or spin now: h c > 2 m, with c the friction per slip. Once the slip is so small they would
-// chatter for ever. The mass at the patch is that of a solid ball: 1/m and 5/2 of it for the arm.
+// chatter for ever.
 bool reverses_slip(const SiteReport& site, const InverseMass& inverse, double h) {
-  constexpr double kBall = 3.5, kLimit = 2.0;
+  constexpr double kLimit = 2.0;
   const double across = (site.force_on_A - site.normal_force * site.normal).norm();
   if (h * across * kBall * inverse.along > kLimit * site.slip.norm()) return true;
   const double torque = std::abs(site.torque_on_A.dot(site.normal));
   return h * torque * inverse.about > kLimit * std::abs(site.spin);
+}
+
+// Whether bristles are too stiff for an explicit step: docs/theory.md, "Time step".
+bool shakes_bristles(const PairContact& pair, double h) {
+  constexpr double kLimit = 4.0;  // of a spring and damper
+  return h * (h * pair.bristle_rate + 2.0 * pair.bristle_damping_rate) > kLimit;
 }
 
 // Of the solid's box, its largest face [m^2].
@@ -57,29 +75,29 @@ double largest_face(const Shape& solid) {
   return sides[1] * sides[2];
 }
 
-// k_v [N/m^3]; a law of the user's own may have no such field.
-double stiffness_of(const PairLaws& laws) {
-  for (const PairField& field : laws.fields) {
-    if (field.name == "stiffness") return field.value[0];
-  }
-  return HUGE_VAL;
-}
-
 }  // namespace
 
-double SceneContact::largest_rate(const mjModel* m, const GeomPair& geoms,
-                                  const PairLaws& laws) const {
-  const double face = std::min(largest_face(solids_[static_cast<std::size_t>(geoms.a)]),
-                               largest_face(solids_[static_cast<std::size_t>(geoms.b)]));
-  return stiffness_of(laws) * face * inverse_mass(m, geoms).along;
+void SceneContact::set_rates(const mjModel* m, PairContact& pair) const {
+  const double face = std::min(largest_face(solids_[static_cast<std::size_t>(pair.geoms.a)]),
+                               largest_face(solids_[static_cast<std::size_t>(pair.geoms.b)]));
+  const double along = inverse_mass(m, pair.geoms).along, sliding = kBall * along;
+  const PairLaws& laws = pair.laws;
+  pair.largest_rate = number_of(laws, "stiffness", HUGE_VAL) * face * along;
+  pair.bristle_rate = number_of(laws, "bristle_stiffness", 0.0) * sliding;
+  pair.bristle_damping_rate =
+      (number_of(laws, "bristle_damping", 0.0) + number_of(laws, "viscous_friction", 0.0)) *
+      sliding;
 }
 
 SceneContact::ImplicitUse SceneContact::implicit_use(const mjModel* m,
                                                      const PairContact& pair) const {
   const double square = m->opt.timestep * m->opt.timestep;
   const double number = square * pair.largest_rate;
-  const double per_area = square * stiffness_of(pair.laws) * inverse_mass(m, pair.geoms).along;
-  return {number >= kPossibleNumber, number, kStiffNumber / per_area,
+  const double per_area =
+      square * number_of(pair.laws, "stiffness", HUGE_VAL) * inverse_mass(m, pair.geoms).along;
+  const bool by_bristles =
+      options().pairs != PairRule::kListed && shakes_bristles(pair, m->opt.timestep);
+  return {number >= kPossibleNumber, by_bristles, number, kStiffNumber / per_area,
           std::sqrt(kPossibleNumber / pair.largest_rate)};
 }
 
@@ -128,9 +146,10 @@ bool SceneContact::is_stiff(const mjModel* m, const Scratch& scratch) const noex
     const InverseMass inverse = inverse_mass(m, pair.geoms);
     // Beside native contacts an implicit step does more harm than chatter.
     const Friction* friction = pair.laws.laws.friction.get();
-    if (friction && friction->states().empty() && options().pairs != PairRule::kListed) {
+    if (friction && options().pairs != PairRule::kListed) {
+      if (shakes_bristles(pair, h)) return true;
       for (const SiteReport& site : report.sites) {
-        if (reverses_slip(site, inverse, h)) return true;
+        if (friction->states().empty() && reverses_slip(site, inverse, h)) return true;
       }
     }
     if (h * h * pair.largest_rate < kPossibleNumber) continue;

@@ -175,8 +175,8 @@ void SceneContact::add_pair(const mjModel* m, const GeomPair& geoms) {
   ContactModel model({{a, b, Pose{}, Pose{}}}, laws.laws,
                      {options.tolerance, engine, kInnerThreads, most_cells});
   sites_.row_size = std::max(sites_.row_size, model.row_size());
-  const double rate = largest_rate(m, geoms, laws);
-  pairs_.push_back({geoms, engine, std::move(laws), std::move(model), rate});
+  pairs_.push_back({geoms, engine, std::move(laws), std::move(model), 0.0, 0.0, 0.0});
+  set_rates(m, pairs_.back());
 }
 
 void SceneContact::warn_about_model(const mjModel* m) {

@@ -11,7 +11,7 @@
 //
 // Our block is the end of userdata; what comes before it belongs to the user:
 //
-//   [ user's numbers | solved | slots: kSlots x (kSlotHead + states) | ledger | header: kHeader ]
+//   [ user's numbers | solved | slots: kSlots x slot_size | ledger | header: kHeader ]
 //
 // Ledger and header keep their place when the number of law states changes. All zero, as mjData is
 // made and reset, means "never evaluated".
@@ -20,21 +20,23 @@ namespace volcontact::adaptor {
 
 /// Sizes of the block, in numbers.
 struct UserdataLayout {
-  static constexpr int kVersion = 3;
+  static constexpr int kVersion = 4;
   static constexpr int kHeader = 9;
   /// A Runge-Kutta step and the one before it, which a step that is redone needs.
   static constexpr int kSlots = 5;
   /// Time, step, stage, elastic energy, dissipated x4, power x4, taken x4, bristle energy x2,
-  /// power into the elastic energy, whether the step is implicit.
-  static constexpr int kSlotHead = 20;
+  /// power into the elastic energy, whether the step is implicit, work, numerical, power of the
+  /// forces x2. Behind it the generalized forces and the law states.
+  static constexpr int kSlotHead = 24;
   /// Of a site that an implicit step solved: normal force, force, torque.
   static constexpr int kSolvedRow = 7;
 
   int states = 0;       ///< numbers in which the sites of all pairs are kept
   int channels = 0;     ///< forces in the ledger: nv for applied, 6 nbody for xfrc, 0 for passive
   int solved_rows = 0;  ///< sites whose solved forces are kept, of the newest evaluation
+  int dofs = 0;         ///< nv: generalized forces in a slot
 
-  int slot_size() const { return kSlotHead + states; }
+  int slot_size() const { return kSlotHead + dofs + states; }
   int ledger_size() const { return 2 * channels; }
   int solved_size() const { return solved_rows > 0 ? 1 + kSolvedRow * solved_rows : 0; }
   int size() const { return solved_size() + kSlots * slot_size() + ledger_size() + kHeader; }
@@ -52,6 +54,12 @@ struct EnergyAccount {
                               ///< has it not in it [W]
   bool implicit = false;      ///< `taken` is the mean over the step that follows, with what goes
                               ///< into elastic energy in its normal channel
+  double work = 0.0;          ///< done on the scene by what was written, since the start [J]
+  double numerical = 0.0;     ///< what of -work is neither stored nor dissipated: made by the
+                              ///< finite step, since the start [J]
+  double force_power = 0.0;   ///< of what was written, at the evaluation [W]
+  double last_power = 0.0;  ///< the same of the last stage of the Runge-Kutta step that ends here,
+                            ///< which the evaluation replaces [W]
 };
 
 /// What an evaluation was for the integrator.
@@ -61,20 +69,22 @@ enum class Stage : int {
   kSecondMiddle = 2,  ///< for the second time; the slot has the mean power of both
 };
 
-/// What one evaluation left: its time, its energies, its law states.
+/// What one evaluation left: its time, its energies, its forces, its law states.
 class Slot {
  public:
-  explicit Slot(double* numbers) : p_(numbers) {}
+  Slot(double* numbers, int dofs) : p_(numbers), dofs_(dofs) {}
 
   double& time() const { return p_[0]; }
   double& step() const { return p_[1]; }
-  double* states() const { return p_ + UserdataLayout::kSlotHead; }
+  double* forces() const { return p_ + UserdataLayout::kSlotHead; }
+  double* states() const { return forces() + dofs_; }
 
   Stage stage() const { return static_cast<Stage>(static_cast<int>(p_[2])); }
   void set_stage(Stage stage) const { p_[2] = static_cast<int>(stage); }
 
   EnergyAccount energy() const {
-    return {p_[3], channels(4), channels(8), channels(12), p_[16], p_[17], p_[18], p_[19] != 0.0};
+    return {p_[3],  channels(4),   channels(8), channels(12), p_[16], p_[17],
+            p_[18], p_[19] != 0.0, p_[20],      p_[21],       p_[22], p_[23]};
   }
   void set_energy(const EnergyAccount& e) const {
     p_[3] = e.elastic;
@@ -85,6 +95,10 @@ class Slot {
     p_[17] = e.spin_energy;
     p_[18] = e.stored;
     p_[19] = e.implicit ? 1.0 : 0.0;
+    p_[20] = e.work;
+    p_[21] = e.numerical;
+    p_[22] = e.force_power;
+    p_[23] = e.last_power;
   }
 
  private:
@@ -95,6 +109,7 @@ class Slot {
   }
 
   double* p_;
+  int dofs_;
 };
 
 /// Our block in one mjData.
@@ -132,8 +147,9 @@ class UserdataBlock {
   /// Slot `age` evaluations back, 0 for the newest; age < count().
   Slot slot(int age) const {
     const int index = (newest() + UserdataLayout::kSlots - age) % UserdataLayout::kSlots;
-    return Slot(header_ - layout_.ledger_size() -
-                (UserdataLayout::kSlots - index) * layout_.slot_size());
+    return Slot(
+        header_ - layout_.ledger_size() - (UserdataLayout::kSlots - index) * layout_.slot_size(),
+        layout_.dofs);
   }
 
   void drop_newest() const {

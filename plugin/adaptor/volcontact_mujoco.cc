@@ -302,6 +302,8 @@ int volcontact_get_energy(const mjModel* m, const mjData* d, volcontact_energy* 
     energy->elastic = account.elastic;
     copy_channels(account.dissipated, energy->dissipated);
     copy_channels(account.power, energy->power);
+    energy->work = account.work;
+    energy->numerical = account.numerical;
     energy->dropped = contact->dropped(m, d);
     energy->forgotten = contact->forgotten(m, d);
     return 0;

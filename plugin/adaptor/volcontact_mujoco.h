@@ -75,6 +75,8 @@ typedef struct volcontact_energy_ {
   double power[4];       // dissipated now [W]
   double dropped;        // evaluations in which a force was no number and was left out
   double forgotten;      // evaluations with more contact sites than userdata keeps
+  double work;           // done by the contact forces on the scene since the start [J]
+  double numerical;      // -work - dissipated - change of elastic: made by the finite step [J]
 } volcontact_energy;
 
 // mjVERSION_HEADER of the MuJoCo this library was compiled for.

@@ -74,6 +74,8 @@ class RawEnergy(ctypes.Structure):
         ("power", ctypes.c_double * 4),
         ("dropped", ctypes.c_double),
         ("forgotten", ctypes.c_double),
+        ("work", ctypes.c_double),
+        ("numerical", ctypes.c_double),
     )
 
 

@@ -68,6 +68,9 @@ class Recording:
         elastic: stored in the contact [J], shape (n,); 0 under native contact, which has no such
             quantity.
         dissipated: by the contact since the start [J], shape (n, 4), columns `CHANNELS`.
+        work: done on the scene by the contact forces since the start [J], shape (n,).
+        numerical: what of -work is neither stored nor dissipated but made by the finite step [J],
+            shape (n,).
         contact_force: sum over the sites of the magnitude of their force [N], shape (n,).
         largest_site_force: [N], shape (n,).
         site_count: shape (n,).
@@ -97,6 +100,8 @@ class Recording:
     potential: np.ndarray
     elastic: np.ndarray
     dissipated: np.ndarray
+    work: np.ndarray
+    numerical: np.ndarray
     contact_force: np.ndarray
     largest_site_force: np.ndarray
     site_count: np.ndarray

@@ -31,17 +31,27 @@ class Channels(NamedTuple):
 class Energy(NamedTuple):
     """Energies of a scene at the last evaluation.
 
+    `work + elastic + dissipated + numerical` keeps the value that `elastic` had at the start, and
+    kinetic + potential energy less `work` keeps its value where nothing else does work, up to the
+    integrator's error.
+
     Attributes:
         elastic: stored in the contacts [J].
         dissipated: by the contacts since the start of the simulation [J].
         by_channel: the same, channel by channel [J].
         power: dissipated at that instant, channel by channel [W].
+        work: done on the scene by the contact forces, those written to the target array, since
+            the start [J].
+        numerical: what of -work is neither stored nor dissipated [J]; made by the finite step, it
+            vanishes with it. Negative where steps that are too large give energy to the motion.
     """
 
     elastic: float
     dissipated: float
     by_channel: Channels
     power: Channels
+    work: float
+    numerical: float
 
 
 def load(
@@ -301,7 +311,8 @@ class Contact:
         """Energies at the last evaluation; the account starts anew when the data is reset."""
         raw = self._raw_energy(data)
         dissipated = Channels(*raw.dissipated)
-        return Energy(raw.elastic, sum(dissipated), dissipated, Channels(*raw.power))
+        power = Channels(*raw.power)
+        return Energy(raw.elastic, sum(dissipated), dissipated, power, raw.work, raw.numerical)
 
     def dropped(self, data: mujoco.MjData) -> int:
         """How many evaluations had a force that was no finite number; such forces are left out."""

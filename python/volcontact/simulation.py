@@ -189,7 +189,7 @@ class _Probe(Protocol):
 
     def sites(self, data: mujoco.MjData) -> np.ndarray: ...
 
-    def energy(self, data: mujoco.MjData) -> tuple[float, tuple[float, ...]]: ...
+    def energy(self, data: mujoco.MjData) -> volumetric_scene.Energy: ...
 
     def dropped(self, data: mujoco.MjData) -> int: ...
 
@@ -211,9 +211,8 @@ class _VolumetricProbe:
     def sites(self, data: mujoco.MjData) -> np.ndarray:
         return recorded_sites(self._contact.sites(data))
 
-    def energy(self, data: mujoco.MjData) -> tuple[float, tuple[float, ...]]:
-        energy = self._contact.energy(data)
-        return energy.elastic, tuple(energy.by_channel)
+    def energy(self, data: mujoco.MjData) -> volumetric_scene.Energy:
+        return self._contact.energy(data)
 
     def dropped(self, data: mujoco.MjData) -> int:
         return int(self._contact.dropped(data))
@@ -227,9 +226,10 @@ class _NativeProbe:
     def sites(self, data: mujoco.MjData) -> np.ndarray:
         return native_sites(self._model, data)
 
-    def energy(self, data: mujoco.MjData) -> tuple[float, tuple[float, ...]]:
+    def energy(self, data: mujoco.MjData) -> volumetric_scene.Energy:
         del data
-        return 0.0, (0.0,) * len(CHANNELS)
+        none = volumetric_scene.Channels(0.0, 0.0, 0.0, 0.0)
+        return volumetric_scene.Energy(0.0, 0.0, none, none, 0.0, 0.0)
 
     def dropped(self, data: mujoco.MjData) -> int:
         del data
@@ -254,7 +254,7 @@ class _Recorder:
         self._quaternion = np.zeros((rows, bodies, 4))
         self._speed = np.zeros((rows, bodies))
         self._spin = np.zeros((rows, bodies))
-        self._energies = np.zeros((rows, 3))  # kinetic, potential, elastic
+        self._energies = np.zeros((rows, 5))  # kinetic, potential, elastic, work, numerical
         self._dissipated = np.zeros((rows, len(CHANNELS)))
         self._contact = np.zeros((rows, 4))  # sum and largest of forces, count, depth
         self._microseconds = np.zeros(steps)
@@ -297,7 +297,7 @@ class _Recorder:
     def recording(self, contact: ContactKind, description: dict[str, Any]) -> Recording:
         """Packs what was recorded."""
         n = self._rows
-        kinetic, potential, elastic = self._energies[:n].T
+        kinetic, potential, elastic, work, numerical = self._energies[:n].T
         total, largest, count, depth = self._contact[:n].T
         gravity = np.linalg.norm(self._model.opt.gravity)
         return Recording(
@@ -315,6 +315,8 @@ class _Recorder:
             potential=potential,
             elastic=elastic,
             dissipated=self._dissipated[:n],
+            work=work,
+            numerical=numerical,
             contact_force=total,
             largest_site_force=largest,
             site_count=count.astype(np.int64),
@@ -351,10 +353,10 @@ class _Recorder:
             mujoco.mj_objectVelocity(self._model, data, kind, body, velocity, 0)
             self._spin[row, i] = np.linalg.norm(velocity[:3])
             self._speed[row, i] = np.linalg.norm(velocity[3:])
-        elastic, by_channel = self._probe.energy(data)
+        energy = self._probe.energy(data)
         potential, kinetic = dense(data.energy)
-        self._energies[row] = kinetic, potential, elastic
-        self._dissipated[row] = by_channel
+        self._energies[row] = kinetic, potential, energy.elastic, energy.work, energy.numerical
+        self._dissipated[row] = energy.by_channel
         sites = self._probe.sites(data)
         if len(sites):
             forces = np.linalg.norm(sites["force"], axis=1)

@@ -25,9 +25,11 @@ class Simulation {
     EnergyAccount now;
     now.taken.slide = power(time) + wrong;
     now.slide_energy = stored(time);
-    account.write(now);
+    now.force_power = -power(time) - wrong;
+    account.write(now, -power(time));
     return block().slot(0).energy().dissipated.slide;
   }
+  EnergyAccount account() { return block().slot(0).energy(); }
   static double power(double t) { return 3.0 + 2.0 * t - t * t * t; }
   static double stored(double t) { return 0.1 * std::sin(5.0 * t); }
   /// Exact, from 0 to t.
@@ -78,6 +80,37 @@ TEST(EnergyAccount, StepsThatAreRedoneCountOnce) {
     }
   }
   EXPECT_EQ(found, expected);
+}
+
+TEST(EnergyAccount, WorkIsTheSumOfWhatIsSpentStoredAndMadeByTheStep) {
+  // All the power that the forces take, by either rule, is taken by sliding; the bristles' energy
+  // is not reported as elastic here, so what they keep is what remains.
+  for (const bool runge_kutta : {false, true}) {
+    Simulation simulation(0.1, runge_kutta);
+    for (double t = 0.0; t < 1.05; t += 0.1) {
+      simulation.evaluate(t);
+      if (!runge_kutta) continue;
+      simulation.evaluate(t + 0.05, 0.3);
+      simulation.evaluate(t + 0.05, -0.3);
+      simulation.evaluate(t + 0.1);
+    }
+    const EnergyAccount e = simulation.account();
+    const double end = runge_kutta ? 1.1 : 1.0;
+    const double kept = Simulation::stored(end) - Simulation::stored(0.0);
+    EXPECT_NEAR(e.work, -(Simulation::dissipated(end) + kept), runge_kutta ? 1e-14 : 3e-3);
+    EXPECT_NEAR(e.numerical, kept, 1e-14);
+    EXPECT_NEAR(e.work + e.dissipated.sum() + e.numerical, 0.0, 1e-14);
+  }
+}
+
+TEST(EnergyAccount, WhatTheLawsDoNotKnowIsNumerical) {
+  EnergyAccount before{0.5, {1.0, 2.0, 3.0, 4.0}, {}, {}, 0.0, 0.0};
+  before.work = -10.0;
+  before.numerical = 0.25;
+  EnergyAccount now{0.7, {1.5, 2.0, 3.0, 4.0}, {}, {}, 0.0, 0.0};
+  add_work(before, -1.0, now);  // of 1 J taken 0.2 are stored, 0.5 dissipated
+  EXPECT_DOUBLE_EQ(now.work, -11.0);
+  EXPECT_DOUBLE_EQ(now.numerical, 0.25 + 0.3);
 }
 
 TEST(EnergyAccount, WhatABristleGivesBackIsDissipatedElsewhere) {

@@ -104,7 +104,7 @@ TEST_P(EnergyBalance, ClosesForABouncingSlidingSpinningBall) {
   d->qvel[4] = -10.0;
   d->qvel[5] = 30.0;
   const Attached attached(m);
-  double first = 0.0, worst = 0.0;
+  double first = 0.0, worst = 0.0, without_work = 0.0;
   const int steps = static_cast<int>(0.5 / GetParam().timestep);
   for (int i = 0; i < steps; ++i) {
     mj_forward(m.get(), d.get());  // all at one instant, also under Runge-Kutta
@@ -113,9 +113,13 @@ TEST_P(EnergyBalance, ClosesForABouncingSlidingSpinningBall) {
     for (const double dissipated : e.dissipated) sum += dissipated;
     if (i == 0) first = sum;
     worst = std::max(worst, std::abs(sum - first));
+    without_work = std::max(without_work, std::abs(d->energy[0] + d->energy[1] - e.work - first));
+    EXPECT_NEAR(sum - first + e.numerical, d->energy[0] + d->energy[1] - e.work - first,
+                1e-12 * first);
     mj_step(m.get(), d.get());
   }
   EXPECT_LT(worst, 1e-3 * first);
+  EXPECT_LT(without_work, 1e-4 * first);  // m g h v/2 of Euler's free fall is 4e-5 of it
   const volcontact_energy e = energy(m, d);
   EXPECT_GT(e.dissipated[0], 0.0);                     // normal
   EXPECT_GT(e.dissipated[2] + e.dissipated[3], 0.05);  // slide and spin: it was thrown fast
@@ -125,6 +129,60 @@ INSTANTIATE_TEST_SUITE_P(Integrators, EnergyBalance,
                          ::testing::Values(Run{"Euler", 1e-5}, Run{"RK4", 1e-4},
                                            Run{"implicit", 1e-5}),
                          [](const auto& run) { return std::string(run.param.integrator); });
+
+// What the forces in the target array do to the motion: docs/theory.md, "Energy".
+class Work : public ::testing::TestWithParam<const char*> {};
+
+// Without weight the contact alone changes the kinetic energy, and a ball has no gyroscopic torque:
+// the account is exact for any step, explicit or implicit, beside a force of the user's own.
+TEST_P(Work, IsTheChangeOfKineticEnergyAtAnyStep) {
+  for (const char* stiffness : {"2e7", "2e12"}) {
+    const ModelPointer m = testing::load(testing::ball_scene(
+        0.06,
+        testing::numeric(std::string("volcontact/option/target/") + GetParam(), "1") +
+            testing::material("m", {{"stiffness", stiffness}, {"friction", "0.3"}},
+                              {"floor", "ball"}),
+        "gravity=\"0 0 0\""));
+    m->opt.timestep = 2e-3;
+    m->opt.enableflags |= mjENBL_ENERGY;
+    const DataPointer d = testing::make_data(m);
+    const double start[] = {0.7, 0.2, -1.3, 3.0, -10.0, 30.0};
+    std::copy(std::begin(start), std::end(start), d->qvel);
+    const Attached attached(m);
+    double kinetic = 0.0;
+    for (int i = 0; i < 40; ++i) {
+      mj_step(m.get(), d.get());
+      mj_forward(m.get(), d.get());
+      if (i == 0) kinetic = d->energy[1];
+      const volcontact_energy e = energy(m, d);
+      EXPECT_NEAR(d->energy[1] - e.work, kinetic, 1e-12 * kinetic) << stiffness << " " << i;
+      const double spent = e.dissipated[0] + e.dissipated[1] + e.dissipated[2] + e.dissipated[3];
+      EXPECT_NEAR(e.work + e.elastic + spent + e.numerical, 0.0, 1e-12 * kinetic);
+    }
+    const volcontact_energy e = energy(m, d);
+    EXPECT_LT(e.work, -0.1 * kinetic);
+    if (std::string(stiffness) == "2e7") EXPECT_GT(std::abs(e.numerical), 1e-3 * kinetic);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Targets, Work, ::testing::Values("applied", "passive", "xfrc"),
+                         [](const auto& run) { return std::string(run.param); });
+
+TEST(WorkAccount, StepThatIsRedoneCountsOnce) {
+  double work[2];
+  for (const bool redone : {false, true}) {
+    const ModelPointer m = testing::load(testing::ball_scene(0.049, both("2e7", "1", "ball")));
+    const DataPointer d = testing::make_data(m);
+    const Attached attached(m);
+    for (int i = 0; i < 50; ++i) {
+      for (int trial = 0; redone && trial < 3; ++trial) mj_forward(m.get(), d.get());
+      mj_step(m.get(), d.get());
+    }
+    work[redone ? 1 : 0] = energy(m, d).work;
+  }
+  EXPECT_GT(std::abs(work[0]), 1e-3);
+  EXPECT_EQ(work[0], work[1]);
+}
 
 // A pile in which many pairs touch, all of the fast engines' kind.
 constexpr const char* kPile = R"(

@@ -23,7 +23,7 @@ class Integrator {
   UserdataBlock block() { return {numbers_.data() + numbers_.size(), kLayout}; }
   std::vector<double>& numbers() { return numbers_; }
 
-  static constexpr UserdataLayout kLayout{1, 3};
+  static constexpr UserdataLayout kLayout{1, 3, 0, 2};
 
  private:
   std::vector<double> numbers_;
@@ -45,6 +45,7 @@ TEST(UserdataLayout, BlockStaysInsideItsSize) {
   for (int i = 0; i < 10; ++i) {
     open_slot(block, 0.1 * i, 0.1);
     block.slot(0).set_energy({1.0, {1, 1, 1, 1}, {1, 1, 1, 1}, {1, 1, 1, 1}, 1.0, 1.0});
+    std::fill_n(block.slot(0).forces(), 2, 1.0);
     block.slot(0).states()[0] = 1.0;
     std::fill_n(block.base(), 3, 2.0);
     std::fill_n(block.left(), 3, 3.0);
@@ -62,8 +63,21 @@ TEST(UserdataLayout, SlotGivesBackWhatItWasGiven) {
   const Slot slot = block.slot(0);
   EXPECT_EQ(slot.stage(), Stage::kWhole);
   slot.set_stage(Stage::kSecondMiddle);
-  slot.set_energy({1.0, {2, 3, 4, 5}, {6, 7, 8, 9}, {10, 11, 12, 13}, 14.0, 15.0});
-  slot.states()[0] = 16.0;
+  slot.set_energy({1.0,
+                   {2, 3, 4, 5},
+                   {6, 7, 8, 9},
+                   {10, 11, 12, 13},
+                   14.0,
+                   15.0,
+                   16.0,
+                   true,
+                   17.0,
+                   18.0,
+                   19.0,
+                   23.0});
+  slot.forces()[0] = 20.0;
+  slot.forces()[1] = 21.0;
+  slot.states()[0] = 22.0;
   const EnergyAccount e = slot.energy();
   EXPECT_EQ(slot.stage(), Stage::kSecondMiddle);
   EXPECT_EQ(slot.time(), 0.1);
@@ -73,6 +87,15 @@ TEST(UserdataLayout, SlotGivesBackWhatItWasGiven) {
   EXPECT_EQ(e.taken.slide, 12.0);
   EXPECT_EQ(e.slide_energy, 14.0);
   EXPECT_EQ(e.spin_energy, 15.0);
+  EXPECT_EQ(e.stored, 16.0);
+  EXPECT_TRUE(e.implicit);
+  EXPECT_EQ(e.work, 17.0);
+  EXPECT_EQ(e.numerical, 18.0);
+  EXPECT_EQ(e.force_power, 19.0);
+  EXPECT_EQ(e.last_power, 23.0);
+  EXPECT_EQ(slot.forces()[0], 20.0);
+  EXPECT_EQ(slot.forces()[1], 21.0);
+  EXPECT_EQ(slot.states()[0], 22.0);
 }
 
 TEST(UserdataLayout, ConstantRateIsIntegratedExactly) {

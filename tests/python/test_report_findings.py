@@ -87,7 +87,8 @@ def test_findings_compare_pose_force_depth_places_energy_and_cost():
     assert "At most 2 sites at once under volumetric and 8 contact points" in places
     assert "200 cm²" in places
     energy = sentence(made, "Energy")
-    assert "30.0 J are dissipated (normal 30.0 J)" in energy
+    assert "the forces take 30.0 J from the motion and 30.0 J are dissipated" in energy
+    assert "(normal 30.0 J). The books close to" in energy
     assert "loses 23.0 J" in energy  # 30 J of height less the 7 J of motion that appear
     assert "it once stood 7.00 J above an earlier value" in energy
     assert "20.0 µs under volumetric and 10.0 µs" in sentence(made, "Cost")
@@ -139,3 +140,14 @@ def test_load_of_one_place_is_told_against_its_limit(limits, verdict, phrase):
     (finding,) = (f for f in findings(made) if f.title == "Load of one place")
     assert finding.verdict == verdict
     assert phrase in finding.text
+
+
+def test_energy_says_what_the_step_made_of_impacts():
+    run = recording()
+    work = 0.9 * run.work
+    short = dataclasses.replace(run, work=work, numerical=-work - run.dissipated[:, 0])
+    text = sentence(comparison(volumetric=short), "Energy")
+    assert "take 27.0 J from the motion and 30.0 J are dissipated" in text
+    assert "(normal 30.0 J): 3.00 J too much, which is the error of a finite step" in text
+    # The scene lost 30 J, and the forces took 27 of them.
+    assert "The books close to 3.00 J, at the end to 3.00 J." in text

@@ -93,6 +93,10 @@ def test_energy_is_accounted_by_channel():
     assert energy.by_channel.slide > 0.0
     assert energy.by_channel.spin > 0.0
     assert len(energy.power) == 4
+    assert before.work == before.numerical == 0.0
+    assert energy.work < -0.1
+    books = energy.work + energy.elastic + energy.dissipated + energy.numerical
+    assert books == pytest.approx(0.0, abs=1e-12)
 
 
 def test_many_sites_are_all_returned():

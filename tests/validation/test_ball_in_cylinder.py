@@ -7,7 +7,7 @@ import math
 
 import mujoco
 import numpy as np
-from case import Bounds, Case, Curve, Figure, Plot, crossings, load, simulate
+from case import Bounds, Case, Curve, Figure, Plot, Run, crossings, load, simulate
 
 BORE, RADIUS = 1.0, 0.1
 NO_BORE = "no bore"
@@ -16,6 +16,22 @@ NO_BORE = "no bore"
 def place(data: mujoco.MjData) -> tuple[float, float, float]:
     """Centre of the ball [m]."""
     return tuple(data.qpos[:3])
+
+
+def come_to_rest(duration: float = 30.0, *, step: float = 2e-4, native: bool = False) -> Run:
+    """The whole scene, thrown along the bore and spinning: rows of place and largest speed."""
+
+    def whole(_: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, ...]:
+        return (*place(data), float(np.abs(data.qvel).max()))
+
+    scene = load("ball_in_cylinder/scene.xml")
+    scene.opt.timestep = step
+    return simulate(scene, duration, whole, every=round(0.02 / step), native=native)
+
+
+def rests_from(run: Run) -> float:
+    """From when on it is slower than 1 mm/s and 1 mrad/s [s]."""
+    return float(run.rows[run.rows[:, 4] > 1e-3, 0][-1])
 
 
 def measure() -> Case:
@@ -50,6 +66,14 @@ def measure() -> Case:
             np.interp(touch, run.rows[:, 0], run.rows[:, 3]),
             NO_BORE,
         ),
+        Figure(
+            "height of its centre then",
+            "m",
+            -0.748331,
+            1e-5,
+            np.interp(touch, run.rows[:, 0], run.rows[:, 2]),
+            NO_BORE,
+        ),
     ]
     swing = load("ball_in_cylinder/scene.xml", pair__ball__stiffness=1e9, pair__ball__damping=0.0)
     depth = math.sqrt(
@@ -64,20 +88,12 @@ def measure() -> Case:
     small = simulate(swing, 6.0, lambda _, d: place(d), every=50, setup=hang)
     period = 2.0 * float(np.mean(np.diff(crossings(small.rows[:, 0], small.rows[:, 1]))))
     case.figures.append(Figure("period of small swings", "s", 2.25180, 5e-3, period, NO_BORE))
-    case.closures += [run.closure, small.closure]
-
-    # The whole scene, thrown along the bore and spinning.
-    def whole(m: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, ...]:
-        return (*place(data), float(np.abs(data.qvel).max()))
-
-    scene = load("ball_in_cylinder/scene.xml")
-    rest = simulate(scene, 30.0, whole, every=100)
-    case.closures.append(rest.closure)
-    native = simulate(load("ball_in_cylinder/scene.xml"), 3.0, whole, every=100, native=True)
+    case.account(run, small)
+    rest, native = come_to_rest(), come_to_rest(3.0, native=True)
+    case.account(rest)
     time, speed = rest.rows[:, 0], rest.rows[:, 4]
-    fast = speed > 1e-3
     case.figures += [
-        Bounds("slower than 1 mm/s and 1 mrad/s from", "s", 5.0, 28.0, time[fast][-1], NO_BORE),
+        Bounds("slower than 1 mm/s and 1 mrad/s from", "s", 5.0, 28.0, rests_from(rest), NO_BORE),
         Bounds("speed after 30 s", "m/s, rad/s", 0.0, 1e-4, speed[-1], NO_BORE),
         Bounds("dissipated by rolling", "J", 0.1, 10.0, rest.dissipated[1], NO_BORE),
         Bounds("dissipated by spinning", "J", 0.01, 10.0, rest.dissipated[3], NO_BORE),

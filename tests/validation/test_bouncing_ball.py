@@ -46,6 +46,8 @@ def bounce(case: Case, *, native: bool = False) -> tuple[np.ndarray, np.ndarray]
             whole = float(dense(data.energy).sum()) + energy.elastic + energy.dissipated
             first = GRAVITY * (HEIGHT + RADIUS)
             case.closures.append(abs(whole - first) / (GRAVITY * HEIGHT))
+            mechanical = float(dense(data.energy).sum()) - energy.work
+            case.works.append(abs(mechanical - first) / (GRAVITY * HEIGHT))
     launches += [0.0] * (BOUNCES - len(launches))
     return np.array(launches), np.array(path)
 

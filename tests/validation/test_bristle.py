@@ -100,7 +100,7 @@ def breakaway(rest: float, rate: float, case: Case, *, native: bool = False) -> 
         stribeck_speed=1e-2 if rate > 1.0 else 1e-3,
     )
     if not native:
-        case.closures.append(run.closure)
+        case.account(run)
     acceleration = np.gradient(run.rows[:, 2], run.rows[:, 0])
     # When it has settled, until it is away.
     pulled = (run.rows[:, 3] > 0.1 * MASS * GRAVITY) & (run.rows[:, 1] < 1e-3)
@@ -123,7 +123,7 @@ def drift(speed: float, case: Case, *, stiffness: float = 1e5, native: bool = Fa
         bristle_damping=2.0 * math.sqrt(stiffness * MASS),
     )
     if not native:
-        case.closures.append(run.closure)
+        case.account(run)
     ends = np.interp((2.0, 4.0), run.rows[:, 0], run.rows[:, 1])
     return float(ends[1] - ends[0]) / 2.0
 

@@ -44,7 +44,7 @@ def measure() -> Case:
             work += step * report.torque_on_A[1] * 0.12 * math.cos(s)
             stored = max(stored, report.elastic_energy)
         name = f"{name}: work over stored energy"
-        case.figures.append(Bounds(name, "-", 0.0, 1e-6, abs(work) / stored, NO_FIELD))
+        case.figures.append(Bounds(name, "-", 0.0, 1e-12, abs(work) / stored, NO_FIELD))
     return case
 
 

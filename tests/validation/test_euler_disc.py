@@ -7,11 +7,27 @@ import math
 
 import mujoco
 import numpy as np
-from case import GRAVITY, Bounds, Case, Curve, Figure, Plot, load, simulate, start
+from case import GRAVITY, Bounds, Case, Curve, Figure, Plot, Run, load, simulate, start
 
 from volcontact._mujoco_views import dense
 
 RADIUS, TILT = 0.0375, 0.1
+
+
+def roll(*, native: bool = False) -> Run:
+    """Half a second; rows of time, heading of the axis [rad], tilt [rad]."""
+
+    def watch(_: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, float]:
+        axis = data.xmat[1].reshape(3, 3)[:, 2]
+        return math.atan2(axis[1], axis[0]), math.acos(min(1.0, axis[2]))
+
+    return simulate(load("euler_disc/scene.xml"), 0.5, watch, every=20, native=native)
+
+
+def rate(rows: np.ndarray) -> float:
+    """Of the precession [rad/s]."""
+    turned = np.unwrap(rows[:, 1])
+    return float((turned[-1] - turned[0]) / (rows[-1, 0] - rows[0, 0]))
 
 
 def measure() -> Case:
@@ -22,19 +38,8 @@ def measure() -> Case:
         "W^2, a the tilt. The disc here has a thickness of 0.4 mm and starts without the "
         "deflections of its steady state, so it nods a little.",
     )
-
-    def watch(_: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, float, float]:
-        axis = data.xmat[1].reshape(3, 3)[:, 2]
-        return math.atan2(axis[1], axis[0]), math.acos(min(1.0, axis[2])), data.qpos[0]
-
-    run = simulate(load("euler_disc/scene.xml"), 0.5, watch, every=20)
-    native = simulate(load("euler_disc/scene.xml"), 0.5, watch, every=20, native=True)
-    case.closures.append(run.closure)
-
-    def rate(rows: np.ndarray) -> float:
-        turned = np.unwrap(rows[:, 1])
-        return float((turned[-1] - turned[0]) / (rows[-1, 0] - rows[0, 0]))
-
+    run, native = roll(), roll(native=True)
+    case.account(run)
     model = load("euler_disc/scene.xml")
     model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
     data = start(model)

@@ -7,7 +7,7 @@ import math
 
 import mujoco
 import numpy as np
-from case import GRAVITY, Case, Curve, Figure, Plot, crossings, load, simulate
+from case import GRAVITY, Case, Curve, Figure, Plot, Run, crossings, load, simulate
 
 import volcontact as vc
 
@@ -77,16 +77,18 @@ def native_tilt_ratio() -> float:
     return tilt / (heave * HALF**2 / 3.0)  # I/A of the square
 
 
-def sink(*, native: bool = False) -> float:
+def sink(case: Case, *, native: bool = False) -> float:
     """How deep the cube sinks [m], seen half a second after it was let go, with damping."""
     text = SCENE.replace('normal_law/volume_spring" data="1"', 'damping" data="300"')
     model = load(text)
     run = simulate(model, 0.5, lambda _, d: (d.qpos[2],), every=100, native=native)
+    if not native:
+        case.account(run)
     return HALF - float(run.rows[-1, 1])
 
 
-def vibration(coordinate: str, *, native: bool = False) -> tuple[float, float, np.ndarray]:
-    """Frequency [Hz], closure, and rows of time and deflection, of a free small vibration."""
+def vibration(coordinate: str, *, native: bool = False) -> tuple[float, Run]:
+    """Frequency [Hz], and rows of time and deflection, of a free small vibration."""
 
     def disturb(_: mujoco.MjModel, data: mujoco.MjData) -> None:
         if coordinate == "heave":
@@ -100,7 +102,7 @@ def vibration(coordinate: str, *, native: bool = False) -> tuple[float, float, n
     run = simulate(load(SCENE), 0.3, watch, setup=disturb, native=native)
     zeros = crossings(run.rows[:, 0], run.rows[:, 1])
     frequency = 0.5 * (len(zeros) - 1) / (zeros[-1] - zeros[0]) if len(zeros) > 1 else math.nan
-    return frequency, run.closure, run.rows
+    return frequency, run
 
 
 def measure() -> Case:
@@ -122,13 +124,13 @@ def measure() -> Case:
             native_tilt_ratio(),
         )
     )
-    case.figures.append(Figure("sinks by", "m", SINK, 1e-6, sink(), sink(native=True)))
+    case.figures.append(Figure("sinks by", "m", SINK, 1e-6, sink(case), sink(case, native=True)))
     for name, expected in (("heave", 100.658), ("rocking", 71.150)):
-        frequency, closure, rows = vibration(name)
-        native, _, native_rows = vibration(name, native=True)
-        case.closures.append(closure)
+        frequency, run = vibration(name)
+        native, native_run = vibration(name, native=True)
+        case.account(run)
         case.figures.append(Figure(name, "Hz", expected, 1e-3, frequency, native))
-    early, native_early = rows[rows[:, 0] < 0.06], native_rows[native_rows[:, 0] < 0.06]
+    early, native_early = (r.rows[r.rows[:, 0] < 0.06] for r in (run, native_run))
     case.plots.append(
         Plot(
             "rocking",

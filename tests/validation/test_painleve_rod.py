@@ -71,7 +71,7 @@ def measure() -> Case:
         "through: the force grows within milliseconds until the end sticks, a tangential impact.",
     )
     run, calm = slide(5.0 / 3.0), slide(1.0)
-    case.closures += [run.closure, calm.closure]
+    case.account(run, calm)
     time, force, slip = forces(5.0 / 3.0)
     _, calm_force, _ = forces(1.0)
     own_force, own_slip = native_forces(5.0 / 3.0)

@@ -89,7 +89,7 @@ def measure() -> Case:
     curves = []
     for angle in (45.0, 30.0):
         run, native = push(angle, 0.0), push(angle, 0.0, native=True)
-        case.closures.append(run.closure)
+        case.account(run)
         a = math.radians(angle)
         expected = LATERAL * math.tan(a) * math.tan(a + math.atan(FRICTION))
         case.figures.append(
@@ -109,7 +109,7 @@ def measure() -> Case:
                 Curve("native", 1e3 * native.rows[:, 1], native.rows[:, 2], "--"),
             ]
     run, native = push(0.0, OFFSET), push(0.0, OFFSET, native=True)
-    case.closures.append(run.closure)
+    case.account(run)
     late = slice(len(run.rows) // 2, None)
     case.figures.append(
         Figure(

@@ -28,7 +28,7 @@ def rebound(key: str, value: float, speed: float, case: Case, *, native: bool = 
     run = simulate(load(scene), 0.06, lambda m, d: (d.qvel[2], d.qpos[2]), every=50, native=native)
     assert native or run.rows[-1, 2] > 0.05, "still in contact"
     if not native:
-        case.closures.append(run.closure)
+        case.account(run)
     return float(run.rows[-1, 1]) / speed
 
 

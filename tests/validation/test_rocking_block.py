@@ -106,7 +106,7 @@ def measure() -> Case:
     feet = rock(FEET, 1e9, 10.0, 5e-6, 0.62)
     native_feet = rock(FEET, 1e9, 10.0, 1e-4, 0.62, native=True)
     flat = rock(FLAT, 1e9, 10.0, 5e-6, 0.62)
-    case.closures += [fall.closure, feet.closure, flat.closure]
+    case.account(fall, feet, flat)
     case.figures += [
         Figure("period", "s", PERIOD, 1e-3, period(fall), period(native)),
         Figure(

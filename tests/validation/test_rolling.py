@@ -58,7 +58,7 @@ def measure() -> Case:
     watch = lambda _, data: (data.qvel[4],)  # noqa: E731
     run = simulate(load(SCENE), 3.0, watch, every=100, setup=roll)
     native = simulate(load(SCENE), 3.0, watch, every=100, setup=roll, native=True)
-    case.closures.append(run.closure)
+    case.account(run)
     # k a X2 w, X2 the second moment of the cap, at 1 m/s and the arm.
     cap = math.pi * DEPTH**3 * (20.0 * RADIUS**2 - 15.0 * RADIUS * DEPTH + 3.0 * DEPTH**2) / 60.0
     model = vc.ContactModel(

@@ -51,7 +51,7 @@ def measure() -> Case:
 
     run = simulate(load(SCENE), 0.8, watch, every=10, setup=throw)
     native = simulate(load(SCENE), 0.8, watch, every=10, setup=throw, native=True)
-    case.closures.append(run.closure)
+    case.account(run)
     case.figures += [
         Figure("begins to roll", "s", 0.67958, 1e-3, *map(end_of_slip, (run.rows, native.rows))),
         Figure("speed when rolling", "m/s", 5.0, 1e-3, run.rows[-1, 1], native.rows[-1, 1]),

@@ -57,7 +57,7 @@ def measure() -> Case:
     curves = []
     for coupling, (time, way, tolerance) in EXPECTED.items():
         run = slide(coupling)
-        case.closures.append(run.closure)
+        case.account(run)
         case.figures += [
             Figure(
                 f"{coupling}: rest",
@@ -92,7 +92,7 @@ def measure() -> Case:
         ("ellipsoid", 0.58853, 0.29427, 1e-3),
     ):
         fast = slide(coupling, 40.0)
-        case.closures.append(fast.closure)
+        case.account(fast)
         ends, name = rest(fast.rows, spins=True), f"{coupling}, 40 rad/s"
         case.figures += [
             Figure(f"{name}: rest", "s", time, tolerance, ends, fast_own[0]),

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from case import GRAVITY, NO_STIFFNESS, Case, Figure, crossings, load, simulate
 from scenes import over_floor
 
@@ -18,26 +19,43 @@ SHAPES = {
 }
 
 
-def depth_at_rest(shape: str, stiffness: float, *, native: bool = False) -> float:
+DEPTH = 0.7923638796e-3  # at which a ball of 1 kg rests on k_v = 1e8 N/m^3 [m]
+# Volume and second moment about the normal's cross axis of its cap: docs/theory.md.
+CAP = (
+    math.pi * DEPTH**2 * (0.15 - DEPTH) / 3.0,
+    math.pi * DEPTH**3 * (20.0 * 0.05**2 - 15.0 * 0.05 * DEPTH + 3.0 * DEPTH**2) / 60.0,
+)
+
+
+def gyration_radius() -> float:
+    """Of the patch of the resting ball about its normal [m]."""
+    pose = np.eye(4)
+    pose[2, 3] = 0.05 - DEPTH
+    overlap = vc.interference(vc.HalfSpace(), vc.Sphere(radius=0.05), pose)
+    return math.sqrt(overlap.inertia[2, 2] / overlap.volume)
+
+
+def depth_at_rest(shape: str, stiffness: float, case: Case, *, native: bool = False) -> float:
     """How deep a body of 1 kg sinks [m]."""
     scene = over_floor(
         SHAPES[shape], height=0.05, step=2e-4, gravity=GRAVITY, stiffness=stiffness, damping=20.0
     )
     run = simulate(load(scene), 1.5, lambda _, d: (d.qpos[2],), every=100, native=native)
+    if not native:
+        case.account(run)
     return 0.05 - float(run.rows[-1, 1])
 
 
 def bounce_frequency(case: Case, *, native: bool = False) -> float:
     """Of a ball that sinks by 0.79 mm, in a vibration of a micrometre [Hz]."""
-    depth = 0.7923638796e-3
-    height = 0.05 - depth + 1e-6
+    height = 0.05 - DEPTH + 1e-6
     scene = over_floor(
         SHAPES["sphere"], height=height, step=1e-4, gravity=GRAVITY, stiffness=1e8, damping=0.0
     )
-    watch = lambda _, d: (d.qpos[2] - 0.05 + depth,)  # noqa: E731
+    watch = lambda _, d: (d.qpos[2] - 0.05 + DEPTH,)  # noqa: E731
     run = simulate(load(scene), 1.0, watch, native=native)
     if not native:
-        case.closures.append(run.closure)
+        case.account(run)
     zeros = crossings(run.rows[:, 0], run.rows[:, 1])
     if len(zeros) < 3:
         return math.nan  # it does not swing
@@ -57,7 +75,7 @@ def impact_constant(shape: str, case: Case, *, native: bool = False) -> float:
         model.opt.timestep, duration = 1e-5, 0.2
     run = simulate(model, duration, watch, every=10, native=native)
     if not native:
-        case.closures.append(run.closure)
+        case.account(run)
     touch, leave = (*crossings(run.rows[:, 0], run.rows[:, 1]), math.nan, math.nan)[:2]
     return float(leave - touch) * speed / -float(run.rows[:, 1].min())
 
@@ -78,10 +96,18 @@ def measure() -> Case:
         Figure(
             "ball, k_v = 1e8 N/m^3",
             "m",
-            0.7923638796e-3,
+            DEPTH,
             1e-6,
-            depth_at_rest("sphere", 1e8),
-            depth_at_rest("sphere", 1e8, native=True),
+            depth_at_rest("sphere", 1e8, case),
+            depth_at_rest("sphere", 1e8, case, native=True),
+        ),
+        Figure(
+            "radius of gyration of its patch",
+            "m",
+            math.sqrt(2.0 * CAP[1] / CAP[0]),
+            1e-9,
+            gyration_radius(),
+            "a point, no patch",
         ),
         Figure(
             "2e8 and 5e8 N/m^3 in series",
@@ -102,7 +128,7 @@ def measure() -> Case:
     ]
     for shape, expected, tolerance in (("sphere", 0.559e-3, 3e-3), ("cylinder", 6.2e-6, 1e-2)):
         name = "ball" if shape == "sphere" else shape
-        depths = depth_at_rest(shape, soft), depth_at_rest(shape, soft, native=True)
+        depths = (depth_at_rest(shape, soft, case, native=native) for native in (False, True))
         case.figures.append(Figure(f"{name}, E = 1e7 Pa", "m", expected, tolerance, *depths))
     for name, shape, expected, tolerance in (
         ("a flat face", "box", math.pi, 1e-4),

@@ -25,7 +25,19 @@ from case import (
 BODY, STEM = 15e-3, 5e-3  # radii [m]
 TO_BODY, TO_STEM = 3e-3, 16e-3  # centres of the spheres on the axis [m]
 WEIGHT = 6e-3 * 9.81  # [N]
-TILT = 0.1  # at the start [rad]
+PAPER = {"upright": 0.15, "touch": 1.7, "falls": 4.0}  # of the CSA paper [s]
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What [LeineGlocker2003] leaves open, and how the top is let go."""
+
+    stiffness: float = 5e8  # [N/m^3]
+    friction: float = 0.3
+    damping: float = 0.0  # [s/m]
+    coupling: str = "quadrature"
+    speed: float = 180.0  # of its spin [rad/s]
+    tilt: float = 0.1  # [rad]
 
 
 @dataclass
@@ -41,10 +53,8 @@ class Events:
 
 
 def spin(
-    stiffness: float,
-    coupling: str,
+    setting: Setting = Setting(),
     *,
-    friction: float = 0.3,
     slip_speed: float = 1e-3,
     step: float = 4e-5,
     duration: float = 8.0,
@@ -53,17 +63,21 @@ def spin(
     """One run of the scene."""
     numbers = {}
     for ball in ("body", "stem"):
-        numbers[f"pair__{ball}__stiffness"] = stiffness
-        numbers[f"pair__{ball}__friction"] = friction
+        numbers[f"pair__{ball}__stiffness"] = setting.stiffness
+        numbers[f"pair__{ball}__friction"] = setting.friction
+        numbers[f"pair__{ball}__damping"] = setting.damping
         numbers[f"pair__{ball}__slip_speed"] = slip_speed
         for word in ("quadrature", "ellipsoid", "none"):
-            numbers[f"pair__{ball}__coupling__{word}"] = float(word == coupling)
+            numbers[f"pair__{ball}__coupling__{word}"] = float(word == setting.coupling)
     model = load("tippe_top/scene.xml", **numbers)
     model.opt.timestep = step
 
     def stand(_: mujoco.MjModel, data: mujoco.MjData) -> None:
-        depth = depth_of_ball(WEIGHT, BODY, stiffness)
-        data.qpos[2] = BODY - TO_BODY * math.cos(TILT) - depth
+        depth = depth_of_ball(WEIGHT, BODY, setting.stiffness)
+        half = 0.5 * setting.tilt
+        data.qpos[2] = BODY - TO_BODY * math.cos(setting.tilt) - depth
+        data.qpos[3:] = math.cos(half), math.sin(half), 0.0, 0.0
+        data.qvel[5] = setting.speed
 
     def watch(_: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, float]:
         up = float(np.clip(data.xmat[1, 8], -1.0, 1.0))
@@ -94,12 +108,12 @@ def measure() -> Case:
         "at 1.7 s and the fall at about 4 s, but no parameters. What turns it over is the "
         "Contensou effect: without coupling of sliding and spin it never does.",
     )
-    top = spin(5e8, "quadrature")
-    native = spin(5e8, "quadrature", native=True)
-    finer = spin(5e8, "quadrature", step=2e-5, duration=1.7)
-    native_finer = spin(5e8, "quadrature", step=2e-5, duration=1.7, native=True)
-    plain = spin(5e8, "none", slip_speed=2e-4, step=2e-5)
-    case.closures += [top.run.closure, finer.run.closure, plain.run.closure]
+    top = spin()
+    native = spin(native=True)
+    finer = spin(step=2e-5, duration=1.7)
+    native_finer = spin(step=2e-5, duration=1.7, native=True)
+    plain = spin(Setting(coupling="none"), slip_speed=2e-4, step=2e-5)
+    case.account(top.run, finer.run, plain.run)
     case.figures += [
         Bounds("upright", "s", 0.14, 0.23, top.upright, native.upright),
         Bounds("tilt when upright", "rad", 0.0, 0.02, top.least_tilt, native.least_tilt),
@@ -135,7 +149,7 @@ def measure() -> Case:
         Curve("without coupling", plain.run.rows[:, 0], np.degrees(plain.run.rows[:, 1]), ":"),
         Curve("native", native.run.rows[:, 0], np.degrees(native.run.rows[:, 1]), "--"),
     ]
-    paper = (("upright", 0.15), ("stem touches", 1.7), ("falls", 4.0))
+    paper = tuple(zip(("upright", "stem touches", "falls"), PAPER.values(), strict=True))
     case.plots.append(Plot("tilt", "time [s]", "tilt [degree]", tuple(curves), paper))
     return case
 

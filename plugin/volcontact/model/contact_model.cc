@@ -193,9 +193,12 @@ void ContactModel::evaluate(const BodyMotion& motion, const SiteMemory& memory,
         report.committed.insert(report.committed.end(), state.committed,
                                 state.committed + state_size());
       }
-      add_site(evaluate_site(sites_W[k], motion, laws_, carried, state,
-                             potential ? &field_W : nullptr, inputs),
-               pair, motion, report);
+      SiteReport site = evaluate_site(sites_W[k], motion, laws_, carried, state,
+                                      potential ? &field_W : nullptr, inputs);
+      if (field_W.error > options_.tolerance * field_W.force.norm()) {
+        site.metrics.status = std::max(site.metrics.status, Status::kApproximate);
+      }
+      add_site(std::move(site), pair, motion, report);
     }
   }
 }
@@ -213,7 +216,7 @@ PressureField ContactModel::field_of(const GeometricPair& pair, const BodyMotion
   const PressureField field =
       pressure_field(pair.a, pair.b, X_aW * (motion.X_WB * pair.X_Bb),
                      {sites_a, site, laws_.share_of_a, options_}, workspace.pressure);
-  return {field.energy, X_Wa.rotation * field.force, X_Wa.rotation * field.couple};
+  return {field.energy, X_Wa.rotation * field.force, X_Wa.rotation * field.couple, field.error};
 }
 
 // The states of a new row of the report, as they are carried over; its head is filled in.

@@ -19,7 +19,7 @@ struct PressureField {
   double energy = 0.0;         ///< int psi dV over the overlap [m^4]
   Vec3 force = Vec3::Zero();   ///< on A, -d energy / d x_A [m^3]
   Vec3 couple = Vec3::Zero();  ///< on A, -d energy / d theta_A about the centroid of the site [m^4]
-  double error = 0.0;          ///< estimate for the force, where a rule is not the gradient [m^3]
+  double error = 0.0;          ///< estimate for the force, where it is not to rounding [m^3]
 };
 
 /// Memory of pressure_field(), reused from call to call.

@@ -30,6 +30,7 @@ struct Level {
   double fall = 0.0;          ///< -d volume / d t
   Vec3 shift = Vec3::Zero();  ///< d volume / d x_A
   Vec3 turn = Vec3::Zero();   ///< d volume / d theta_A, about A's origin
+  double error = 0.0;         ///< of |shift|, where a budget ended the refinement
 
   /// Nearly (top - t) over the power with which the volume vanishes there.
   double reach() const { return volume / fall; }
@@ -69,6 +70,7 @@ class LayerSum {
       field.energy += top * weight * at.volume;
       field.force -= top * weight * at.shift;
       turn -= top * weight * at.turn;
+      field.error += top * weight * at.error;
       drift += weight * (at.volume - place * top * at.fall);
       if (at.volume > 0.0 && at.fall > 0.0) last = at;
     }
@@ -149,21 +151,24 @@ class LayerSum {
       if (site_.nearest(metrics.centroid) != site_.index) continue;
       const Level at = level_of(metrics);
       sum.volume += at.volume, sum.fall += at.fall;
-      sum.shift += at.shift, sum.turn += at.turn;
+      sum.shift += at.shift, sum.turn += at.turn, sum.error += at.error;
     }
     return sum;
   }
 
   Level level_of(const VolumeMetrics& metrics) const {
+    const bool is_rough = metrics.status == Status::kApproximate && metrics.volume > 0.0;
+    const double error = is_rough ? metrics.volume_error / metrics.volume : 0.0;
     return {metrics.volume, share_a_ * metrics.area + share_b_ * metrics.counter_area,
-            metrics.area_vector, metrics.area_moment};
+            metrics.area_vector, metrics.area_moment, error * metrics.area_vector.norm()};
   }
 
   // All of one solid. Its surface alone counts, and does not feel the other one.
   Level inside(const Shape& a, const Shape& b) const {
     const double volume_a = own_metrics_of(a).volume, volume = s_.level.total.volume;
     const bool is_a = std::abs(volume - volume_a) < 1e-6 * volume;
-    return {volume, is_a ? share_a_ * surface_area(a) : share_b_ * surface_area(b)};
+    return {volume, is_a ? share_a_ * surface_area(a) : share_b_ * surface_area(b), Vec3::Zero(),
+            Vec3::Zero(), 0.0};
   }
 
   const Shape& a_;

@@ -141,8 +141,11 @@ def largest_rise(energy: np.ndarray) -> float:
 
 
 def unbalance(run: Recording) -> np.ndarray:
-    """Mechanical plus dissipated energy, less its value at the start [J], shape (n,)."""
-    account = run.energy + run.dissipated.sum(axis=1)
+    """Mechanical, dissipated and numerical energy, less its value at the start [J], shape (n,).
+
+    That is the change of kinetic and potential energy that the contact forces did not make.
+    """
+    account = run.energy + run.dissipated.sum(axis=1) + run.numerical
     change: np.ndarray = account - account[0]
     return change
 
@@ -167,6 +170,9 @@ def run_summary(run: Recording, design: DesignPose | None) -> dict[str, Any]:
         "energy_dissipated": dict(
             zip(("normal", "roll", "slide", "spin"), run.dissipated[-1].tolist(), strict=True)
         ),
+        "energy_numerical": float(run.numerical[-1]),
+        "work_of_contact": float(run.work[-1]),
+        "energy_unbalance": float(np.abs(unbalance(run)).max()),
         "first_touch": first_touch(run),
         "max_site_force": peak(run, "force").value,
         "max_site_torque": peak(run, "torque").value,

@@ -136,8 +136,8 @@ def _plans(comparison: Comparison) -> list[_Plan]:
         _Plan(
             "energy_volumetric",
             "Energy, volumetric",
-            "Stacked; the dashed line is the energy at the start. Where the stack meets it, every "
-            "joule is accounted for.",
+            "Stacked; the dashed line is the energy at the start, less what the finite step takes "
+            "(more, where it gives). Where the stack meets it, every joule is accounted for.",
             _draw_volumetric_energy,
         ),
         _Plan(
@@ -380,7 +380,9 @@ def _stack(axes: Axes, run: Recording, layers: list[tuple[str, str, np.ndarray]]
         linewidth=0.0,
     )
     start = sum(float(layer[2][0]) for layer in layers)
-    axes.axhline(start, color=matplotlib.rcParams["text.color"], linewidth=0.9, linestyle="--")
+    line = start - (run.numerical[rows] - run.numerical[0])
+    ink = matplotlib.rcParams["text.color"]
+    axes.plot(run.time[rows], line, color=ink, linewidth=0.9, linestyle="--")
     axes.set_ylim(0.0, 1.1 * max(start, float(np.sum(values, axis=0).max()), 1e-12))
     axes.set_ylabel("energy [J]")
     handles, labels = axes.get_legend_handles_labels()

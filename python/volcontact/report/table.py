@@ -24,6 +24,8 @@ _UNITS = {
     "penetration": "m",
     "step_microseconds": "us",
     **{f"dissipated_{channel}": "J" for channel in CHANNELS},
+    "work": "J",
+    "numerical": "J",
 }
 _POSE = (("x", "m"), ("y", "m"), ("z", "m"), ("qw", "1"), ("qx", "1"), ("qy", "1"), ("qz", "1"))
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/support/meshes.h"
 #include "volcontact/force/laws.h"
 
 namespace volcontact {
@@ -286,6 +287,24 @@ TEST(ContactModel, PotentialOfTwoSitesGivesBackWhatItTook) {
   EXPECT_LT(report.sites[0].force_on_A.dot(report.sites[1].force_on_A), 0.0);
   const double power = report.wrench_on_B.force.dot(speed) + report.wrench_on_B.torque.dot(spin);
   EXPECT_NEAR(power, -rate, 1e-3 * std::abs(rate));
+}
+
+TEST(ContactModel, ErrorOfThePotentialReachesTheStatus) {
+  // The volume of two meshes is exact; their pressure is to 2e-4 of the force.
+  const Shape mesh = test::mesh_of(test::box_soup({0.1, 0.08, 0.06}, 2));
+  const GeometricPair pair{mesh, mesh, {}, {}};
+  BodyMotion motion;
+  motion.X_WB = pose({0.3, 0.2, 0.1}, {0.02, 0.03, 0.1});
+  ContactModel::Workspace workspace;
+  ContactReport report;
+  for (const double tolerance : {1e-3, 1e-8}) {
+    ContactModel({pair}, potential(0.0, 0.5), {.tolerance = tolerance})
+        .evaluate(motion, {}, workspace, report);
+    ASSERT_TRUE(report.touching());
+    EXPECT_LT(report.sites[0].metrics.volume_error, 1e-9 * report.sites[0].metrics.volume);
+    EXPECT_EQ(report.sites[0].metrics.status,
+              tolerance == 1e-3 ? Status::kOk : Status::kApproximate);
+  }
 }
 
 TEST(ContactModel, RefusesAPairWithoutPressureField) {
