@@ -161,7 +161,10 @@ TEST_P(Work, IsTheChangeOfKineticEnergyAtAnyStep) {
     }
     const volcontact_energy e = energy(m, d);
     EXPECT_LT(e.work, -0.1 * kinetic);
-    if (std::string(stiffness) == "2e7") EXPECT_GT(std::abs(e.numerical), 1e-3 * kinetic);
+    const bool is_soft = std::string(stiffness) == "2e7";
+    if (is_soft) {
+      EXPECT_GT(std::abs(e.numerical), 1e-3 * kinetic);
+    }
   }
 }
 
@@ -180,7 +183,7 @@ TEST(WorkAccount, StepThatIsRedoneCountsOnce) {
     }
     work[redone ? 1 : 0] = energy(m, d).work;
   }
-  EXPECT_GT(std::abs(work[0]), 1e-3);
+  EXPECT_GT(std::abs(work[0]), 1e-5);
   EXPECT_EQ(work[0], work[1]);
 }
 

@@ -73,3 +73,23 @@ def test_thrown_body_comes_to_rest_on_bristles(mass):
     if mass == 1.0:  # lighter ones are implicit by their patch, or gone when they are not
         chattering, _, _ = thrown(step=2e-3, friction=0.5, mass=mass, law="bristle", implicit="off")
         assert chattering > 1e-3
+
+
+def creep(law, mass):
+    """How far a box moves in 4 s on a slope of half the cone, once it is at rest [m]."""
+    text = SCENE.format(step=2e-3, friction=0.5, shape="box", mass=mass, implicit="auto", law=law)
+    model = vc.load(text)
+    model.opt.gravity[:] = 9.81 * np.array([0.25, 0.0, -1.0]) / np.hypot(0.25, 1.0)
+    data = mujoco.MjData(model)
+    data.qpos[:] = 0.0, 0.0, 0.0499, 1.0, 0.0, 0.0, 0.0
+    with vc.attach(model):
+        mujoco.mj_step(model, data, 2000)
+        before = data.qpos[0]
+        mujoco.mj_step(model, data, 2000)
+    return abs(float(data.qpos[0] - before))
+
+
+@pytest.mark.parametrize("mass", [0.001, 0.1, 1.0])
+def test_default_friction_creeps_and_bristles_do_not(mass):
+    assert 1e-3 < creep("regularized_coulomb", mass) < 5e-3
+    assert creep("bristle", mass) < 1e-12
