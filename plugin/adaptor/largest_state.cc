@@ -32,7 +32,9 @@ int largest_state(const mjModel* m) {
   const auto geoms = static_cast<std::size_t>(m->ngeom);
   const int rows = rows_for(geoms * geoms, geoms);
   const int channels = std::max(static_cast<int>(m->nv), 6 * static_cast<int>(m->nbody));
-  return UserdataLayout{SitePoolLayout{rows, largest_row()}.size(), channels, rows}.size();
+  return UserdataLayout{SitePoolLayout{rows, largest_row()}.size(), channels, rows,
+                        static_cast<int>(m->nv)}
+      .size();
 }
 
 }  // namespace volcontact::adaptor
