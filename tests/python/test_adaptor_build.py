@@ -37,6 +37,9 @@ def surroundings(tmp_path, monkeypatch):
     monkeypatch.setenv("CMAKE_BUILD_TYPE", "None")  # unoptimised: the bits are the same
 
 
+@pytest.mark.skipif(
+    mujoco.__version__ == "2.2.2", reason="two minutes: tested on the newest release"
+)
 def test_compiles_once_what_steps_to_the_same_bits(tmp_path, monkeypatch, capfd):
     if shutil.which("cmake") is None or not (TOOLS / "eigen").exists():
         pytest.skip("needs CMake and Eigen of ./run")

@@ -161,8 +161,8 @@ TEST(ReferenceSolid, FindsAPointOfThinOverlaps) {
       const Mat3 r = random.rotation();
       // The lowest place of the body lies over the box's upper face.
       const Vec3 low = std::visit(
-          [&](const auto& solid) -> Vec3 {
-            return r * lowest(solid, r.transpose() * Vec3::UnitZ());
+          [&](const auto& alternative) -> Vec3 {
+            return r * lowest(alternative, r.transpose() * Vec3::UnitZ());
           },
           body);
       const Vec3 over(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 0.2);
