@@ -55,7 +55,13 @@ SECTIONS = {
         "docs/own_laws",
         "docs/c_container",
     ],
-    "Measured": ["docs/accuracy", "docs/validation", "docs/performance", "docs/assembly"],
+    "Measured": [
+        "docs/accuracy",
+        "docs/validation",
+        "docs/performance",
+        "docs/assembly",
+        "docs/third_party",
+    ],
     "Inside": [
         "docs/theory",
         "docs/architecture",
