@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -43,8 +44,10 @@ bool is_finite(const ContactReport& report) {
   return sum - sum == 0.0;
 }
 
-double dot(const double* a, const double* b, std::ptrdiff_t count) {
-  return std::inner_product(a, a + count, b, 0.0);
+// Zero for velocities that are no numbers: the account stays one.
+double power_of(const double* forces, const double* velocities, std::ptrdiff_t count) {
+  const double power = std::inner_product(forces, forces + count, velocities, 0.0);
+  return std::isfinite(power) ? power : 0.0;
 }
 
 bool any(const std::vector<char>& flags, std::size_t count) {
@@ -243,8 +246,8 @@ void SceneContact::step(const mjModel* m, mjData* d, Scratch& scratch) const noe
     now.spin_energy += report.bristle_energy.spin;
   }
   write_forces(m, d, scratch);
-  now.force_power = dot(our.slot(0).forces(), d->qvel, m->nv);
-  account.write(now, account.continues() ? dot(our.slot(1).forces(), d->qvel, m->nv) : 0.0);
+  now.force_power = power_of(our.slot(0).forces(), d->qvel, m->nv);
+  account.write(now, account.continues() ? power_of(our.slot(1).forces(), d->qvel, m->nv) : 0.0);
 }
 
 bool SceneContact::revisit(const mjModel* m, const mjData* d, Scratch& scratch) const noexcept {
