@@ -23,7 +23,7 @@ SCENE = """
       <geom type="box" size=".05 .05 .05"/>
     </body>
   </worldbody>
-  <actuator><motor joint="slide" ctrlrange="-1 1"/></actuator>
+  <actuator><motor joint="slide" ctrllimited="true" ctrlrange="-1 1"/></actuator>
 </mujoco>"""
 
 
