@@ -152,3 +152,15 @@ def test_names_are_given_where_the_scene_has_them(tmp_path, monkeypatch, capsys)
     (tmp_path / "scene.xml").write_text(text)
     assert main(["check", "scene.xml"]) == 0
     assert "geom 0 and crate overlap" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("width", ["50", "80", "300"])
+def test_no_word_is_cut_on_a_narrow_terminal(width, tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", width)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scene.xml").write_text(scene())
+    assert main(["check", "scene.xml"]) == 0
+    printed = capsys.readouterr().out
+    assert "…" not in printed
+    for word in ("crate", "stiffness", "implicit"):
+        assert word in printed

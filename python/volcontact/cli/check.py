@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import argparse
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -173,10 +173,18 @@ def _print(description: dict[str, Any], terminal: Terminal) -> None:
         terminal.out.print(part.title, style="bold")
         if part.note:
             terminal.out.print(part.note, markup=False)
-        table = Table(*(escape(column) for column in part.columns), box=SIMPLE_HEAD)
-        for row in part.rows:
-            table.add_row(*(escape(cell) for cell in row))
-        terminal.out.print(table)
+        if _fits(part.columns, part.rows, terminal.out.width):
+            table = Table(*(escape(column) for column in part.columns), box=SIMPLE_HEAD)
+            for row in part.rows:
+                table.add_row(*(escape(cell) for cell in row))
+            terminal.out.print(table)
+        else:  # line by line: cells cut to a letter say nothing
+            for row in part.rows:
+                terminal.out.print()
+                for column, cell in zip(part.columns, row, strict=True):
+                    if cell:
+                        terminal.out.print(f"  {column}: {cell}", markup=False, soft_wrap=True)
+            terminal.out.print()
     if description["advice"]:
         terminal.out.print("Time step", style="bold")
         terminal.out.print(description["advice"], markup=False)
@@ -184,6 +192,15 @@ def _print(description: dict[str, Any], terminal: Terminal) -> None:
         terminal.out.print(f"picture: {description['picture']}", markup=False)
     for warning in description["warnings"]:
         terminal.warning(str(warning))
+
+
+def _fits(columns: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> bool:
+    """Whether a table of that width shows every word whole."""
+    needed = 0
+    for cells in zip(columns, *rows, strict=True):
+        words = [word for cell in cells for word in cell.split()]
+        needed += max(map(len, words), default=0) + 2
+    return needed + 2 <= width
 
 
 def size_line(userdata: dict[str, Any]) -> str:
