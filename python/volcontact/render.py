@@ -217,7 +217,10 @@ class Renderer:
         disc = np.array([radius, _DISC_THICKNESS * extent, 0.0])
         frame = frame_along(site["normal"])
         kinds = mujoco.mjtGeom
-        self._add_geom(kinds.mjGEOM_CYLINDER, disc, site["position"], frame, (*style.color, 0.85))
+        place, shade = site["position"], _SITE_EMISSION
+        add_geom(
+            self._scene, kinds.mjGEOM_CYLINDER, disc, place, frame, (*style.color, 0.85), shade
+        )
         force = site["force"] if self._moves(site["geom_a"]) else -site["force"]
         magnitude = float(np.linalg.norm(force))
         length = _ARROW_FULL * extent * np.sqrt(magnitude / style.reference_force)
@@ -227,33 +230,46 @@ class Renderer:
         thick = _ARROW_RADIUS * extent
         arrow = np.array([thick, thick, 2.0 * length])  # MuJoCo draws half of this size
         frame = frame_along(force)
-        self._add_geom(kinds.mjGEOM_ARROW, arrow, site["position"], frame, (*style.color, 1.0))
+        add_geom(self._scene, kinds.mjGEOM_ARROW, arrow, place, frame, (*style.color, 1.0), shade)
 
     def _moves(self, geom: int) -> bool:
         return bool(self._model.body_weldid[self._model.geom_bodyid[geom]] != 0)
 
-    def _add_geom(
-        self,
-        kind: mujoco.mjtGeom,
-        size: np.ndarray,
-        position: np.ndarray,
-        frame: np.ndarray,
-        color: tuple[float, ...],
-    ) -> None:
-        if self._scene.ngeom >= self._scene.maxgeom:
-            return
-        geom = self._scene.geoms[self._scene.ngeom]
-        mujoco.mjv_initGeom(
-            geom,
-            int(kind),
-            np.asarray(size, np.float64),
-            np.asarray(position, np.float64),
-            np.asarray(frame, np.float64).reshape(9),
-            np.asarray(color, np.float32),
-        )
-        geom.emission = _SITE_EMISSION
-        geom.specular = 0.0
-        self._scene.ngeom += 1
+
+def add_geom(
+    scene: mujoco.MjvScene,
+    kind: mujoco.mjtGeom,
+    size: np.ndarray,
+    position: np.ndarray,
+    frame: np.ndarray,
+    color: tuple[float, ...],
+    emission: float,
+) -> None:
+    """Puts one more geom into an abstract scene that has room for it.
+
+    Args:
+        scene: the scene that MuJoCo draws.
+        kind: shape of the geom.
+        size: shape (3,), as the kind takes it [m].
+        position: shape (3,), in world coordinates [m].
+        frame: shape (3, 3), its axes are the columns.
+        color: red, green, blue, opacity, 0 to 1.
+        emission: how much of the colour stays in the shade, 0 to 1.
+    """
+    if scene.ngeom >= scene.maxgeom:
+        return
+    geom = scene.geoms[scene.ngeom]
+    mujoco.mjv_initGeom(
+        geom,
+        int(kind),
+        np.asarray(size, np.float64),
+        np.asarray(position, np.float64),
+        np.asarray(frame, np.float64).reshape(9),
+        np.asarray(color, np.float32),
+    )
+    geom.emission = emission
+    geom.specular = 0.0
+    scene.ngeom += 1
 
 
 def camera_id(model: mujoco.MjModel, name: str) -> int:

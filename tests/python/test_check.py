@@ -164,3 +164,14 @@ def test_no_word_is_cut_on_a_narrow_terminal(width, tmp_path, monkeypatch, capsy
     assert "…" not in printed
     for word in ("crate", "stiffness", "implicit"):
         assert word in printed
+
+
+def test_restitution_is_not_shown_where_damping_holds(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", "300")
+    monkeypatch.chdir(tmp_path)
+    custom = [number("material/m/damping", 2), listed("m")]
+    (tmp_path / "scene.xml").write_text(scene(*custom))
+    assert main(["check", "scene.xml"]) == 0
+    pairs = capsys.readouterr().out.split("Pairs")[1]
+    assert "damping" in pairs
+    assert "restitution [-]" not in pairs

@@ -62,9 +62,21 @@ def _table_of_values(name: str, values: Record) -> Table:
     return Table(_title(name), ("name", "value", "unit"), rows)
 
 
+def _in_force(record: Record) -> Record:
+    """A record without the values that another field of its law has put out of force."""
+    sources = record.get("sources")
+    if not isinstance(sources, Mapping):
+        return record
+    return {
+        k: None if str(sources.get(k, "")).startswith("none:") else v for k, v in record.items()
+    }
+
+
 def _table(name: str, records: list[Record], *, sources: bool) -> Table:
+    records = [_in_force(record) for record in records]
     keys = sorted(dict.fromkeys(key for record in records for key in record), key=_rank)
     keys = [key for key in keys if key not in _HIDDEN and (sources or key not in _LAST)]
+    keys = [key for key in keys if any(text(record.get(key)) for record in records)]
     note = ""
     if len(records) > 1:
         shared = [

@@ -14,7 +14,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from volcontact.render import default_view, frame_along
+from volcontact.render import add_geom, default_view, frame_along
 from volcontact.report.palette import NATIVE, VOLUMETRIC, rgb
 from volcontact.view.drawing import SiteDrawing, Triangles
 from volcontact.view.stage import Stage
@@ -166,7 +166,15 @@ def draw_site(
         _add_triangles(scene, drawing.body, (*color, _BODY_OPACITY))
     else:
         size = np.full(3, _POINT_RADIUS * extent)
-        _add(scene, mujoco.mjtGeom.mjGEOM_SPHERE, size, drawing.position, np.eye(3), (*color, 1.0))
+        add_geom(
+            scene,
+            mujoco.mjtGeom.mjGEOM_SPHERE,
+            size,
+            drawing.position,
+            np.eye(3),
+            (*color, 1.0),
+            _EMISSION,
+        )
     _add_arrow(scene, drawing.position, drawing.normal_arrow, (*color, 1.0), extent)
     _add_arrow(scene, drawing.position, drawing.friction_arrow, (*_FRICTION, 1.0), extent)
 
@@ -182,7 +190,15 @@ def _add_triangles(scene: mujoco.MjvScene, triangles: Triangles, color: tuple[fl
             continue
         # The frame of a triangle is skew: its sides are the first two axes.
         frame = np.column_stack([sides / lengths, normal / size])
-        _add(scene, mujoco.mjtGeom.mjGEOM_TRIANGLE, np.array([*lengths, 0.0]), a, frame, color)
+        add_geom(
+            scene,
+            mujoco.mjtGeom.mjGEOM_TRIANGLE,
+            np.array([*lengths, 0.0]),
+            a,
+            frame,
+            color,
+            _EMISSION,
+        )
 
 
 def _add_arrow(
@@ -197,28 +213,6 @@ def _add_arrow(
         return
     thick = _ARROW_RADIUS * extent
     size = np.array([thick, thick, 2.0 * length])  # MuJoCo draws half of this length
-    _add(scene, mujoco.mjtGeom.mjGEOM_ARROW, size, position, frame_along(arrow), color)
-
-
-def _add(
-    scene: mujoco.MjvScene,
-    kind: mujoco.mjtGeom,
-    size: np.ndarray,
-    position: np.ndarray,
-    frame: np.ndarray,
-    color: tuple[float, ...],
-) -> None:
-    if scene.ngeom >= scene.maxgeom:
-        return
-    geom = scene.geoms[scene.ngeom]
-    mujoco.mjv_initGeom(
-        geom,
-        int(kind),
-        np.asarray(size, np.float64),
-        np.asarray(position, np.float64),
-        np.asarray(frame, np.float64).reshape(9),
-        np.asarray(color, np.float32),
+    add_geom(
+        scene, mujoco.mjtGeom.mjGEOM_ARROW, size, position, frame_along(arrow), color, _EMISSION
     )
-    geom.emission = _EMISSION
-    geom.specular = 0.0
-    scene.ngeom += 1
