@@ -243,6 +243,31 @@ TEST(ComposedColumns, NoSurfaceIsSmallerThanItsAreaVector) {
   EXPECT_GT(served, 500);
 }
 
+// A polytope that holds much of a rim. Two rules on its large triangles once agreed on a wrong sum,
+// which came and went within a hair of a motion.
+TEST(ComposedColumns, RimsMakeNoSteps) {
+  Random random(3);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 18; ++i) points.push_back(.4 * random.direction());
+  const ConvexPolytope gem(points);
+  const Csg block = solids::box(.4, .4, .25) - solids::tube(.15, .5) -
+                    solids::tube(.25, .2, solids::at(0, 0, .3));
+  Pose X_AB;
+  X_AB.rotation << -0.96530409964414177, 0.21508810072440673, -0.14807128059478747,
+      -0.19299459742893238, -0.96961990640229434, -0.15030077335679348, -0.17590076910990796,
+      -0.11650899551182019, 0.97748891215776457;
+  std::vector<double> volumes;
+  for (int k = -12; k <= 12; ++k) {
+    X_AB.translation = Vec3(-0.0922 + 2e-5 * k, -0.1117, -0.4262);
+    const Interference out = evaluated(gem, block, X_AB);
+    ASSERT_EQ(out.engine, Engine::kColumns);
+    volumes.push_back(out.total.volume);
+  }
+  for (std::size_t i = 2; i < volumes.size(); ++i) {
+    EXPECT_NEAR(volumes[i] - volumes[i - 1], volumes[i - 1] - volumes[i - 2], 2e-5 * volumes[i]);
+  }
+}
+
 TEST(ComposedColumns, TheAreaVectorIsTheGradientOfTheVolume) {
   const double clearance = 1e-4;
   const Mesh peg = mesh_of(prism(kRadius, kHalfLength, 64, 1));

@@ -12,6 +12,9 @@ namespace {
 using namespace triangle_rule;
 constexpr int kMostRounds = 12;    // of divisions of triangles
 constexpr double kSettled = 0.15;  // of the doubt allowed, left behind in each round
+// Of the spread of the integrand over a triangle with a rim of the solid in it. Over 4,000 random
+// kinks the rule errs by 8e-4 (median) to 2e-2; the errors of many triangles cancel in part.
+constexpr double kRimError = 0.002;
 
 class Star {
  public:
@@ -48,11 +51,13 @@ class Star {
     StarSum out;
     int face, other;
     const MomentSum at_middle = behind(all / 3.0, area, face);
-    double outer = 0.0;
+    double outer = 0.0, least = at_middle.volume, most = least;
     bool rim = false;
     const auto look = [&](const Vec3& x) {
       const MomentSum m = behind(x, area, other);
       rim |= other != face;
+      least = std::min(least, m.volume);
+      most = std::max(most, m.volume);
       return m;
     };
     add(kMiddleWeight, at_middle, out.moments);
@@ -62,11 +67,12 @@ class Star {
       add(kOuterWeight, far, out.moments);
       add(kInnerWeight, near, out.moments);
       outer += far.volume;
-      rim |= face_along(c[i] - center_) != face;
+      look(c[i]);
     }
     const double rough = kRoughMiddleWeight * at_middle.volume + kRoughOuterWeight * outer;
-    // Across a rim of the solid the better rule gains nothing.
-    out.doubt = std::abs(out.moments.volume - rough) / (rim ? 1.0 : kGain);
+    // Across a rim of the solid the better rule gains nothing, and both may err by the same.
+    const double difference = std::abs(out.moments.volume - rough);
+    out.doubt = rim ? std::max(difference, kRimError * (most - least)) : difference / kGain;
     return out;
   }
 
@@ -78,11 +84,6 @@ class Star {
   }
 
  private:
-  // The plane face that a ray from the centre leaves the solid through, or -1.
-  int face_along(const Vec3& u) const {
-    double leave = round_interval(solid_, center_, u).leave;
-    return cut_by_planes(u, leave);
-  }
   int cut_by_planes(const Vec3& u, double& leave) const {
     int plane = -1;
     for (int k = 0; k < solid_.plane_count; ++k) {
