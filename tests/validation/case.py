@@ -258,7 +258,8 @@ def simulate(
         watch: returns the numbers of a row.
         every: steps from sample to sample.
         setup: changes the state before the first step.
-        drive: called before every `every` steps.
+        drive: called before every `every` steps; where it turns gravity, the potential energy that
+            the scene gains by that is work from outside.
         native: under MuJoCo's own contact, without volcontact.
         outside: the work done on the scene from outside since the start [J], and the kinetic energy
             of bodies that count as outside [J].
@@ -269,12 +270,14 @@ def simulate(
         setup(model, data)
     rows, sums, mechanical, turned_over = [], [], [], []
     potentials, elastics = [], []
-    dissipated = np.zeros(4)
+    dissipated, driven = np.zeros(4), 0.0
     with contact_of(model, native=native) as contact:
         for step in range(0, round(duration / model.opt.timestep) + 1, every):
             if step:
                 if drive is not None:
                     drive(model, data)
+                    mujoco.mj_energyPos(model, data)
+                    driven += float(data.energy[0]) - potentials[-1]
                 mujoco.mj_step(model, data, every)
             mujoco.mj_forward(model, data)
             potential, kinetic = (float(e) for e in dense(data.energy))
@@ -285,6 +288,7 @@ def simulate(
                 stored, worked = energy.elastic + energy.dissipated, energy.work
                 elastic = energy.elastic
             work, apart = outside(data) if outside is not None else (0.0, 0.0)
+            work += driven
             kinetic -= apart
             rows.append((data.time, *watch(model, data)))
             sums.append(potential + kinetic + stored - work)
