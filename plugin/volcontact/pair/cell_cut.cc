@@ -13,7 +13,29 @@ namespace {
 
 constexpr double kSplitShare = 0.4;    // axes with this share of the largest score are halved
 constexpr double kOthersShare = 0.25;  // weight of the other faces' bend in a face's doubt
+constexpr double kLeastLeft = 1e-2;    // of a polytope, for its faces to stand for the surface
 constexpr double kMostShare = 2.0;     // of the volume sampled, to which it may be corrected
+
+// Where next to nothing is left of the volumes that were added and taken away, their moments need
+// not belong to any body in the box: then what is left is at the point of the box next to them.
+void place_in_box(const Vec3& low, const Vec3& high, CellSums& sums) {
+  if (!(sums.volume > 0.0)) {
+    sums.first.setZero();
+    sums.second.setZero();
+    return;
+  }
+  constexpr double kSlack = 1e-9;  // of the box
+  const Vec3 middle = sums.first / sums.volume, size = high - low;
+  const Vec3 at = middle.cwiseMax(low).cwiseMin(high);
+  const Vec3 spread = sums.second.diagonal() / sums.volume - middle.cwiseAbs2();
+  const double slack = kSlack * size.squaredNorm();
+  if ((at - middle).norm() <= kSlack * size.norm() && spread.minCoeff() >= -slack &&
+      (spread - 0.25 * size.cwiseAbs2()).maxCoeff() <= slack) {
+    return;
+  }
+  sums.first = sums.volume * at;
+  sums.second = sums.volume * at * at.transpose();
+}
 
 }  // namespace
 
@@ -79,6 +101,7 @@ void CellCut::bound(Cell& cell) {
 void CellCut::estimate(Cell& cell) {
   CellSums& sums = cell.sums;
   add_polytope(sums);
+  const double polytope = sums.volume;
   add_surfaces(sums);
   for (std::size_t i = 0; i < tangents_.size(); ++i) {
     const Moments& between = between_[i];
@@ -103,6 +126,9 @@ void CellCut::estimate(Cell& cell) {
     sums.first *= scale;
     sums.second *= scale;
   }
+  // Where the faces leave hardly anything of the polytope, its own faces are not theirs.
+  if (sums.volume < kLeastLeft * polytope) sums.surface = {};
+  place_in_box(cell.content_low, cell.content_high, sums);
 }
 
 // From the corners of the polytope, and as far outside as the faces bend.

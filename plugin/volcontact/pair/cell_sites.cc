@@ -24,7 +24,7 @@ class Regions {
       const Cell& cell = cells[leaves[i]];
       s_.leaves[i] = {{cell.center + cell.content_low, cell.center + cell.content_high},
                       cell.sums.volume,
-                      cell.low > 0.0};
+                      cell.low};
     });
   }
 
@@ -35,7 +35,7 @@ class Regions {
   void join(int i, int j) { join_sets(s_.parent, i, j); }
 
   void join_neighbours(double slack);
-  void join_specks();
+  void join_specks(double rounding);
 
  private:
   int sweep_axis() const;
@@ -79,12 +79,17 @@ void Regions::join_neighbours(double slack) {
 }
 
 // A speck of estimated volume beside the overlap would come and go with the pose.
-void Regions::join_specks() {
+void Regions::join_specks(double rounding) {
   double total = 0.0;
   for (int i = 0; i < count_; ++i) total += volume(i);
   s_.weight.assign(s_.leaves.size(), 0.0);
+  s_.certain.assign(s_.leaves.size(), 0.0);
   for (int i = 0; i < count_; ++i) {
-    s_.weight[root(i)] += volume(i) + (s_.leaves[i].certain ? total : 0.0);
+    s_.weight[root(i)] += volume(i);
+    s_.certain[root(i)] += s_.leaves[i].certain;
+  }
+  for (int i = 0; i < count_; ++i) {
+    if (s_.certain[i] > rounding) s_.weight[i] += total;
   }
   const auto stands = [&](int i) { return s_.weight[root(i)] > kSpeck * total; };
   int last = 0;
@@ -114,13 +119,13 @@ void Regions::join_specks() {
 
 }  // namespace
 
-void sort_by_site(Crew& crew, std::span<const Cell> cells, double slack, std::vector<int>& leaves,
-                  std::vector<int>& ends, SiteScratch& scratch) {
+void sort_by_site(Crew& crew, std::span<const Cell> cells, double slack, double rounding,
+                  std::vector<int>& leaves, std::vector<int>& ends, SiteScratch& scratch) {
   ends.clear();
   if (leaves.empty()) return;
   Regions regions(crew, cells, leaves, scratch);
   regions.join_neighbours(slack);
-  regions.join_specks();
+  regions.join_specks(rounding);
   const int count = static_cast<int>(leaves.size());
   // Counting sort by region, in the order of their first leaves.
   scratch.order.assign(leaves.size(), -1);

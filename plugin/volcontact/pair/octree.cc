@@ -98,7 +98,7 @@ void measure(const OctreeTask& task, OctreeScratch& s, const CellTree& tree, Int
     s.site_ends.assign(1, static_cast<int>(s.leaves.size()));
   } else {
     sort_by_site(task.crew, {s.cells.data(), static_cast<std::size_t>(s.cell_count)},
-                 1e-12 * task.scale, s.leaves, s.site_ends, s.sites);
+                 1e-12 * task.scale, task.rounding, s.leaves, s.site_ends, s.sites);
   }
   LeafRange leaves;
   leaves.all = s.site_ends.size() == 1;

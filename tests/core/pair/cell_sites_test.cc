@@ -8,6 +8,8 @@
 namespace volcontact {
 namespace {
 
+constexpr double kRounding = 1e-9;  // of a volume
+
 // Cubes of edge 2 full of volume, unless told otherwise.
 Cell cube(double x, double y, double z, double volume = 8.0, double low = 8.0) {
   Cell cell;
@@ -30,7 +32,7 @@ Sorted sorted(const std::vector<Cell>& cells) {
   s.leaves.resize(cells.size());
   std::iota(s.leaves.begin(), s.leaves.end(), 0);
   Crew alone;
-  sort_by_site(alone, cells, 1e-12, s.leaves, s.ends, scratch);
+  sort_by_site(alone, cells, 1e-12, kRounding, s.leaves, s.ends, scratch);
   return s;
 }
 
@@ -67,6 +69,12 @@ TEST(SortBySite, ASpeckGoesWithTheNearestRegion) {
   const Sorted s = sorted({cube(0, 0, 0), cube(20, 0, 0), cube(15, 0, 0, 1e-3, 0.0)});
   EXPECT_EQ(s.leaves, (std::vector<int>{0, 1, 2}));
   EXPECT_EQ(s.ends, (std::vector<int>{1, 3}));
+}
+
+// Nor does it count that some of its volume is called certain.
+TEST(SortBySite, ASpeckOfRoundingIsNoSite) {
+  EXPECT_EQ(sorted({cube(0, 0, 0), cube(20, 0, 0, 1e-12, 1e-13)}).ends.size(), 1u);
+  EXPECT_EQ(sorted({cube(0, 0, 0), cube(20, 0, 0, 1e-6, 1e-7)}).ends.size(), 2u);
 }
 
 // A thin overlap may have no certain volume anywhere, and still has its sites.
