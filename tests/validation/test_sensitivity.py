@@ -18,8 +18,8 @@ from whole_runs import RESULTS, SCENES, engines_of, kept, under
 import volcontact as vc
 from volcontact._mujoco_views import dense
 
-# Their whole runs take the octree a quarter of an hour and more.
-TOO_LONG = {"ball_in_cylinder", "tippe_top"}
+# To its tolerance the octree makes the ball creep where it should rest; finer, it takes hours.
+TOO_LONG = {"ball_in_cylinder"}
 FIRST_STEPS = 60  # from the first contact on
 VOLUME_TOLERANCE = 5e-5  # asked of the octree
 STATE_TOLERANCE = 1e-4
@@ -40,10 +40,12 @@ def measure() -> Case:
         "the largest difference of any result from that of the scene's own engine on the newest "
         "release, over what its case allows. Between one thread and two no bit differs. Beside it "
         "stands what a rounding makes, all masses larger by 1e-14: where this is as large, the "
-        "motion is chaotic and no engine can do better. The ball in the cylinder and the tippe-top "
-        "take the octree a quarter of an hour and more: of these the tests make the first steps. "
-        "Energy is not compared: the octree moves the tumbling box alike, but its account "
-        "of elastic energy leaves out columns that end early, and closes to 8 %.",
+        "motion is chaotic and no engine can do better. The ball in the cylinder has no whole run "
+        "by the octree: to a thousandth of the volume it dissipates alike (rolling 1.3021 J for "
+        "1.3029 J) but creeps at the end, where the ball should rest, by 5 % of its way; finer, it "
+        "takes hours. Of it the tests make the first steps. Energy is not compared: the octree "
+        "moves the tumbling box alike, but its account of elastic energy leaves out columns that "
+        "end early, and closes to 8 %.",
     )
     for scene, record in json.loads(RESULTS.read_text()).items():
         for name, values in record["runs"].items():
