@@ -36,6 +36,8 @@ SECTIONS = {
     "Start": [
         "README",
         "docs/start",
+        "docs/install",
+        "docs/concepts",
         "docs/choosing",
         "docs/python",
         "docs/environment",
@@ -45,6 +47,7 @@ SECTIONS = {
     ],
     "Scenes": [
         "docs/writing_a_scene",
+        "docs/mjcf_keys",
         "docs/components",
         "docs/meshes",
         "mjcf_models/README",
@@ -56,6 +59,7 @@ SECTIONS = {
         "docs/c_container",
     ],
     "Measured": [
+        "docs/comparison",
         "docs/accuracy",
         "docs/validation",
         "docs/performance",

@@ -11,6 +11,7 @@ import sys
 import textwrap
 from pathlib import Path
 
+import make_comparison
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure as Canvas
@@ -141,8 +142,9 @@ def _draw(plot: Plot, file: Path) -> None:
 
 
 def main() -> None:
-    """Writes the page."""
+    """Writes the page, and the one that takes figures from it."""
     PAGE.write_text(render(), encoding="utf-8")
+    make_comparison.main()
 
 
 if __name__ == "__main__":

@@ -111,6 +111,26 @@ def test_components_page_is_generated_from_the_field_tables() -> None:
     )
 
 
+def test_page_of_the_keys_is_generated_from_what_the_code_accepts() -> None:
+    module = generator("make_mjcf_keys")
+    assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
+        "run './run python docs/make_mjcf_keys.py'"
+    )
+
+
+def test_pictures_of_the_concepts_show_what_the_core_computes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    module = generator("make_concepts")
+    monkeypatch.setattr("concepts_sections.POINTS", 20)  # the test looks at numbers alone
+    assert {path.stem for path in module.PICTURES.glob("*.svg")} == set(module.PICTURE)
+    for name, draw in module.PICTURE.items():
+        picture = (module.PICTURES / f"{name}.svg").read_text(encoding="utf-8")
+        assert f"<dc:source>{module.digest(draw()[1])}</dc:source>" in picture, (
+            "run './run python docs/make_concepts.py'"
+        )
+
+
 def test_accuracy_page_is_generated_from_the_results() -> None:
     module = generator("make_accuracy")
     assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
@@ -146,6 +166,13 @@ def test_performance_plots_are_made_of_the_results() -> None:
         assert f"<dc:source>{module.digest()}</dc:source>" in plot, (
             "run './run python docs/make_performance.py'"
         )
+
+
+def test_comparison_page_is_generated_from_results_and_validation_page() -> None:
+    module = generator("make_comparison")
+    assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
+        "run './run python docs/make_comparison.py'"
+    )
 
 
 def test_assembly_page_and_its_plots_are_generated_from_the_results() -> None:
