@@ -12,6 +12,8 @@ from typing import Any, Literal
 
 import numpy as np
 
+from volcontact.surface import SiteSurface
+
 ContactKind = Literal["volumetric", "native"]
 
 CHANNELS = ("normal", "roll", "slide", "spin")
@@ -41,11 +43,13 @@ class Frame:
         row: index into the arrays of the recording.
         time: [s].
         sites: structured array of `SITE`, one row a contact site.
+        surfaces: shape of each site; none under native contact.
     """
 
     row: int
     time: float
     sites: np.ndarray
+    surfaces: tuple[SiteSurface, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -82,6 +86,8 @@ class Recording:
         frames: the instants to draw.
         sites: all contact sites: structured array of `SITE_IN_RUN`.
         geoms: names of the geoms by id, for the sites.
+        sensors: magnitude of each sensor of the scene by name, shape (n,); NAME_x, NAME_y and
+            NAME_z are the parts of NAME.
         description: what volcontact understood of the scene; {} under native contact.
         weight: of all that moves [N]; 0 without gravity.
     """
@@ -113,6 +119,7 @@ class Recording:
     frames: tuple[Frame, ...]
     sites: np.ndarray
     geoms: tuple[str, ...]
+    sensors: dict[str, np.ndarray]
     description: dict[str, Any]
     weight: float
 

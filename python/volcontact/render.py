@@ -12,27 +12,33 @@ import copy
 import functools
 import os
 import weakref
+from collections.abc import Sequence
 from dataclasses import dataclass
-from types import TracebackType
 from typing import Any
 
 import mujoco
 import numpy as np
 
+from volcontact._closing import Closing
 from volcontact._mujoco_views import dense
+from volcontact.surface import SiteSurface, stretch_to_see
 
 _PACKAGES = "libegl1 libgl1 libgl1-mesa-dri"
 _MAX_GEOMS = 10_000
 _SHADOW_SIZE = 2048
-_BODY_OPACITY = 0.2  # moving bodies while sites are drawn, so that the sites inside are seen
+_BODY_OPACITY = 0.12  # moving bodies while sites are drawn, so that the sites inside are seen
 _ARROW_FULL = 0.3  # length of the arrow of the reference force, in scene extents
 _ARROW_MAX = 0.8  # longest arrow, in scene extents
 _POINT_RADIUS = 0.012  # disc of a contact that has no area, in scene extents
 _DISC_THICKNESS = 0.003  # in scene extents; more than the usual penetration
+_VOLUME_OPACITY = 0.4
+_LIFT = 0.002  # of patches into the moving body, in scene extents: else the other one hides them
 _ARROW_RADIUS = 0.007  # in scene extents
 _HORIZON = (236, 240, 244)  # background of a scene without sky, RGB
 _ZENITH = (202, 212, 222)
 _SITE_EMISSION = 0.35  # sites keep their colour in the shade
+_SURFACE_EMISSION = 0.9
+_THICK = 0.012  # of a volume that is seen in the whole scene, in scene extents
 _SMALLEST_ARROW = 0.02  # shorter ones are not drawn, in scene extents
 
 
@@ -71,7 +77,7 @@ class SiteStyle:
     reference_force: float
 
 
-class Renderer:
+class Renderer(Closing):
     """Draws states of one model into arrays. Use as a context manager, or call `close`.
 
     Args:
@@ -113,6 +119,7 @@ class Renderer:
         qpos: np.ndarray,
         *,
         sites: np.ndarray | None = None,
+        surfaces: Sequence[SiteSurface] = (),
         style: SiteStyle | None = None,
         view: View | str | None = None,
     ) -> np.ndarray:
@@ -120,9 +127,11 @@ class Renderer:
 
         Args:
             qpos: shape (nq,).
-            sites: structured array of `volcontact.recording.SITE`; drawn as patch discs and force
-                arrows, with the moving bodies translucent. The arrow shows the force on the body
-                that moves.
+            sites: structured array of `volcontact.recording.SITE`; drawn with force arrows, and
+                the moving bodies translucent. The arrow shows the force on the body that moves.
+            surfaces: shape of each site, drawn as its patch within its translucent volume, which
+                is made thicker where it is too thin to be seen. Without, and under MuJoCo 2.2, a
+                disc of the area of the patch stands for them.
             style: of the sites; needed with `sites`.
             view: camera, or the name of one of the scene; when None the scene's first camera, or
                 one that sees the whole scene.
@@ -155,8 +164,8 @@ class Renderer:
         dense(self._scene.flags)[int(mujoco.mjtRndFlag.mjRND_SHADOW)] = not see_through
         if sites is not None and style is not None:
             self._fade_moving_bodies()
-            for site in sites:
-                self._add_site(site, style)
+            for i, site in enumerate(sites):
+                self._add_site(site, surfaces[i] if surfaces else None, style)
         mujoco.mjr_render(self._viewport, self._scene, self._context)
         return self._pixels()
 
@@ -170,17 +179,6 @@ class Renderer:
             context.free()
         if gl is not None:
             gl.free()
-
-    def __enter__(self) -> Renderer:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def _look_from(self, view: View | str | None) -> None:
         if isinstance(view, str) or (view is None and self._model.ncam > 0):
@@ -200,8 +198,10 @@ class Renderer:
         depth = np.empty(shape, np.float32)
         mujoco.mjr_readPixels(rgb, depth, self._viewport, self._context)
         if not self._has_sky:
-            nothing = depth >= 1.0
-            rgb[nothing] = _background(shape)[nothing]
+            # What is translucent leaves no depth: it was blended with black, which shows how far.
+            behind = depth >= 1.0
+            share = 1.0 - rgb[behind].max(axis=1, keepdims=True) / 255.0
+            rgb[behind] += (share * _background(shape)[behind]).astype(np.uint8)
         return np.flipud(rgb).copy()
 
     def _fade_moving_bodies(self) -> None:
@@ -211,16 +211,22 @@ class Renderer:
             if geom.category == moving:
                 dense(geom.rgba)[3] *= _BODY_OPACITY
 
-    def _add_site(self, site: np.void, style: SiteStyle) -> None:
-        extent = self._extent
-        radius = np.sqrt(site["area"] / np.pi) or _POINT_RADIUS * extent
-        disc = np.array([radius, _DISC_THICKNESS * extent, 0.0])
-        frame = frame_along(site["normal"])
-        kinds = mujoco.mjtGeom
-        place, shade = site["position"], _SITE_EMISSION
-        add_geom(
-            self._scene, kinds.mjGEOM_CYLINDER, disc, place, frame, (*style.color, 0.85), shade
-        )
+    def _add_site(self, site: np.void, surface: SiteSurface | None, style: SiteStyle) -> None:
+        extent, shade = self._extent, _SITE_EMISSION
+        kinds, place = mujoco.mjtGeom, site["position"]
+        if surface is None or surface.is_empty or not hasattr(kinds, "mjGEOM_TRIANGLE"):
+            radius = np.sqrt(site["area"] / np.pi) or _POINT_RADIUS * extent
+            disc = np.array([radius, _DISC_THICKNESS * extent, 0.0])
+            frame, color = frame_along(site["normal"]), (*style.color, 0.85)
+            add_geom(self._scene, kinds.mjGEOM_CYLINDER, disc, place, frame, color, shade)
+        else:
+            moves = self._moves(site["geom_a"])
+            points, faces = surface.patch
+            lift = _LIFT * extent * (site["normal"] if moves else -site["normal"])
+            patch = points + lift, faces if moves else faces[:, ::-1]  # it faces the moving body
+            body = surface.body(stretch_to_see(site["area"], site["depth"], _THICK * extent))
+            add_triangles(self._scene, patch, (*style.color, 1.0), _SURFACE_EMISSION)
+            add_triangles(self._scene, body, (*style.color, _VOLUME_OPACITY), _SURFACE_EMISSION)
         force = site["force"] if self._moves(site["geom_a"]) else -site["force"]
         magnitude = float(np.linalg.norm(force))
         length = _ARROW_FULL * extent * np.sqrt(magnitude / style.reference_force)
@@ -270,6 +276,34 @@ def add_geom(
     geom.emission = emission
     geom.specular = 0.0
     scene.ngeom += 1
+
+
+def add_triangles(
+    scene: mujoco.MjvScene,
+    triangles: tuple[np.ndarray, np.ndarray],
+    color: tuple[float, ...],
+    emission: float,
+) -> None:
+    """Puts triangles into an abstract scene, as far as there is room. MuJoCo 2.2 has none.
+
+    Args:
+        scene: the scene that MuJoCo draws.
+        triangles: points [m], shape (n, 3), and their indices, shape (m, 3).
+        color: red, green, blue, opacity, 0 to 1.
+        emission: how much of the colour stays in the shade, 0 to 1.
+    """
+    points, faces = triangles
+    for a, b, c in points[faces]:
+        sides = np.column_stack([b - a, c - a])
+        lengths = np.linalg.norm(sides, axis=0)
+        normal = np.cross(sides[:, 0], sides[:, 1])
+        size = np.linalg.norm(normal)
+        if size == 0.0:
+            continue
+        # The frame of a triangle is skew: its sides are the first two axes.
+        frame = np.column_stack([sides / lengths, normal / size])
+        kind = mujoco.mjtGeom.mjGEOM_TRIANGLE
+        add_geom(scene, kind, np.array([*lengths, 0.0]), a, frame, color, emission)
 
 
 def camera_id(model: mujoco.MjModel, name: str) -> int:

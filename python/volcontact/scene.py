@@ -7,13 +7,13 @@ import ctypes
 import json
 import os
 import warnings
-from types import TracebackType
 from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
 
 from volcontact._adaptor import CONTACT_DTYPE, SITE_DTYPE, RawEnergy, RawSurfaceSize, adaptor
+from volcontact._closing import Closing
 from volcontact.compiling import compile_scene
 from volcontact.given_keys import GivenKeys, Values
 from volcontact.surface import SiteSurface
@@ -139,7 +139,7 @@ def contact_forces(data: mujoco.MjData) -> np.ndarray:
     return fitting[0].contact_forces(data)
 
 
-class Contact:
+class Contact(Closing):
     """Volumetric contact of one model; made by `attach`."""
 
     # An attached model stays attached, and alive, until `close`, whoever forgets the object.
@@ -154,17 +154,6 @@ class Contact:
         Contact._open[model._address] = self
         for warning in text.splitlines():
             warnings.warn(warning, RuntimeWarning, stacklevel=3)
-
-    def __enter__(self) -> Contact:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     @property
     def model(self) -> mujoco.MjModel:

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-import contextlib
 import copy
 import os
+import re
 import time as clock
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -17,6 +17,7 @@ import numpy as np
 from volcontact import scene as volumetric_scene
 from volcontact._mujoco_views import dense
 from volcontact.given_keys import GivenKeys, Values
+from volcontact.probes import Probe, probe
 from volcontact.recording import CHANNELS, SITE, SITE_IN_RUN, ContactKind, Frame, Recording
 
 Progress = Callable[[int, int], None]
@@ -73,8 +74,8 @@ def simulate(
     steps = round(duration / step)
     data = mujoco.MjData(model)
     to_start(model, data)
-    with _probe(contact, model, keys) as probe:
-        recorder = _Recorder(model, probe, steps, frame_interval)
+    with probe(contact, model, keys) as reader:
+        recorder = _Recorder(model, reader, steps, frame_interval)
         every = max(1, steps // _PROGRESS_CALLS)
         for i in range(steps):
             recorder.step(data)
@@ -85,7 +86,7 @@ def simulate(
         recorder.finish(data)
         if progress is not None:
             progress(steps, steps)
-        return recorder.recording(contact, probe.description)
+        return recorder.recording(contact, reader.description)
 
 
 def to_start(model: mujoco.MjModel, data: mujoco.MjData) -> None:
@@ -110,40 +111,6 @@ def native_model(scene: str | os.PathLike[str]) -> mujoco.MjModel:
     if text.endswith(".mjb"):
         return mujoco.MjModel.from_binary_path(text)
     return mujoco.MjModel.from_xml_path(text)
-
-
-def recorded_sites(found: np.ndarray) -> np.ndarray:
-    """What a recording keeps of the sites that `Contact.sites` returns: an array of `SITE`."""
-    sites = np.zeros(len(found), SITE)
-    for name in ("geom_a", "geom_b", "normal", "force", "torque", "area", "depth", "volume"):
-        sites[name] = found[name]
-    sites["position"] = found["centroid"]
-    return sites
-
-
-def native_sites(model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:
-    """MuJoCo's own contacts that push or overlap, as an array of `SITE`."""
-    n = data.ncon
-    sites = np.zeros(n, SITE)
-    if n == 0:
-        return sites
-    contact = data.contact
-    frames = contact.frame[:n].reshape(n, 3, 3)  # rows are axes; the first is the normal
-    wrench = np.zeros(6)
-    in_frame, turning = np.zeros((n, 3)), np.zeros((n, 3))
-    for i in range(n):
-        mujoco.mj_contactForce(model, data, i, wrench)
-        in_frame[i], turning[i] = wrench[:3], wrench[3:]
-    sites["geom_a"] = contact.geom1[:n]
-    sites["geom_b"] = contact.geom2[:n]
-    sites["position"] = contact.pos[:n]
-    # MuJoCo's normal points from geom 1 to geom 2 and its force is the one on geom 2.
-    sites["normal"] = -frames[:, 0]
-    sites["force"] = -np.einsum("nij,ni->nj", frames, in_frame)
-    sites["torque"] = -np.einsum("nij,ni->nj", frames, turning)
-    sites["depth"] = np.maximum(-contact.dist[:n], 0.0)
-    # Inside its margin MuJoCo lists a contact that does not push yet: that is no contact.
-    return sites[(sites["depth"] > 0.0) | np.any(in_frame != 0.0, axis=1)]
 
 
 def warnings_of(data: mujoco.MjData) -> dict[str, int]:
@@ -182,65 +149,11 @@ def _model_to_run(
     return model
 
 
-class _Probe(Protocol):
-    """Reads contact sites and contact energy of the last evaluation."""
-
-    description: dict[str, Any]
-
-    def sites(self, data: mujoco.MjData) -> np.ndarray: ...
-
-    def energy(self, data: mujoco.MjData) -> volumetric_scene.Energy: ...
-
-    def dropped(self, data: mujoco.MjData) -> int: ...
-
-
-@contextlib.contextmanager
-def _probe(contact: ContactKind, model: mujoco.MjModel, keys: GivenKeys) -> Iterator[_Probe]:
-    if contact == "native":
-        yield _NativeProbe(model)
-        return
-    with volumetric_scene.Contact(model, keys) as attached:
-        yield _VolumetricProbe(attached)
-
-
-class _VolumetricProbe:
-    def __init__(self, contact: volumetric_scene.Contact) -> None:
-        self._contact = contact
-        self.description: dict[str, Any] = dict(contact.description)
-
-    def sites(self, data: mujoco.MjData) -> np.ndarray:
-        return recorded_sites(self._contact.sites(data))
-
-    def energy(self, data: mujoco.MjData) -> volumetric_scene.Energy:
-        return self._contact.energy(data)
-
-    def dropped(self, data: mujoco.MjData) -> int:
-        return int(self._contact.dropped(data))
-
-
-class _NativeProbe:
-    def __init__(self, model: mujoco.MjModel) -> None:
-        self._model = model
-        self.description: dict[str, Any] = {}
-
-    def sites(self, data: mujoco.MjData) -> np.ndarray:
-        return native_sites(self._model, data)
-
-    def energy(self, data: mujoco.MjData) -> volumetric_scene.Energy:
-        del data
-        none = volumetric_scene.Channels(0.0, 0.0, 0.0, 0.0)
-        return volumetric_scene.Energy(0.0, 0.0, none, none, 0.0, 0.0)
-
-    def dropped(self, data: mujoco.MjData) -> int:
-        del data
-        return 0
-
-
 class _Recorder:
     """Arrays of one run, filled row by row."""
 
     def __init__(
-        self, model: mujoco.MjModel, probe: _Probe, steps: int, frame_interval: float | None
+        self, model: mujoco.MjModel, probe: Probe, steps: int, frame_interval: float | None
     ) -> None:
         self._model = model
         self._probe = probe
@@ -257,6 +170,7 @@ class _Recorder:
         self._energies = np.zeros((rows, 5))  # kinetic, potential, elastic, work, numerical
         self._dissipated = np.zeros((rows, len(CHANNELS)))
         self._contact = np.zeros((rows, 4))  # sum and largest of forces, count, depth
+        self._sensors = np.zeros((rows, model.nsensordata))
         self._microseconds = np.zeros(steps)
         self._frames: list[Frame] = []
         self._sites: list[np.ndarray] = []
@@ -327,6 +241,10 @@ class _Recorder:
             dropped=self._dropped,
             frames=tuple(self._frames),
             sites=np.concatenate([np.zeros(0, SITE_IN_RUN), *self._sites]),
+            sensors={
+                name: np.linalg.norm(self._sensors[:n, places], axis=1)
+                for name, places in _sensor_places(self._model).items()
+            },
             geoms=tuple(_geom_name(self._model, i) for i in range(self._model.ngeom)),
             description=description,
             weight=float(gravity * self._model.body_mass[self._model.body_weldid != 0].sum()),
@@ -353,6 +271,7 @@ class _Recorder:
             mujoco.mj_objectVelocity(self._model, data, kind, body, velocity, 0)
             self._spin[row, i] = np.linalg.norm(velocity[:3])
             self._speed[row, i] = np.linalg.norm(velocity[3:])
+        self._sensors[row] = data.sensordata
         energy = self._probe.energy(data)
         potential, kinetic = dense(data.energy)
         self._energies[row] = kinetic, potential, energy.elastic, energy.work, energy.numerical
@@ -364,7 +283,8 @@ class _Recorder:
             self._contact[row] = forces.sum(), forces.max(), len(sites), depth
             self._sites.append(_in_run(sites, row))
         if row in self._frame_rows:
-            self._frames.append(Frame(row=row, time=float(self._time[row]), sites=sites))
+            shapes = self._probe.surfaces(data)
+            self._frames.append(Frame(row, float(self._time[row]), sites, shapes))
 
 
 def _bodies_followed(model: mujoco.MjModel) -> list[int]:
@@ -382,6 +302,17 @@ def _body_name(model: mujoco.MjModel, body: int) -> str:
 
 def _geom_name(model: mujoco.MjModel, geom: int) -> str:
     return mujoco.mj_id2name(model, int(mujoco.mjtObj.mjOBJ_GEOM), geom) or f"geom {geom}"
+
+
+def _sensor_places(model: mujoco.MjModel) -> dict[str, list[int]]:
+    """Places in sensordata by name; NAME_x, NAME_y and NAME_z are the parts of NAME."""
+    places: dict[str, list[int]] = {}
+    for sensor in range(model.nsensor):
+        name = mujoco.mj_id2name(model, int(mujoco.mjtObj.mjOBJ_SENSOR), sensor)
+        name = re.sub("_[xyz]$", "", name or f"sensor {sensor}")
+        start = int(model.sensor_adr[sensor])
+        places.setdefault(name, []).extend(range(start, start + int(model.sensor_dim[sensor])))
+    return places
 
 
 def _in_run(sites: np.ndarray, row: int) -> np.ndarray:

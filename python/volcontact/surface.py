@@ -7,6 +7,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
+_THINNEST, _THICKEST = 0.08, 0.4  # what a body is stretched to, of the size of its patch
+
+
+def stretch_to_see(area: float, depth: float, wanted: float = 0.0) -> float:
+    """How many times thicker a body is drawn so that it is seen beside its patch; at least 1.
+
+    Args:
+        area: of the patch [m^2].
+        depth: of the overlap [m].
+        wanted: thickness that a picture shows well [m]; had where the patch is not too small.
+    """
+    size = float(np.sqrt(area))
+    thickness = max(_THINNEST * size, min(wanted, _THICKEST * size))
+    return max(1.0, thickness / depth) if depth > 0.0 else 1.0
+
 
 @dataclass(frozen=True)
 class SiteSurface:

@@ -89,6 +89,7 @@ def recording(contact: str = "volumetric", **changes) -> Recording:
         stopped=None,
         dropped=0,
         sites=np.concatenate([in_run(sites, row) for row in range(n) if touching[row]]),
+        sensors={"wrist_force": np.where(touching, 40.0, 5.0)},
         geoms=("floor", "box"),
         frames=(Frame(0, 0.0, sites[:0]), Frame(n - 1, 2.0, sites)),
         description={

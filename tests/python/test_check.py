@@ -169,9 +169,16 @@ def test_no_word_is_cut_on_a_narrow_terminal(width, tmp_path, monkeypatch, capsy
 def test_restitution_is_not_shown_where_damping_holds(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", "300")
     monkeypatch.chdir(tmp_path)
-    custom = [number("material/m/damping", 2), listed("m")]
+    custom = [number("material/m/damping", 2), listed("material/m")]
     (tmp_path / "scene.xml").write_text(scene(*custom))
     assert main(["check", "scene.xml"]) == 0
-    pairs = capsys.readouterr().out.split("Pairs")[1]
-    assert "damping" in pairs
-    assert "restitution [-]" not in pairs
+    materials, pairs = capsys.readouterr().out.split("Materials")[1].split("Pairs")
+    for part in (materials, pairs):
+        assert "damping" in part
+        assert "restitution" not in part  # nor its speed floor
+    custom = [number("material/m/restitution", 0.5), listed("material/m")]
+    (tmp_path / "scene.xml").write_text(scene(*custom))
+    assert main(["check", "scene.xml"]) == 0
+    materials, pairs = capsys.readouterr().out.split("Materials")[1].split("Pairs")
+    assert "restitution [-]" in materials and "restitution [-]" in pairs
+    assert "restitution speed floor" in pairs

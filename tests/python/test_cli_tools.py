@@ -135,7 +135,8 @@ def test_doctor_finds_what_the_tests_need(capsys):
     found = printed(["doctor"], capsys)
     assert found["healthy"]
     states = {line["name"]: line["state"] for line in found["lines"]}
-    for name in ("adaptor", "a scene", "instruction set", "threads", "pictures", "viser"):
+    things = ("adaptor", "a scene", "instruction set", "threads", "pictures")
+    for name in (*things, "extra report", "extra view", "extra gym"):
         assert states[name] == "good", name
     assert main(["doctor"]) == 0
     assert "adaptor" in capsys.readouterr().out

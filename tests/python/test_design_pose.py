@@ -12,7 +12,7 @@ from volcontact.report.comparison import (
     is_seated,
     offset_from,
 )
-from volcontact.report.design_pose import read_design_pose
+from volcontact.report.design_pose import read_design_pose, read_peak_limits
 
 EXPECTED = {
     "body": "box",
@@ -38,6 +38,18 @@ def test_design_pose_is_read_from_beside_the_scene(tmp_path):
     assert pose.speed_tolerance == 3e-3
     assert read_design_pose(tmp_path / "other.xml") is None
     assert read_design_pose(tmp_path / "third.xml") is None
+
+
+def test_peak_limits_are_read_from_beside_the_scene(tmp_path):
+    assert read_peak_limits(tmp_path / "scene.xml") == {}
+    content = {"scenes": {"scene.xml": {"peak_limits": {"wrist_force": 111}}, "other.xml": {}}}
+    (tmp_path / "expected.json").write_text(json.dumps(content))
+    assert read_peak_limits(tmp_path / "scene.xml") == {"wrist_force": 111.0}
+    assert read_peak_limits(tmp_path / "other.xml") == {}
+    content["scenes"]["scene.xml"]["peak_limits"]["wrist_force"] = "little"
+    (tmp_path / "expected.json").write_text(json.dumps(content))
+    with pytest.raises(ValueError, match=r"expected\.json: cannot be read"):
+        read_peak_limits(tmp_path / "scene.xml")
 
 
 @pytest.mark.parametrize(

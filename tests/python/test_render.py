@@ -11,6 +11,7 @@ import pytest
 
 from volcontact.recording import SITE
 from volcontact.render import Renderer, RenderError, SiteStyle, View, default_view
+from volcontact.surface import SiteSurface
 
 SCENE = """
 <mujoco>
@@ -42,17 +43,21 @@ def one_site(area: float, force: float) -> np.ndarray:
     return sites
 
 
-def change(renderer: Renderer, model: mujoco.MjModel, sites: np.ndarray, view: View) -> np.ndarray:
+def change(
+    renderer: Renderer, model: mujoco.MjModel, sites: np.ndarray, view: View, surfaces=()
+) -> np.ndarray:
     """How much of every pixel the sites cover, shape (height, width)."""
     nothing = renderer.draw(model.qpos0, sites=np.zeros(0, SITE), style=STYLE, view=view)
-    drawn = renderer.draw(model.qpos0, sites=sites, style=STYLE, view=view)
+    drawn = renderer.draw(model.qpos0, sites=sites, surfaces=surfaces, style=STYLE, view=view)
     difference = np.abs(drawn.astype(float) - nothing).sum(axis=2)
     return difference / difference.max()
 
 
-def changed(renderer: Renderer, model: mujoco.MjModel, sites: np.ndarray, view: View) -> np.ndarray:
+def changed(
+    renderer: Renderer, model: mujoco.MjModel, sites: np.ndarray, view: View, surfaces=()
+) -> np.ndarray:
     """Which pixels the sites change, shape (height, width)."""
-    return change(renderer, model, sites, view) > 0.05
+    return change(renderer, model, sites, view, surfaces) > 0.05
 
 
 def pixels_per_metre(distance: float) -> float:
@@ -66,6 +71,31 @@ def test_patch_disc_has_the_area_of_the_patch(model, area):
         covered = change(renderer, model, one_site(area, force=0.0), view).sum()
     # Pinhole projection, seen along the normal; MuJoCo draws the circle as a polygon.
     assert covered == pytest.approx(area * pixels_per_metre(2.0) ** 2, rel=0.04)
+
+
+def test_surface_is_drawn_as_it_is_and_thick_enough_to_be_seen(model):
+    if not hasattr(mujoco.mjtGeom, "mjGEOM_TRIANGLE"):
+        pytest.skip("MuJoCo 2.2 draws no triangles: a disc stands for the patch")
+    site = one_site(0.08, force=0.0)
+    site["depth"] = 1e-5
+    half = np.array([0.2, 0.1])
+    corners = half * [[-1, -1], [1, -1], [1, 1], [-1, 1]]
+    middle = np.column_stack([0.6 + corners[:, 0], corners[:, 1], np.zeros(4)])
+    along = np.array([0.0, 0.0, 0.5e-5])
+    rim = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
+    surface = SiteSurface(middle - along, middle + along, np.array([[0, 1, 2], [0, 2, 3]]), rim)
+    above = View(lookat=(0.6, 0.0, 0.0), distance=2.0, azimuth=90.0, elevation=-90.0)
+    beside = View(lookat=(0.6, 0.0, 0.0), distance=2.0, azimuth=90.0, elevation=0.0)
+    with Renderer(model, width=SIZE, height=SIZE) as renderer:
+        rows, columns = (
+            np.flatnonzero(changed(renderer, model, site, above, [surface]).any(axis=axis))
+            for axis in (1, 0)
+        )
+        heights = changed(renderer, model, site, beside, [surface]).any(axis=1).sum()
+    size = 2 * half * pixels_per_metre(2.0)
+    assert [np.ptp(columns), np.ptp(rows)] == pytest.approx(size, abs=4)
+    # A twelfth of the size of the patch; the floor is seen edge-on and hides nothing.
+    assert heights == pytest.approx(0.08 * np.sqrt(0.08) * pixels_per_metre(2.0), abs=1.5)
 
 
 def test_arrow_length_grows_with_the_square_root_of_force_and_points_along_it(model):

@@ -142,6 +142,22 @@ def test_load_of_one_place_is_told_against_its_limit(limits, verdict, phrase):
     assert phrase in finding.text
 
 
+@pytest.mark.parametrize(
+    ("limit", "verdict", "phrase"),
+    [(45.0, "good", "within the limit of 45 N"), (30.0, "bad", "above the limit of 30 N")],
+)
+def test_sensors_are_told_against_the_limits_of_the_scene(limit, verdict, phrase):
+    made = comparison(limits=Limits(sensors={"wrist_force": limit}))
+    (finding,) = (f for f in findings(made) if f.title == "Limits of the scene")
+    assert finding.verdict == verdict
+    assert f"wrist force peaks with 40.0 N at 1.00 s, {phrase}" in finding.text
+
+
+def test_a_limit_of_no_sensor_names_those_there_are():
+    with pytest.raises(ValueError, match=r"sensor 'wrist'; its sensors are: wrist_force"):
+        findings(comparison(limits=Limits(sensors={"wrist": 1.0})))
+
+
 def test_energy_says_what_the_step_made_of_impacts():
     run = recording()
     work = 0.9 * run.work

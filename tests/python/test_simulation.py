@@ -126,6 +126,28 @@ def test_native_contact_has_points_without_area_or_stored_energy():
     assert run.description == {}
 
 
+def test_frames_have_the_shape_of_every_site():
+    run = simulate(ball(RADIUS), duration=0.2)
+    (surface,) = run.frames[-1].surfaces
+    (site,) = run.frames[-1].sites
+    points, triangles = surface.patch
+    sides = points[triangles[:, 1:]] - points[triangles[:, :1]]
+    area = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum()
+    assert area == pytest.approx(site["area"], rel=0.1)
+    native = simulate(ball(RADIUS), contact="native", duration=0.2)
+    assert native.frames[-1].surfaces == ()
+
+
+def test_sensors_are_magnitudes_with_the_parts_of_one_name_together():
+    sensors = '<framepos name="place" objtype="body" objname="ball"/>'
+    sensors += '<clock name="time_x"/><clock name="time_y"/>'
+    scene = ball(1.0).replace("</mujoco>", f"<sensor>{sensors}</sensor></mujoco>")
+    run = simulate(scene, contact="native", duration=0.3)
+    assert set(run.sensors) == {"place", "time"}
+    np.testing.assert_allclose(run.sensors["place"], np.linalg.norm(run.position[:, 0], axis=1))
+    np.testing.assert_allclose(run.sensors["time"], np.sqrt(2.0) * run.time)
+
+
 def test_frames_are_evenly_spaced_and_include_both_ends():
     run = simulate(ball(1.0), contact="native", duration=0.4, frame_interval=0.1)
     np.testing.assert_allclose([frame.time for frame in run.frames], [0.0, 0.1, 0.2, 0.3, 0.4])

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import mujoco
 
 import volcontact
+from volcontact import extras
 from volcontact.cli import check, compare, completion, doctor, mesh, metrics, new, run, view
 from volcontact.cli.terminal import Terminal
 
@@ -49,6 +50,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         terminal.error("interrupted")
         return _INTERRUPTED
+    except ModuleNotFoundError as error:
+        advice = extras.advice(error.name)
+        if advice is None:
+            raise
+        terminal.error(advice)
+        return _ERROR
     except (ValueError, OSError, RuntimeError, mujoco.FatalError) as error:
         terminal.error(str(error) or type(error).__name__)
         return _ERROR

@@ -151,10 +151,10 @@ def _draw(
     data: mujoco.MjData,
     sites: np.ndarray,
 ) -> None:
+    from volcontact.probes import recorded_sites
     from volcontact.render import Renderer, SiteStyle
     from volcontact.report.palette import VOLUMETRIC, rgb
     from volcontact.report.pictures import png
-    from volcontact.simulation import recorded_sites
 
     forces = np.linalg.norm(sites["force"], axis=1)
     style = SiteStyle(rgb(VOLUMETRIC), reference_force=float(forces.max(initial=0.0)) or 1.0)

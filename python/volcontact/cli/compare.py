@@ -81,11 +81,14 @@ def add_to(commands: Subparsers) -> None:
 def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     """Runs the command and returns the exit status."""
     from volcontact.report import Comparison, Limits, write_report
-    from volcontact.report.design_pose import read_design_pose
+    from volcontact.report.design_pose import read_design_pose, read_peak_limits
     from volcontact.simulation import simulate
 
     with contextlib.ExitStack() as stack:
         design = read_design_pose(arguments.scene)
+        limits = Limits(
+            arguments.force_limit, arguments.torque_limit, read_peak_limits(arguments.scene)
+        )
         # Before the runs, so that a machine without OpenGL says so at once.
         renderer = None if arguments.no_frames else stack.enter_context(_renderer(arguments))
         bars = stack.enter_context(terminal.progress())
@@ -109,7 +112,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             design=design,
             mujoco_version=mujoco.mj_versionString(),
             volcontact_version=volcontact.__version__,
-            limits=Limits(arguments.force_limit, arguments.torque_limit),
+            limits=limits,
         )
         report = write_report(
             comparison,
@@ -137,10 +140,10 @@ def _renderer(arguments: argparse.Namespace) -> Renderer:
 
 def _print(comparison: Comparison, report: Path, terminal: Terminal) -> None:
     from volcontact.report.findings import findings
-    from volcontact.report.page import figures_side_by_side
+    from volcontact.report.key_figures import key_figures_side_by_side
 
     table = Table("", "volumetric", "native", box=None, pad_edge=False)
-    for row in figures_side_by_side(comparison):
+    for row in key_figures_side_by_side(comparison):
         table.add_row(row.name, row.volumetric, row.native)
     terminal.out.print(table)
     colors = {"good": "green", "bad": "red", "plain": "bold"}

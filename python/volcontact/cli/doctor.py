@@ -19,6 +19,7 @@ import volcontact
 from volcontact import _adaptor, _volcontact
 from volcontact.cli.arguments import plain_command
 from volcontact.cli.terminal import Terminal
+from volcontact.extras import EXTRAS
 
 if TYPE_CHECKING:
     from volcontact.cli.arguments import Subparsers
@@ -35,8 +36,6 @@ _BALL = """
   </worldbody>
 </mujoco>
 """
-# What each extra of the package brings, by the module that shows it is there.
-_EXTRAS = {"viser": "view"}
 
 
 @dataclass(frozen=True)
@@ -93,8 +92,7 @@ def examine() -> Iterator[Line]:
     yield Line("threads", "good", _threads_text())
     yield _tried("pictures", "missing", _picture_text)
     yield _tried("window", "missing", _window_text)
-    for module, extra in _EXTRAS.items():
-        yield _module(module, extra)
+    yield from map(_extra, dict.fromkeys(EXTRAS.values()))
     yield _cgal()
 
 
@@ -150,10 +148,13 @@ def _window_text() -> str:
     return "MuJoCo's viewer, for `volcontact view`"
 
 
-def _module(module: str, extra: str) -> Line:
-    if importlib.util.find_spec(module) is None:
-        return Line(module, "missing", f'for this: pip install "volcontact[{extra}]"')
-    return Line(module, "good", f"extra `{extra}`")
+def _extra(name: str) -> Line:
+    modules = [module for module, extra in EXTRAS.items() if extra == name]
+    missing = [module for module in modules if importlib.util.find_spec(module) is None]
+    if missing:
+        advice = f'not installed: pip install "volcontact[{name}]"'
+        return Line(f"extra {name}", "missing", f"{', '.join(missing)} {advice}")
+    return Line(f"extra {name}", "good", ", ".join(modules))
 
 
 def _cgal() -> Line:

@@ -81,10 +81,10 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     if terminal.json:
         terminal.result(summary)
     else:
-        from volcontact.report.page import figures
+        from volcontact.report.key_figures import key_figures
 
         table = Table("", arguments.contact, box=None, pad_edge=False)
-        for name, text in figures(recording, design):
+        for name, text in key_figures(recording, design):
             table.add_row(name, text)
         terminal.out.print(table)
         if arguments.out is not None:

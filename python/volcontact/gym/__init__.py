@@ -6,7 +6,7 @@
 
     env = gymnasium.make("volcontact/ORUInsertion-v0")
 
-Needs the extra `gym`: `pip install volcontact[gym]`.
+Needs the extra `gym`: `pip install "volcontact[gym]"`.
 """
 
 from __future__ import annotations

@@ -16,8 +16,9 @@ import numpy as np
 
 import volcontact as vc
 from volcontact.gym.scene_files import scene_file
+from volcontact.probes import native_sites, recorded_sites
 from volcontact.render import Renderer
-from volcontact.simulation import native_sites, recorded_sites, warnings_of
+from volcontact.simulation import warnings_of
 
 SCENE = "battery_insert_0g/scene.xml"
 CONTROL_PERIOD = 0.1  # [s]

@@ -9,10 +9,6 @@ from pathlib import Path
 
 from volcontact.render import Renderer
 from volcontact.report.comparison import Comparison, Limits
-from volcontact.report.figures import curves, write_figures
-from volcontact.report.page import write_page
-from volcontact.report.pictures import draw_frames, write_frames, write_movie
-from volcontact.report.table import write_table
 
 __all__ = ["Comparison", "Limits", "write_report"]
 
@@ -41,6 +37,12 @@ def write_report(
     Returns:
         Path of the report.
     """
+    # Of the extra `report`: numbers and findings are had without it.
+    from volcontact.report.figures import curves, write_figures
+    from volcontact.report.page import write_page
+    from volcontact.report.pictures import draw_frames, write_frames, write_movie
+    from volcontact.report.table import write_table
+
     out.mkdir(parents=True, exist_ok=True)
     summary = json.dumps(comparison.summary(), indent=2, allow_nan=False) + "\n"
     (out / "summary.json").write_text(summary, encoding="utf-8")

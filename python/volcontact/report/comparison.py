@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -14,15 +15,17 @@ from volcontact.report.design_pose import DesignPose, angle_between
 
 @dataclass(frozen=True)
 class Limits:
-    """What one contact site may carry at most; None where nothing is said.
+    """What may be carried at most; None where nothing is said.
 
     Attributes:
-        force: [N].
-        torque: about the place of the contact [N m].
+        force: of one contact site [N].
+        torque: of one contact site, about its place [N m].
+        sensors: of sensors of the scene, by name, in the unit of the sensor.
     """
 
     force: float | None = None
     torque: float | None = None
+    sensors: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -36,7 +39,7 @@ class Comparison:
         design: the pose it should end in, or None.
         mujoco_version: of the library that ran.
         volcontact_version: of this package.
-        limits: of one contact site.
+        limits: of what contacts and sensors may carry.
     """
 
     scene: str
@@ -176,6 +179,7 @@ def run_summary(run: Recording, design: DesignPose | None) -> dict[str, Any]:
         "first_touch": first_touch(run),
         "max_site_force": peak(run, "force").value,
         "max_site_torque": peak(run, "torque").value,
+        "max_sensors": {name: float(values.max()) for name, values in run.sensors.items()},
     }
     if design is not None:
         offset = offset_from(run, design)

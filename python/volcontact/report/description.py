@@ -65,11 +65,13 @@ def _table_of_values(name: str, values: Record) -> Table:
 def _in_force(record: Record) -> Record:
     """A record without the values that another field of its law has put out of force."""
     sources = record.get("sources")
-    if not isinstance(sources, Mapping):
-        return record
-    return {
-        k: None if str(sources.get(k, "")).startswith("none:") else v for k, v in record.items()
-    }
+    if isinstance(sources, Mapping):
+        out = {key for key in record if str(sources.get(key, "")).startswith("none:")}
+    else:  # the default material alone has both, and damping holds
+        out = {"restitution"} if {"damping", "restitution"} <= record.keys() else set()
+    if "restitution" in out:
+        out.add("restitution_speed_floor")
+    return {key: None if key in out else value for key, value in record.items()}
 
 
 def _table(name: str, records: list[Record], *, sources: bool) -> Table:

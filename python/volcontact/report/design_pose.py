@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pose a scene is designed to end in, from `expected.json` beside the scene."""
+"""What a scene is designed for, from `expected.json` beside it: its last pose, its limits."""
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -41,14 +43,7 @@ def read_design_pose(scene: str | os.PathLike[str]) -> DesignPose | None:
     Raises:
         ValueError: the file is there and cannot be understood.
     """
-    text = os.fspath(scene)
-    path = Path(text)
-    file = path.parent / FILE_NAME
-    if text.lstrip().startswith("<") or not file.is_file():
-        return None
-    try:
-        scenes: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))["scenes"]
-        expected = scenes.get(path.name, {})
+    with _reading(scene) as expected:
         if "design_position" not in expected:
             return None
         return DesignPose(
@@ -59,6 +54,30 @@ def read_design_pose(scene: str | os.PathLike[str]) -> DesignPose | None:
             angle_tolerance=float(expected["angle_tolerance_degrees"]),
             speed_tolerance=float(expected["speed_tolerance"]),
         )
+
+
+def read_peak_limits(scene: str | os.PathLike[str]) -> dict[str, float]:
+    """The `peak_limits` of sensors that `expected.json` beside a scene file gives, by name.
+
+    Raises:
+        ValueError: the file is there and cannot be understood.
+    """
+    with _reading(scene) as expected:
+        return {str(k): float(v) for k, v in expected.get("peak_limits", {}).items()}
+
+
+@contextlib.contextmanager
+def _reading(scene: str | os.PathLike[str]) -> Iterator[dict[str, Any]]:
+    """What the file beside a scene says of it; what goes wrong names the file."""
+    text = os.fspath(scene)
+    path = Path(text)
+    file = path.parent / FILE_NAME
+    if text.lstrip().startswith("<") or not file.is_file():
+        yield {}
+        return
+    try:
+        scenes: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))["scenes"]
+        yield scenes.get(path.name, {})
     except KeyError as error:
         raise ValueError(f"{file}: {path.name} has no {error}") from error
     except (TypeError, ValueError, AttributeError) as error:

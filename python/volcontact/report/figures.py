@@ -15,13 +15,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from volcontact.recording import CHANNELS, Recording
+from volcontact.recording import Recording
 from volcontact.report import palette
 from volcontact.report.comparison import Comparison, offset_from
+from volcontact.report.energy_figures import draw_native_energy, draw_volumetric_energy
+from volcontact.report.series import POINTS, Series
 from volcontact.report.svg import INK, LINE, MUTED, inline, standing_alone
 
 _SIZE = (4.2, 2.8)  # inches: readable when shrunk to a phone
-_POINTS = 900  # per curve; more cannot be seen at this size
 _FORCE_FLOOR = 1.0  # [N], lowest value of the logarithmic axis
 _DEPTH_FLOOR = 1e-6  # [m]
 
@@ -50,23 +51,6 @@ _STYLE: dict[Any, Any] = {
     "axes.facecolor": "none",
     "savefig.transparent": True,
 }
-
-
-@dataclass(frozen=True)
-class Series:
-    """One line, or one layer of a stack, for reading off its numbers.
-
-    Attributes:
-        label: what it is.
-        color: "#rrggbb".
-        x: time [s], shape (n,).
-        y: in the unit of the axis, shape (n,).
-    """
-
-    label: str
-    color: str
-    x: np.ndarray
-    y: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -138,14 +122,14 @@ def _plans(comparison: Comparison) -> list[_Plan]:
             "Energy, volumetric",
             "Stacked; the dashed line is the energy at the start, less what the finite step takes "
             "(more, where it gives). Where the stack meets it, every joule is accounted for.",
-            _draw_volumetric_energy,
+            draw_volumetric_energy,
         ),
         _Plan(
             "energy_native",
             "Energy, native",
             "Stacked; native contact stores and dissipates without an account, which leaves the "
             "grey part.",
-            _draw_native_energy,
+            draw_native_energy,
         ),
         _Plan(
             "sites",
@@ -171,7 +155,7 @@ def _plans(comparison: Comparison) -> list[_Plan]:
     return plans
 
 
-def thin(x: np.ndarray, y: np.ndarray, points: int = _POINTS) -> tuple[np.ndarray, np.ndarray]:
+def thin(x: np.ndarray, y: np.ndarray, points: int = POINTS) -> tuple[np.ndarray, np.ndarray]:
     """Fewer points of a curve that keep its lowest and highest value in every interval.
 
     Args:
@@ -340,64 +324,3 @@ def _running_median(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarra
         x[: count * width].reshape(count, width).mean(axis=1),
         np.median(y[: count * width].reshape(count, width), axis=1),
     )
-
-
-def _draw_volumetric_energy(axes: Axes, comparison: Comparison) -> list[Series]:
-    run = comparison.volumetric
-    layers = _mechanical_layers(comparison, run)
-    layers.append(("elastic", palette.ELASTIC, run.elastic))
-    for i, channel in enumerate(CHANNELS):
-        if run.dissipated[:, i].max() > 1e-6 * max(run.energy[0], 1e-12):
-            layers.append((channel, palette.DISSIPATED[channel], run.dissipated[:, i]))
-    return _stack(axes, run, layers)
-
-
-def _draw_native_energy(axes: Axes, comparison: Comparison) -> list[Series]:
-    run = comparison.native
-    layers = _mechanical_layers(comparison, run)
-    missing = np.maximum(run.energy[0] - run.energy, 0.0)
-    layers.append(("not accounted for", palette.UNEXPLAINED, missing))
-    return _stack(axes, run, layers)
-
-
-def _mechanical_layers(comparison: Comparison, run: Recording) -> list[tuple[str, str, np.ndarray]]:
-    lowest = min(float(other.potential.min()) for other in comparison.runs)
-    return [
-        ("potential", palette.POTENTIAL, run.potential - lowest),
-        ("kinetic", palette.KINETIC, run.kinetic),
-    ]
-
-
-def _stack(axes: Axes, run: Recording, layers: list[tuple[str, str, np.ndarray]]) -> list[Series]:
-    rows = np.unique(np.linspace(0, len(run.time) - 1, _POINTS // 2).astype(int))
-    values = [layer[2][rows] for layer in layers]
-    axes.stackplot(
-        run.time[rows],
-        values,
-        labels=[layer[0] for layer in layers],
-        colors=[layer[1] for layer in layers],
-        alpha=0.85,
-        linewidth=0.0,
-    )
-    start = sum(float(layer[2][0]) for layer in layers)
-    line = start - (run.numerical[rows] - run.numerical[0])
-    ink = matplotlib.rcParams["text.color"]
-    axes.plot(run.time[rows], line, color=ink, linewidth=0.9, linestyle="--")
-    axes.set_ylim(0.0, 1.1 * max(start, float(np.sum(values, axis=0).max()), 1e-12))
-    axes.set_ylabel("energy [J]")
-    handles, labels = axes.get_legend_handles_labels()
-    axes.legend(
-        handles,
-        labels,
-        loc="lower left",
-        bbox_to_anchor=(-0.02, 1.0),
-        ncols=4,
-        borderaxespad=0.1,
-        handlelength=0.9,
-        handletextpad=0.4,
-        columnspacing=0.9,
-    )
-    return [
-        Series(label, color, run.time[rows], y)
-        for (label, color, _), y in zip(layers, values, strict=True)
-    ]

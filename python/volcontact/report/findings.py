@@ -52,6 +52,7 @@ def findings(comparison: Comparison) -> list[Finding]:
     found.extend(_final_pose(comparison))
     found.extend(_forces(comparison))
     found.extend(_peaks(comparison))
+    found.extend(_sensors(comparison))
     found.extend(_penetration(comparison))
     found.extend(_places(comparison))
     found.append(_energy(comparison))
@@ -175,6 +176,32 @@ def _peaks(comparison: Comparison) -> Iterator[Finding]:
             sentences.append(text + ".")
     if sentences:
         yield Finding("Load of one place", " ".join(sentences), verdict)
+
+
+def _sensors(comparison: Comparison) -> Iterator[Finding]:
+    """Sensors that the scene gives a limit: names end in what they measure."""
+    verdict: Verdict = "good"
+    sentences = []
+    for run in comparison.runs:
+        for name, limit in comparison.limits.sensors.items():
+            if name not in run.sensors:
+                raise ValueError(
+                    f"the scene's peak_limits name sensor {name!r}; its sensors are: "
+                    f"{', '.join(run.sensors) or 'none'}"
+                )
+            values = run.sensors[name]
+            row = int(values.argmax())
+            unit = "N m" if name.endswith("torque") else "N" if name.endswith("force") else ""
+            over = values[row] > limit
+            if over and run is comparison.volumetric:
+                verdict = "bad"
+            sentences.append(
+                f"{_name(run)}: {name.replace('_', ' ')} peaks with "
+                f"{quantity(float(values[row]), unit)} at {digits(float(run.time[row]))} s, "
+                f"{'above' if over else 'within'} the limit of {nominal(limit, unit)}."
+            )
+    if sentences:
+        yield Finding("Limits of the scene", " ".join(sentences), verdict)
 
 
 def _share_of_weight(run: Recording) -> str:

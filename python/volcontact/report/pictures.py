@@ -50,7 +50,13 @@ def draw_frames(
 
     def draw(run: Recording, frame: Frame) -> np.ndarray:
         style = SiteStyle(palette.rgb(palette.RUN_COLORS[run.contact]), reference)
-        return renderer.draw(run.qpos[frame.row], sites=frame.sites, style=style, view=camera)
+        return renderer.draw(
+            run.qpos[frame.row],
+            sites=frame.sites,
+            surfaces=frame.surfaces,
+            style=style,
+            view=camera,
+        )
 
     first, second = (list(run.frames) for run in comparison.runs)
     reference = reference_force(comparison)

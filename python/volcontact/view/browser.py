@@ -6,12 +6,12 @@ from __future__ import annotations
 import contextlib
 import time
 from collections.abc import Callable, Iterator
-from types import TracebackType
 from typing import Any
 
 import mujoco
 import numpy as np
 
+from volcontact._closing import Closing
 from volcontact.render import default_view
 from volcontact.report.palette import NATIVE, VOLUMETRIC, rgb
 from volcontact.view.drawing import SiteDrawing, Triangles
@@ -22,11 +22,10 @@ _PERIOD = 1.0 / 30.0  # of moving bodies [s]
 _OVERLAY_PERIOD = 1.0 / 8.0  # of patches and forces, of which all are sent anew [s]
 _FRICTION = (255, 166, 26)
 _SEEN_THROUGH = 0.15  # opacity of moving bodies, so that the sites inside are seen
-_MISSING = 'the browser viewer needs viser: pip install "volcontact[view]"'
 _POINT = 0.012  # of a contact without an area, in scene extents
 
 
-class Page:
+class Page(Closing):
     """A page that shows a stage and steers it. Use as a context manager, or call `close`.
 
     Args:
@@ -42,10 +41,8 @@ class Page:
     """
 
     def __init__(self, stage: Stage, *, host: str = "127.0.0.1", port: int = 8080) -> None:
-        try:
-            import viser
-        except ImportError as error:
-            raise RuntimeError(_MISSING) from error
+        import viser
+
         self._stage = stage
         self._server = viser.ViserServer(host=host, port=port, label="volcontact", verbose=False)
         shown = "localhost" if host in ("127.0.0.1", "0.0.0.0") else host
@@ -82,17 +79,6 @@ class Page:
         """Ends the server. May be called twice."""
         with contextlib.suppress(RuntimeError):
             self._server.stop()
-
-    def __enter__(self) -> Page:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def _seen(self) -> tuple[object, ...]:
         """All that the page depends on: while it stays, nothing is sent."""

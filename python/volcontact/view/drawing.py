@@ -10,9 +10,8 @@ import mujoco
 import numpy as np
 
 from volcontact.report.units import area, quantity
-from volcontact.surface import SiteSurface
+from volcontact.surface import SiteSurface, stretch_to_see
 
-_THINNEST = 0.08  # what a body is stretched to, of the size of its patch
 _FULL = 0.3  # length of the arrow of the reference force, in scene extents
 _LONGEST = 0.8  # arrow, in scene extents
 _SHORTEST = 0.01
@@ -86,9 +85,7 @@ def _drawing(
     extent = float(model.stat.extent)
     shape = None if surface is None or surface.is_empty else surface
     if stretch is None:
-        size = np.sqrt(site["area"])
-        depth = site["depth"]
-        stretch = max(1.0, float(_THINNEST * size / depth)) if depth > 0.0 else 1.0
+        stretch = stretch_to_see(site["area"], site["depth"])
     return SiteDrawing(
         position=site["position"].copy(),
         normal=normal,

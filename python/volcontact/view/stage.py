@@ -6,20 +6,21 @@ from __future__ import annotations
 import os
 import threading
 import time
-from types import TracebackType
 
 import mujoco
 import numpy as np
 
+from volcontact._closing import Closing
+from volcontact.probes import native_sites, recorded_sites
 from volcontact.recording import ContactKind
 from volcontact.scene import Contact, attach, load
-from volcontact.simulation import native_sites, recorded_sites, to_start
+from volcontact.simulation import to_start
 from volcontact.view.drawing import SiteDrawing, draw_sites
 
 _SHARE = 0.7  # of real time that may go into stepping
 
 
-class Stage:
+class Stage(Closing):
     """A scene that steps in real time. Use as a context manager, or call `close`.
 
     A reader on another thread holds `lock` while it looks at the data.
@@ -121,14 +122,3 @@ class Stage:
             if self._contact is not None:
                 self._contact.close()
                 self._contact = None
-
-    def __enter__(self) -> Stage:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()

@@ -14,9 +14,9 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from volcontact.render import add_geom, default_view, frame_along
+from volcontact.render import add_geom, add_triangles, default_view, frame_along
 from volcontact.report.palette import NATIVE, VOLUMETRIC, rgb
-from volcontact.view.drawing import SiteDrawing, Triangles
+from volcontact.view.drawing import SiteDrawing
 from volcontact.view.stage import Stage
 
 _PERIOD = 1.0 / 60.0  # of a picture [s]
@@ -162,8 +162,8 @@ def draw_site(
         extent: of the scene [m]; arrows are so thick that they are seen in it.
     """
     if drawing.patch is not None and drawing.body is not None:
-        _add_triangles(scene, drawing.patch, (*color, 1.0))
-        _add_triangles(scene, drawing.body, (*color, _BODY_OPACITY))
+        add_triangles(scene, drawing.patch, (*color, 1.0), _EMISSION)
+        add_triangles(scene, drawing.body, (*color, _BODY_OPACITY), _EMISSION)
     else:
         size = np.full(3, _POINT_RADIUS * extent)
         add_geom(
@@ -177,28 +177,6 @@ def draw_site(
         )
     _add_arrow(scene, drawing.position, drawing.normal_arrow, (*color, 1.0), extent)
     _add_arrow(scene, drawing.position, drawing.friction_arrow, (*_FRICTION, 1.0), extent)
-
-
-def _add_triangles(scene: mujoco.MjvScene, triangles: Triangles, color: tuple[float, ...]) -> None:
-    points, faces = triangles
-    for a, b, c in points[faces]:
-        sides = np.column_stack([b - a, c - a])
-        lengths = np.linalg.norm(sides, axis=0)
-        normal = np.cross(sides[:, 0], sides[:, 1])
-        size = np.linalg.norm(normal)
-        if size == 0.0:
-            continue
-        # The frame of a triangle is skew: its sides are the first two axes.
-        frame = np.column_stack([sides / lengths, normal / size])
-        add_geom(
-            scene,
-            mujoco.mjtGeom.mjGEOM_TRIANGLE,
-            np.array([*lengths, 0.0]),
-            a,
-            frame,
-            color,
-            _EMISSION,
-        )
 
 
 def _add_arrow(
