@@ -16,6 +16,7 @@ import mujoco
 import pytest
 
 import volcontact as vc
+from volcontact.cli import make_parser
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "plugin" / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -317,6 +318,34 @@ def test_programs_of_the_plugin_page_run(language: str, tmp_path: Path) -> None:
     else:
         (force,) = re.findall(r"geoms 0 and 1: (\S+) N", ran.stdout)
         assert float(force) == pytest.approx(9.81, rel=0.05)  # 1 kg that has nearly come to rest
+
+
+def test_own_law_of_the_page_is_the_one_that_is_compiled_and_tested() -> None:
+    page, built = ROOT / "docs" / "own_laws.md", ROOT / "tests" / "own_law"
+    ((_, law),), ((_, project),) = blocks(page, "cpp"), blocks(page, "cmake")
+    assert law in (built / "crushable.h").read_text(encoding="utf-8")
+    assert project in (built / "CMakeLists.txt").read_text(encoding="utf-8")
+
+
+def test_commands_of_the_pages_exist() -> None:
+    """Words of ./run, commands of the program, targets, presets: what a shell block calls."""
+    run = (ROOT / "run").read_text(encoding="utf-8")
+    lists = "".join(p.read_text("utf-8") for p in (ROOT / "plugin").rglob("CMakeLists.txt"))
+    presets = (ROOT / "CMakePresets.json").read_text(encoding="utf-8")
+    (commands,) = (a.choices for a in make_parser()._actions if hasattr(a, "choices") and a.choices)
+    seen = 0
+    for page in [*PAGES, ROOT / "CONTRIBUTING.md", ROOT / "plugin" / "cgal" / "README.md"]:
+        text = "".join(text for _, text in blocks(page, "sh"))
+        for word in re.findall(r"^\./run (\w+)", text, re.MULTILINE):
+            assert re.search(rf"^  (\w+ \| )*{word}( \| \w+)*\) ?", run, re.MULTILINE), (page, word)
+            seen += 1
+        for word in re.findall(r"^(?:\./run )?volcontact (\w+)", text, re.MULTILINE):
+            assert word in commands, (page, word)
+        for target in re.findall(r"--target (\w+)", text):
+            assert re.search(rf"add_(library|executable)\({target}\b", lists), (page, target)
+        for preset in re.findall(r"--preset (\w+)", text):
+            assert f'"name": "{preset}"' in presets, (page, preset)
+    assert seen > 8
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
