@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The package without its extras: what works then, and what says what to install."""
 
+import csv
 import importlib.metadata
 import re
 import sys
@@ -67,3 +68,14 @@ def test_every_module_of_an_extra_is_of_a_package_of_that_extra():
     ]
     declared = {(found[1].lower(), found[2]) for found in required if found}
     assert {(packages.get(module, module), extra) for module, extra in EXTRAS.items()} <= declared
+
+
+def test_record_of_the_wheels_has_every_python():
+    """`./run wheels` writes it: each wheel dropped a box under each MuJoCo it can meet."""
+    path = ROOT / "tests" / "benchmarks" / "results" / "wheels.csv"
+    with path.open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert {row["python"] for row in rows} >= {"cp310", "cp311", "cp312", "cp313"}
+    assert {row["adaptor"] for row in rows} <= {"in the wheel", "compiled at first use"}
+    assert ("cp310", "2.2.2") in {(row["python"], row["mujoco"]) for row in rows}
+    assert all(float(row["depth_um"]) == pytest.approx(24.525, abs=1e-3) for row in rows)
