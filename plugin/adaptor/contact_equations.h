@@ -32,7 +32,14 @@ struct ContactEquations {
                       std::vector<double>& velocity) noexcept;
 
  private:
-  std::vector<double> matrix_, right_, response_;
+  using Slope = Eigen::Matrix<double, ContactSpace::kRows, ContactSpace::kRows>;
+
+  void add_slope(const ContactSpace& space, int place, double step) noexcept;
+
+  EnvelopeMatrix matrix_;
+  std::vector<Slope> slopes_;  // C by places
+  std::vector<double> right_, response_;
+  std::vector<int> full_;
 };
 
 }  // namespace volcontact::adaptor

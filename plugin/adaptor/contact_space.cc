@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "adaptor/cholesky.h"
 #include "adaptor/solids_of_geoms.h"
 
 namespace volcontact::adaptor {
@@ -13,105 +12,206 @@ std::size_t size(int count) { return static_cast<std::size_t>(count); }
 
 }  // namespace
 
+// Numbers for the degrees of freedom of an island, and the envelope of their masses: each has
+// inertia in common with those it carries and with those that carry it.
+void ContactSpace::number_dofs(const mjModel* m, std::span<const DofRange> trees) noexcept {
+  trees_.clear();
+  dofs_.clear();
+  numbers_.resize(size(static_cast<int>(m->nv)));
+  limits_.resize(numbers_.size());
+  for (const DofRange& tree : trees) {
+    const int begin = static_cast<int>(dofs_.size());
+    for (int dof = tree.end - 1; dof >= tree.begin; --dof) {
+      numbers_[size(dof)] = static_cast<int>(dofs_.size());
+      dofs_.push_back(dof);
+    }
+    trees_.push_back({begin, static_cast<int>(dofs_.size())});
+    for (int dof = tree.begin; dof < tree.end; ++dof) limits_[size(dof)] = dof;
+    for (int dof = tree.end - 1; dof >= tree.begin; --dof) {
+      const int parent = m->dof_parentid[dof];
+      if (parent < 0) continue;
+      limits_[size(parent)] = std::max(limits_[size(parent)], limits_[size(dof)]);
+    }
+  }
+  mass_envelope_.resize(dofs_.size());
+  for (std::size_t i = 0; i < dofs_.size(); ++i) {
+    mass_envelope_[i] = numbers_[size(limits_[size(dofs_[i])])];
+  }
+  envelope_ = mass_envelope_;
+}
+
 // Adds the motion that each degree of freedom beyond the world gives the body at the place.
 void ContactSpace::add_body(const mjModel* m, const mjData* d, const ContactPlace& place, int body,
-                            double sign, double* rows) noexcept {
-  if (m->body_weldid[body] == 0) return;
+                            double sign, const Side& side) noexcept {
   while (body > 0 && m->body_dofnum[body] == 0) body = m->body_parentid[body];
-  if (body == 0) return;
   const Vec3 offset = place.point - vec3_at(d->subtree_com, m->body_rootid[body]);
   const Mat3 to_site = sign * place.axes.transpose();
+  double* columns = &jacobian_[at(side)];
   int dof = m->body_dofadr[body] + m->body_dofnum[body] - 1;
   for (; dof >= 0; dof = m->dof_parentid[dof]) {
     const Vec3 angular = vec3_at(d->cdof, 2 * dof);
     const Vec3 turn = to_site * angular;
     const Vec3 way = to_site * (vec3_at(d->cdof, 2 * dof + 1) + angular.cross(offset));
     const double column[kRows] = {way[2], turn[0], turn[1], way[0], way[1], turn[2]};
-    for (int i = 0; i < kRows; ++i) rows[i * nv_ + dof] += column[i];
+    double* to = columns + kRows * (numbers_[size(dof)] - side.begin);
+    for (int i = 0; i < kRows; ++i) to[i] += column[i];
   }
 }
 
-void ContactSpace::make_mass(const mjModel* m, mjData* d, bool damped) noexcept {
-  mass_.assign(size(nv_) * size(nv_), 0.0);
-  mj_addM(m, d, mass_.data(), nullptr, nullptr, nullptr);
-  if (!damped) return;
-  for (int i = 0; i < nv_; ++i) {
-    mass_[size(i) * size(nv_) + size(i)] += m->opt.timestep * m->dof_damping[i];
+ContactSpace::Side ContactSpace::add_side(int tree) noexcept {
+  const DofRange& range = trees_[size(tree)];
+  const std::size_t start = jacobian_.size();
+  jacobian_.resize(start + size(kRows * range.size()), 0.0);
+  return {range.begin, range.end, static_cast<std::ptrdiff_t>(start)};
+}
+
+void ContactSpace::add_place(const mjModel* m, const mjData* d, const ContactPlace& place,
+                             std::pair<int, int> trees) noexcept {
+  const auto [tree_a, tree_b] = trees;
+  std::array<Side, 2> sides;
+  int count = 0;
+  if (tree_a >= 0) {
+    sides[0] = add_side(tree_a);
+    add_body(m, d, place, place.body_a, 1.0, sides[0]);
+    count = 1;
+  }
+  if (tree_b >= 0) {
+    if (tree_b != tree_a) sides[size(count++)] = add_side(tree_b);
+    add_body(m, d, place, place.body_b, -1.0, sides[size(count - 1)]);
+  }
+  sides_.push_back(sides);
+  side_count_.push_back(count);
+}
+
+// All that a place moves has to do with each other.
+void ContactSpace::widen_envelope(std::size_t place) noexcept {
+  int least = dofs();
+  for (const bool finds : {true, false}) {
+    for (const Side& side : sides(static_cast<int>(place))) {
+      const Rows rows = jacobian(side);
+      for (int i = 0; i < side.size(); ++i) {
+        if (rows.col(i).isZero(0.0)) continue;
+        int& first = envelope_[size(side.begin + i)];
+        if (finds) {
+          least = std::min(least, side.begin + i);
+        } else {
+          first = std::min(first, least);
+        }
+      }
+    }
   }
 }
 
-void ContactSpace::divide_by_mass(const mjModel* m) noexcept {
+void ContactSpace::make_mass(const mjModel* m, const mjData* d) noexcept {
+  mass_.reset(mass_envelope_);
+  const double damping = damps_implicitly(m) ? m->opt.timestep : 0.0;
+  for (int i = 0; i < dofs(); ++i) {
+    const int dof = dofs_[size(i)];
+    for_row_of_mass(m, d, dof, [&](int other, double mass) {
+      mass_(numbers_[size(other)], i) = mass;  // those that carry it come after it
+    });
+    mass_(i, i) += damping * m->dof_damping[dof];
+  }
+}
+
+void ContactSpace::build_mobility() noexcept {
   response_ = jacobian_;
-  // The degrees of freedom of a tree stand together.
-  for (int first = 0; first < nv_;) {
-    const int root = m->body_rootid[m->dof_bodyid[first]];
-    int last = first;
-    while (last < nv_ && m->body_rootid[m->dof_bodyid[last]] == root) ++last;
-    const int n = last - first;
-    block_.resize(size(n) * size(n));
-    for (int i = 0; i < n; ++i) {
-      // Only the lower triangle is filled by every release.
-      std::copy_n(&mass_[size((first + i) * nv_ + first)], i + 1, &block_[size(i * n)]);
+  mobility_.resize(sides_.size());
+  for (std::size_t place = 0; place < sides_.size(); ++place) {
+    mobility_[place].setZero();
+    for (const Side& side : sides(static_cast<int>(place))) {
+      factor_.solve<kRows>(&response_[at(side)], side.begin, side.end);
+      const Rows moves = jacobian(side), responds = response(side);
+      for (int i = 0; i < side.size(); ++i) {
+        mobility_[place].noalias() += moves.col(i) * responds.col(i).transpose();
+      }
     }
-    factor_in_place(block_.data(), n);
-    for (int row = 0; row < rows_; ++row) {
-      solve_in_place(block_.data(), n, &response_[size(row * nv_ + first)]);
-    }
-    first = last;
   }
+  double work = 0.0;
+  for (std::size_t i = 0; i < envelope_.size(); ++i) {
+    const double width = static_cast<double>(i) + 1.0 - envelope_[i];
+    work += 0.5 * width * width;
+  }
+  const double all = rows();
+  prefers_dofs_ = work <= all * all * all / 2.0;  // as measured
+  if (!prefers_dofs_) build_delassus();
 }
 
 void ContactSpace::build_delassus() noexcept {
-  delassus_.resize(size(rows_) * size(rows_));
-  Eigen::Map<RowMajor>(delassus_.data(), rows_, rows_).noalias() =
-      jacobian().lazyProduct(Eigen::Map<const RowMajor>(response_.data(), rows_, nv_).transpose());
+  delassus_.assign(size(rows()) * size(rows()), 0.0);
+  Eigen::Map<RowMajor> delassus(delassus_.data(), rows(), rows());
+  const int places = static_cast<int>(sides_.size());
+  for (int i = 0; i < places; ++i) {
+    for (int k = 0; k <= i; ++k) {
+      for (const Side& side : sides(i)) {
+        for (const Side& other : sides(k)) {
+          if (side.begin != other.begin) continue;
+          delassus.block<kRows, kRows>(kRows * i, kRows * k).noalias() +=
+              jacobian(side).lazyProduct(response(other).transpose());
+        }
+      }
+      if (k == i) continue;
+      delassus.block<kRows, kRows>(kRows * k, kRows * i) =
+          delassus.block<kRows, kRows>(kRows * i, kRows * k).transpose();
+    }
+  }
+}
+
+void ContactSpace::add_load(const double* f, double* load) const noexcept {
+  for (std::size_t place = 0; place < sides_.size(); ++place) {
+    const Eigen::Map<const Block> force(f + place * size(kRows));
+    for (const Side& side : sides(static_cast<int>(place))) {
+      const Rows moves = jacobian(side);
+      for (int i = 0; i < side.size(); ++i) load[side.begin + i] += moves.col(i).dot(force);
+    }
+  }
+}
+
+void ContactSpace::add_motion(const double* x, double* u) const noexcept {
+  for (std::size_t place = 0; place < sides_.size(); ++place) {
+    Eigen::Map<Block> motion(u + place * size(kRows));
+    for (const Side& side : sides(static_cast<int>(place))) {
+      const Rows moves = jacobian(side);
+      for (int i = 0; i < side.size(); ++i) motion += x[side.begin + i] * moves.col(i);
+    }
+  }
 }
 
 void ContactSpace::move(const std::vector<double>& f, std::vector<double>& u) noexcept {
-  generalized_.resize(size(nv_));
-  Eigen::Map<Eigen::VectorXd> load(generalized_.data(), nv_), out(u.data(), rows_);
-  load.noalias() =
-      jacobian().transpose().lazyProduct(Eigen::Map<const Eigen::VectorXd>(f.data(), rows_));
-  out.noalias() = Eigen::Map<const RowMajor>(response_.data(), rows_, nv_).lazyProduct(load);
-  out = free_velocity() + step_ * out;
+  generalized_.assign(size(dofs()), 0.0);
+  add_load(f.data(), generalized_.data());
+  for (double& load : generalized_) load *= step_;
+  factor_.solve(generalized_.data(), 0, dofs());
+  std::copy(free_.begin(), free_.end(), u.begin());
+  add_motion(generalized_.data(), u.data());
 }
 
 void ContactSpace::build(const mjModel* m, mjData* d, std::span<const ContactPlace> places,
-                         const double* known) noexcept {
-  rows_ = kRows * static_cast<int>(places.size());
-  nv_ = static_cast<int>(m->nv);
-  const std::size_t entries = size(rows_) * size(nv_);
-  jacobian_.assign(entries, 0.0);
-  response_.resize(entries);
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    double* rows = &jacobian_[i * size(kRows) * size(nv_)];
-    add_body(m, d, places[i], places[i].body_a, 1.0, rows);
-    add_body(m, d, places[i], places[i].body_b, -1.0, rows);
-  }
-  known_ = known;
+                         const ContactIslands& islands, int island, const double* known) noexcept {
   step_ = m->opt.timestep;
-  const bool damped = damps_implicitly(m);
-  if (damped || prefers_dofs()) make_mass(m, d, damped);
-  if (damped) {
-    divide_by_mass(m);
-  } else {
-    mj_solveM(m, d, response_.data(), jacobian_.data(), rows_);
+  number_dofs(m, islands.trees(island));
+  sides_.clear();
+  side_count_.clear();
+  jacobian_.clear();
+  known_.resize(dofs_.size());
+  for (const int place : islands.places(island)) {
+    add_place(m, d, places[size(place)], islands.trees_of(place));
+    widen_envelope(sides_.size() - 1);
   }
-  velocity_.resize(size(rows_));
-  free_.resize(size(rows_));
-  const Eigen::Map<const RowMajor> response(response_.data(), rows_, nv_);
-  mobility_.resize(places.size());
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const Eigen::Index first = static_cast<Eigen::Index>(i) * kRows;
-    mobility_[i].noalias() = jacobian().middleRows<kRows>(first).lazyProduct(
-        response.middleRows<kRows>(first).transpose());
+  make_mass(m, d);
+  factor_ = mass_;
+  factor_.factor();
+  generalized_.resize(dofs_.size());
+  for (std::size_t i = 0; i < dofs_.size(); ++i) {
+    known_[i] = known[dofs_[i]];
+    generalized_[i] = d->qvel[dofs_[i]];
   }
-  if (!prefers_dofs()) build_delassus();
-  const Eigen::Map<const Eigen::VectorXd> v(d->qvel, nv_), t(known, nv_);
-  Eigen::Map<Eigen::VectorXd> u(velocity_.data(), rows_), free(free_.data(), rows_);
-  u.noalias() = jacobian().lazyProduct(v);
-  free.noalias() = response.lazyProduct(t);
-  free = u + m->opt.timestep * free;
+  velocity_.assign(size(rows()), 0.0);
+  add_motion(generalized_.data(), velocity_.data());
+  for (std::size_t i = 0; i < dofs_.size(); ++i) generalized_[i] = step_ * known_[i];
+  factor_.solve(generalized_.data(), 0, dofs());
+  free_ = velocity_;
+  add_motion(generalized_.data(), free_.data());
 }
 
 void known_forces(const mjModel* m, mjData* d, const double* user_qfrc, const double* user_xfrc,

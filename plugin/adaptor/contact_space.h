@@ -2,71 +2,99 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <span>
 #include <vector>
 
-#include "adaptor/mujoco_compat.h"
-#include "volcontact/base/types.h"
+#include "adaptor/contact_islands.h"
+#include "adaptor/envelope_matrix.h"
 
 namespace volcontact::adaptor {
 
-/// Where two bodies meet: six coordinates of the relative motion of a against b, along n, about
-/// t_1, about t_2, along t_1, along t_2, about n.
-struct ContactPlace {
-  int body_a = 0;
-  int body_b = 0;
-  Vec3 point = Vec3::Zero();     ///< of the world [m]
-  Mat3 axes = Mat3::Identity();  ///< t_1, t_2, n by columns, in the world
-};
-
-/// What one step of MuJoCo makes of forces at contact places: u' = u_free + h Lambda f, with
-/// u = J v, Lambda = J Mh^-1 J' and u_free = u + h J Mh^-1 t. Mh is what the integrator divides by:
-/// M, or M + h B with the damping B of the degrees of freedom. Memory is reused from step to step.
+/// What one step of MuJoCo makes of forces at the contact places of an island: u' = u_free + h
+/// Lambda f, with u = J v, Lambda = J Mh^-1 J' and u_free = u + h J Mh^-1 t. Mh is what the
+/// integrator divides by: M, or M + h B with the damping B of the degrees of freedom. Memory is
+/// reused from step to step.
+///
+/// The degrees of freedom have numbers of their own, tree by tree, in each the last one first: then
+/// the limbs of a tree are apart in the matrices.
 class ContactSpace {
  public:
   static constexpr int kRows = 6;  ///< of a place
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   using Block = Eigen::Matrix<double, kRows, 1>;
+  /// A row a coordinate of the place, a column a degree of freedom of one tree.
+  using Rows = Eigen::Map<const Eigen::Matrix<double, kRows, Eigen::Dynamic>>;
+
+  /// What a place has to do with one tree: columns begin ... end - 1 of J and of J Mh^-1.
+  struct Side {
+    int begin = 0;
+    int end = 0;
+    std::ptrdiff_t start = 0;  // of its numbers
+
+    int size() const { return end - begin; }
+  };
 
   /// `known`: t, all generalized forces but those at the places, nv numbers. Uses the mass matrix
   /// and the positions that are current in `d`.
   void build(const mjModel* m, mjData* d, std::span<const ContactPlace> places,
-             const double* known) noexcept;
+             const ContactIslands& islands, int island, const double* known) noexcept;
 
-  int rows() const { return rows_; }
-  Eigen::Map<const RowMajor> jacobian() const { return {jacobian_.data(), rows_, nv_}; }
-  /// Where there are fewer degrees of freedom than rows, it is cheaper to solve for their
-  /// velocities; then `mass` is there, else `delassus`.
-  bool prefers_dofs() const { return nv_ <= rows_; }
+  int rows() const { return static_cast<int>(sides_.size()) * kRows; }
+  int dofs() const { return static_cast<int>(known_.size()); }
+  /// The trees of a place: one or two.
+  std::span<const Side> sides(int place) const {
+    return {sides_[static_cast<std::size_t>(place)].data(),
+            static_cast<std::size_t>(side_count_[static_cast<std::size_t>(place)])};
+  }
+  Rows jacobian(const Side& side) const { return {&jacobian_[at(side)], kRows, side.size()}; }
+  Rows response(const Side& side) const { return {&response_[at(side)], kRows, side.size()}; }
+  /// Mh.
+  const EnvelopeMatrix& mass() const { return mass_; }
+  /// The first column of each row of Mh + J' C J, whatever C is.
+  std::span<const int> envelope() const { return envelope_; }
+  /// Whether it is cheaper to solve for the velocities of the degrees of freedom than for forces.
+  bool prefers_dofs() const { return prefers_dofs_; }
+  /// Makes J Mh^-1 and what is made of it: `mobility`, and `delassus` where it is of use.
+  void build_mobility() noexcept;
+  void build_delassus() noexcept;
   /// Lambda.
-  Eigen::Map<const RowMajor> delassus() const { return {delassus_.data(), rows_, rows_}; }
-  /// Mh, its lower triangle.
-  Eigen::Map<const RowMajor> mass() const { return {mass_.data(), nv_, nv_}; }
+  Eigen::Map<const RowMajor> delassus() const { return {delassus_.data(), rows(), rows()}; }
   /// The block of Lambda of one place.
   const Eigen::Matrix<double, kRows, kRows>& mobility(std::size_t place) const {
     return mobility_[place];
   }
-  Eigen::Map<const Eigen::VectorXd> known() const { return {known_, nv_}; }
-  /// Makes `delassus` where `build` did not.
-  void build_delassus() noexcept;
+  Eigen::Map<const Eigen::VectorXd> known() const { return {known_.data(), dofs()}; }
+  Eigen::Map<const Eigen::VectorXd> velocity() const { return {velocity_.data(), rows()}; }
+  Eigen::Map<const Eigen::VectorXd> free_velocity() const { return {free_.data(), rows()}; }
   /// u' under the forces f.
   void move(const std::vector<double>& f, std::vector<double>& u) noexcept;
-  Eigen::Map<const Eigen::VectorXd> velocity() const { return {velocity_.data(), rows_}; }
-  Eigen::Map<const Eigen::VectorXd> free_velocity() const { return {free_.data(), rows_}; }
+  /// Adds J' f to numbers by degree of freedom, and J x to those by row.
+  void add_load(const double* f, double* load) const noexcept;
+  void add_motion(const double* x, double* u) const noexcept;
 
  private:
+  std::size_t at(const Side& side) const { return static_cast<std::size_t>(side.start); }
+  void number_dofs(const mjModel* m, std::span<const DofRange> trees) noexcept;
+  void add_place(const mjModel* m, const mjData* d, const ContactPlace& place,
+                 std::pair<int, int> trees) noexcept;
+  Side add_side(int tree) noexcept;
   void add_body(const mjModel* m, const mjData* d, const ContactPlace& place, int body, double sign,
-                double* rows) noexcept;
-  void make_mass(const mjModel* m, mjData* d, bool damped) noexcept;
-  void divide_by_mass(const mjModel* m) noexcept;
+                const Side& side) noexcept;
+  void widen_envelope(std::size_t place) noexcept;
+  void make_mass(const mjModel* m, const mjData* d) noexcept;
 
-  int rows_ = 0;
-  int nv_ = 0;
-  std::vector<double> jacobian_, response_;  // J and J Mh^-1, row by row
-  std::vector<double> delassus_, velocity_, free_;
-  std::vector<double> mass_, block_, generalized_;
+  std::vector<DofRange> trees_;        // by the numbers here
+  std::vector<int> dofs_;              // of the model, by the numbers here
+  std::vector<int> numbers_, limits_;  // the other way, and the last one of each subtree
+  std::vector<std::array<Side, 2>> sides_;
+  std::vector<int> side_count_;
+  std::vector<double> jacobian_, response_;
+  std::vector<int> mass_envelope_, envelope_;
+  EnvelopeMatrix mass_, factor_;
   std::vector<Eigen::Matrix<double, kRows, kRows>> mobility_;
-  const double* known_ = nullptr;
+  std::vector<double> known_, delassus_, velocity_, free_, generalized_;
+  bool prefers_dofs_ = true;
   double step_ = 0.0;
 };
 

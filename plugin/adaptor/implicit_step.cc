@@ -36,9 +36,10 @@ void ImplicitStep::clear() noexcept {
 }
 
 void ImplicitStep::add(const ContactModel& model, ContactReport& report, std::size_t site,
-                       int body_a, int body_b) noexcept {
+                       int body_a, int body_b, bool is_stiff) noexcept {
   const SiteLaws laws(model, report, site);
   sites_.push_back({laws, &model, &report, site, laws.tangent()});
+  sites_.back().is_stiff = is_stiff;
   places_.push_back(
       {body_a, body_b, report.sites[site].metrics.centroid, sites_.back().tangent.axes});
 }
@@ -121,11 +122,10 @@ void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& fa
 }
 
 void ImplicitStep::make_points(ImplicitParts parts, double step, double resting) noexcept {
-  for (std::size_t i = 0; i < sites_.size(); ++i) {
+  for (std::size_t i = 0; i < island_.size(); ++i) {
     const Eigen::Index first = static_cast<Eigen::Index>(i) * kRows;
     const Vec3 falling = (space_.free_velocity() - space_.velocity()).segment<3>(first);
-    place_points(sites_[i], space_.mobility(i).topLeftCorner<3, 3>(), falling, resting, parts,
-                 step);
+    place_points(site(i), space_.mobility(i).topLeftCorner<3, 3>(), falling, resting, parts, step);
   }
 }
 
@@ -135,8 +135,8 @@ void ImplicitStep::solve_once(bool with_friction, double step) noexcept {
   std::vector<ContactEquations::Column>& columns = equations_.columns;
   constants.assign(size(space_.rows()), 0.0);
   columns.clear();
-  for (std::size_t i = 0; i < sites_.size(); ++i) {
-    const Site& site = sites_[i];
+  for (std::size_t i = 0; i < island_.size(); ++i) {
+    const Site& site = this->site(i);
     if (!site.pushes()) continue;
     const int first = static_cast<int>(i) * kRows;
     Eigen::Map<Vec3> constant(&constants[size(first)]);
@@ -164,16 +164,16 @@ void ImplicitStep::solve_once(bool with_friction, double step) noexcept {
 // Leaves out the points that would pull, until none does.
 void ImplicitStep::solve_active(bool with_friction, double step) noexcept {
   constexpr int kRounds = 12;
-  for (Site& site : sites_) {
-    for (Point& point : site.points) point.pushes = true;
+  for (std::size_t i = 0; i < island_.size(); ++i) {
+    for (Point& point : site(i).points) point.pushes = true;
   }
   for (int round = 0; round < kRounds; ++round) {
     solve_once(with_friction, step);
     bool changed = false;
-    for (std::size_t i = 0; i < sites_.size(); ++i) {
+    for (std::size_t i = 0; i < island_.size(); ++i) {
       const Vec3 motion = Eigen::Map<const Vec3>(&velocity_[i * size(kRows)]);
-      for (int k = 0; k < sites_[i].point_count; ++k) {
-        Point& point = sites_[i].points[size(k)];
+      for (int k = 0; k < site(i).point_count; ++k) {
+        Point& point = site(i).points[size(k)];
         const bool pushes = point.constant - point.slope * point.motion.dot(motion) > 0.0;
         // Who was left out comes back where it is needed, in the first rounds: else it might go on.
         if (point.pushes == pushes || (pushes && round >= kRounds / 2)) continue;
@@ -195,8 +195,8 @@ Vec3 ImplicitStep::slip_of(const Site& site, const std::vector<double>& u,
 // Friction under the normal forces of the last solution and at its slip: a spring and a damper
 // while it holds, Coulomb's where it would have to hold more.
 void ImplicitStep::set_friction(double step) noexcept {
-  for (std::size_t i = 0; i < sites_.size(); ++i) {
-    Site& site = sites_[i];
+  for (std::size_t i = 0; i < island_.size(); ++i) {
+    Site& site = this->site(i);
     if (!site.laws.has_friction()) continue;
     const double normal_force = this->normal_force(i);
     const Vec3 slip = slip_of(site, velocity_, i);
@@ -233,8 +233,8 @@ void ImplicitStep::set_friction(double step) noexcept {
 
 // Shortens what friction was solved to hold to what it can hold.
 void ImplicitStep::bound_friction() noexcept {
-  for (std::size_t i = 0; i < sites_.size(); ++i) {
-    const Site& site = sites_[i];
+  for (std::size_t i = 0; i < island_.size(); ++i) {
+    const Site& site = this->site(i);
     if (!site.laws.has_friction()) continue;
     double* f = &force_[i * size(kRows)];
     const double normal_force = this->normal_force(i);
@@ -249,20 +249,38 @@ void ImplicitStep::bound_friction() noexcept {
   }
 }
 
+// Of the motion at the begin of the step and that at its end.
+ContactSpace::Block ImplicitStep::mean_motion(std::size_t i) const noexcept {
+  const Eigen::Index first = static_cast<Eigen::Index>(i) * kRows;
+  const ConstVector u(velocity_.data(), space_.rows());
+  return 0.5 * (space_.velocity().segment<kRows>(first) + u.segment<kRows>(first));
+}
+
+// The power that the forces take from the motion over the step.
+ByChannel ImplicitStep::taken(const Site& site, std::size_t i) const noexcept {
+  const ContactSpace::Block mean = mean_motion(i);
+  const double* f = &force_[i * size(kRows)];
+  const Eigen::Vector2d turning = mean.segment<2>(1);
+  ByChannel out;
+  out.roll = turning.dot(site.tangent.damping.bottomRightCorner<2, 2>() * turning);
+  out.normal = -(f[0] * mean[0] + f[1] * mean[1] + f[2] * mean[2]) - out.roll;
+  out.slide = -(f[3] * mean[3] + f[4] * mean[4]);
+  out.spin = -f[5] * mean[5];
+  return out;
+}
+
 // The reports get the forces, the power they take from the motion, and what friction keeps under
 // the normal force that acts.
 void ImplicitStep::write_results() noexcept {
   space_.move(force_, velocity_);
-  const ConstVector u(velocity_.data(), space_.rows());
-  const auto before = space_.velocity();
-  for (std::size_t i = 0; i < sites_.size(); ++i) {
-    const Site& site = sites_[i];
+  for (std::size_t i = 0; i < island_.size(); ++i) {
+    Site& site = this->site(i);
     SiteReport& report = site.report->sites[site.index];
     const SiteInputs& inputs = site.report->inputs[site.index];
     const Mat3& axes = site.tangent.axes;
-    const Eigen::Index first = static_cast<Eigen::Index>(i) * kRows;
-    const ContactSpace::Block mean = 0.5 * (before.segment<kRows>(first) + u.segment<kRows>(first));
-    const double* f = &force_[size(static_cast<int>(first))];
+    site.force = ConstVector(&force_[i * size(kRows)], kRows);
+    site.is_solved = true;
+    const ContactSpace::Block& f = site.force;
     report.normal_force = f[0];
     report.force_on_A = f[0] * axes.col(2) + f[3] * axes.col(0) + f[4] * axes.col(1);
     report.torque_on_A = f[1] * axes.col(0) + f[2] * axes.col(1) + f[5] * axes.col(2);
@@ -273,14 +291,25 @@ void ImplicitStep::write_results() noexcept {
       report.bristle_energy.spin = friction.spin_energy;
     }
     report.elastic_energy = elastic + report.bristle_energy.sum();
-    report.taken = {};
-    const Eigen::Vector2d turning = mean.segment<2>(1);
-    report.taken.roll = turning.dot(site.tangent.damping.bottomRightCorner<2, 2>() * turning);
-    report.taken.normal = -(f[0] * mean[0] + f[1] * mean[1] + f[2] * mean[2]) - report.taken.roll;
-    report.taken.slide = -(f[3] * mean[3] + f[4] * mean[4]);
-    report.taken.spin = -f[5] * mean[5];
+    report.taken = taken(site, i);
     report.power = report.taken;
-    report.power.normal += inputs.normal_out.elastic * mean[0];
+    report.power.normal += inputs.normal_out.elastic * mean_motion(i)[0];
+  }
+}
+
+// The forces stay; the account of a step that is implicit elsewhere wants the power over all of it.
+void ImplicitStep::keep_explicit() noexcept {
+  for (std::size_t i = 0; i < island_.size(); ++i) {
+    Site& site = this->site(i);
+    const SiteReport& report = site.report->sites[site.index];
+    const Vec3 force = site.tangent.axes.transpose() * report.force_on_A;
+    const Vec3 torque = site.tangent.axes.transpose() * report.torque_on_A;
+    site.force << force[2], torque[0], torque[1], force[0], force[1], torque[2];
+    std::copy_n(site.force.data(), kRows, &force_[i * size(kRows)]);
+  }
+  space_.move(force_, velocity_);
+  for (std::size_t i = 0; i < island_.size(); ++i) {
+    site(i).report->sites[site(i).index].taken = taken(site(i), i);
   }
 }
 
@@ -291,17 +320,13 @@ bool ImplicitStep::is_settled() const noexcept {
   return (now - before).lpNorm<Eigen::Infinity>() <= kChange * now.lpNorm<Eigen::Infinity>();
 }
 
-void ImplicitStep::solve(const mjModel* m, mjData* d, ImplicitParts parts,
-                         const double* known) noexcept {
+void ImplicitStep::solve_island(ImplicitParts parts, double step, double resting) noexcept {
   constexpr int kFrictionPasses = 3;
-  const double step = m->opt.timestep;
-  space_.build(m, d, places_, known);
-  force_.resize(size(space_.rows()));
-  velocity_.resize(size(space_.rows()));
-  make_points(parts, step, step * Eigen::Map<const Vec3>(m->opt.gravity).norm());
+  space_.build_mobility();
+  make_points(parts, step, resting);
   solve_active(false, step);
-  const bool rubs = std::any_of(sites_.begin(), sites_.end(),
-                                [](const Site& site) { return site.laws.has_friction(); });
+  const bool rubs = std::any_of(island_.begin(), island_.end(),
+                                [this](int i) { return sites_[size(i)].laws.has_friction(); });
   for (int pass = 0; rubs && pass < kFrictionPasses; ++pass) {
     before_ = force_;
     set_friction(step);
@@ -312,18 +337,49 @@ void ImplicitStep::solve(const mjModel* m, mjData* d, ImplicitParts parts,
   write_results();
 }
 
-ContactSpace::Block ImplicitStep::constant(std::size_t site) const noexcept {
-  return ConstVector(&equations_.constant[site * size(kRows)], kRows);
+void ImplicitStep::solve(const mjModel* m, mjData* d, ImplicitParts parts,
+                         const double* known) noexcept {
+  const double step = m->opt.timestep;
+  const double resting = step * Eigen::Map<const Vec3>(m->opt.gravity).norm();
+  islands_.build(m, places_);
+  for (int island = 0; island < islands_.count(); ++island) {
+    island_ = islands_.places(island);
+    space_.build(m, d, places_, islands_, island, known);
+    force_.resize(size(space_.rows()));
+    velocity_.resize(size(space_.rows()));
+    if (std::any_of(island_.begin(), island_.end(),
+                    [this](int i) { return sites_[size(i)].is_stiff; })) {
+      solve_island(parts, step, resting);
+    } else {
+      keep_explicit();
+    }
+  }
 }
 
-Eigen::Matrix<double, 6, 6> ImplicitStep::slope(std::size_t site) const noexcept {
-  Eigen::Matrix<double, 6, 6> out = Eigen::Matrix<double, 6, 6>::Zero();
-  const int first = static_cast<int>(site) * kRows;
-  for (const ContactEquations::Column& column : equations_.columns) {
-    if (column.first != first && column.first != first + 3) continue;
-    const int at = column.first - first;
-    out.block<3, 3>(at, at) += column.numbers * column.numbers.transpose();
+ContactSpace::Block ImplicitStep::constant(std::size_t i) const noexcept {
+  ContactSpace::Block out = ContactSpace::Block::Zero();
+  const Site& site = sites_[i];
+  if (!site.pushes()) return out;
+  for (int k = 0; k < site.point_count; ++k) {
+    const Point& point = site.points[size(k)];
+    if (point.pushes) out.head<3>() += point.constant * point.motion;
   }
+  out.tail<3>() = site.held;
+  return out;
+}
+
+Eigen::Matrix<double, 6, 6> ImplicitStep::slope(std::size_t i) const noexcept {
+  Eigen::Matrix<double, 6, 6> out = Eigen::Matrix<double, 6, 6>::Zero();
+  const Site& site = sites_[i];
+  if (!site.pushes()) return out;
+  for (int k = 0; k < site.point_count; ++k) {
+    const Point& point = site.points[size(k)];
+    if (!point.pushes) continue;
+    out.topLeftCorner<3, 3>() += point.slope * point.motion * point.motion.transpose();
+  }
+  out.topLeftCorner<3, 3>() += site.rolls * site.rolls.transpose();
+  const double lever = site.tangent.friction.lever;
+  out.diagonal().tail<3>() = site.rub * Vec3(1.0, 1.0, lever * lever);
   return out;
 }
 

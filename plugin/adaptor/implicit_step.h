@@ -35,15 +35,17 @@ inline double stored_power(const ContactReport& report) noexcept {
 
 /// One step of the contact forces that is implicit in them, to first order: docs/theory.md,
 /// "Implicit step". For each site f = e - C u', with u' the relative motion at the end of the step;
-/// all sites of all pairs at once, none pulling, friction within what the solved normal force
-/// holds. Memory is reused from step to step.
+/// all sites of an island at once, none pulling, friction within what the solved normal force
+/// holds. An island without a stiff site keeps its explicit forces. Memory is reused from step to
+/// step.
 class ImplicitStep {
  public:
   void clear() noexcept;
 
-  /// A site that takes part. The report keeps its inputs.
+  /// A site that takes part. The report keeps its inputs. `is_stiff`: an explicit step could not
+  /// hold it.
   void add(const ContactModel& model, ContactReport& report, std::size_t site, int body_a,
-           int body_b) noexcept;
+           int body_b, bool is_stiff) noexcept;
 
   bool empty() const noexcept { return sites_.empty(); }
 
@@ -54,8 +56,8 @@ class ImplicitStep {
   // For tests: the linear model of site i, f = e - C u', as last solved, and the solution.
   ContactSpace::Block constant(std::size_t site) const noexcept;
   Eigen::Matrix<double, 6, 6> slope(std::size_t site) const noexcept;
-  const ContactSpace& space() const noexcept { return space_; }
-  const std::vector<double>& forces() const noexcept { return force_; }
+  const ContactSpace::Block& force(std::size_t site) const noexcept { return sites_[site].force; }
+  bool is_solved(std::size_t site) const noexcept { return sites_[site].is_solved; }
 
  private:
   // A patch is borne at up to four points, which have its area and moments; none of them pulls.
@@ -74,6 +76,9 @@ class ImplicitStep {
     std::array<Point, 4> points{};
     int point_count = 0;
     Mat3 rolls = Mat3::Zero();  // L of L L', the damping of turns where the points have none
+    bool is_stiff = false;
+    bool is_solved = false;
+    ContactSpace::Block force = ContactSpace::Block::Zero();
 
     bool pushes() const {
       return std::any_of(points.begin(), points.begin() + point_count,
@@ -85,6 +90,12 @@ class ImplicitStep {
     double strength = 0.0;
     bool slides = false;
   };
+  Site& site(std::size_t i) noexcept { return sites_[static_cast<std::size_t>(island_[i])]; }
+  const Site& site(std::size_t i) const noexcept {
+    return sites_[static_cast<std::size_t>(island_[i])];
+  }
+  void solve_island(ImplicitParts parts, double step, double resting) noexcept;
+  void keep_explicit() noexcept;
   void make_points(ImplicitParts parts, double step, double resting) noexcept;
   void place_points(Site& site, const Mat3& mobility, const Vec3& falling, double resting,
                     ImplicitParts parts, double step) noexcept;
@@ -95,11 +106,15 @@ class ImplicitStep {
   void bound_friction() noexcept;
   bool is_settled() const noexcept;
   void write_results() noexcept;
+  ByChannel taken(const Site& site, std::size_t i) const noexcept;
+  ContactSpace::Block mean_motion(std::size_t i) const noexcept;
 
   Vec3 slip_of(const Site& site, const std::vector<double>& u, std::size_t i) const noexcept;
 
   std::vector<Site> sites_;
   std::vector<ContactPlace> places_;
+  ContactIslands islands_;
+  std::span<const int> island_;  // the sites of the one at hand; what follows is of these
   ContactSpace space_;
   ContactEquations equations_;
   std::vector<double> force_, velocity_;  // f and u'

@@ -64,6 +64,18 @@ inline bool damps_implicitly(const mjModel* m) {
   return std::any_of(m->dof_damping, m->dof_damping + m->nv, [](double b) { return b > 0.0; });
 }
 
+/// Calls use(k, M_ik) for degree of freedom i, and for each k that carries it.
+template <typename Use>
+void for_row_of_mass(const mjModel* m, const mjData* d, int i, Use use) {
+#if mjVERSION_HEADER < 3009000
+  int address = m->dof_Madr[i];
+  for (int k = i; k >= 0; k = m->dof_parentid[k]) use(k, d->qM[address++]);
+#else
+  const int begin = m->M_rowadr[i], end = begin + m->M_rownnz[i];
+  for (int address = begin; address < end; ++address) use(m->M_colind[address], d->M[address]);
+#endif
+}
+
 /// Whether bodies may fall asleep; volumetric contact would never wake them.
 inline bool sleep_enabled([[maybe_unused]] const mjModel* m) {
 #if mjVERSION_HEADER >= 340

@@ -228,7 +228,7 @@ void SceneContact::step(const mjModel* m, mjData* d, Scratch& scratch) const noe
   const bool may_be_implicit = this->may_be_implicit(m);
   evaluate(m, d, {committed, account.elapsed(), may_be_implicit}, scratch);
   EnergyAccount now;
-  now.implicit = may_be_implicit && is_stiff(m, scratch);
+  now.implicit = may_be_implicit && find_stiff_sites(m, scratch);
   our.set_solved(0);
   if (now.implicit) {
     solve_implicit(m, d, scratch);

@@ -40,6 +40,7 @@ class SceneContact {
     Cull::Scratch cull;                  ///< `near`: the pairs evaluated
     std::vector<ContactReport> reports;  ///< of the pairs in `near`, finite numbers only
     std::vector<char> invalid;           ///< whether a report was left out, having no numbers
+    std::vector<char> stiff;             ///< of all sites, whether an explicit step cannot hold it
     std::vector<int> order;              ///< of `near`, as worked off: the long pairs first
     std::vector<ContactModel::Workspace> workspaces;  ///< one per OpenMP thread
     BodyForces forces;
@@ -142,7 +143,9 @@ class SceneContact {
   void evaluate_one(const mjModel* m, const mjData* d, const Before& before, int k,
                     ContactModel::Workspace& workspace, Scratch& scratch) const noexcept;
   bool may_be_implicit(const mjModel* m) const noexcept;
-  bool is_stiff(const mjModel* m, const Scratch& scratch) const noexcept;
+  bool is_stiff(const mjModel* m, const PairContact& pair, const ContactReport& report,
+                std::size_t site) const noexcept;
+  bool find_stiff_sites(const mjModel* m, Scratch& scratch) const noexcept;
   void solve_implicit(const mjModel* m, mjData* d, Scratch& scratch) const noexcept;
   void keep_solved(const UserdataBlock& our, const Scratch& scratch) const noexcept;
   void recall_solved(const UserdataBlock& our, Scratch& scratch) const noexcept;

@@ -134,46 +134,51 @@ bool SceneContact::may_be_implicit(const mjModel* m) const noexcept {
   return options().implicit != Implicit::kNever && m->opt.integrator != mjINT_RK4;
 }
 
-// Whether an explicit step could not hold some site: by its friction, and by h^2 k/m of its patch
+// Whether an explicit step could not hold the site: by its friction, or by h^2 k/m of its patch
 // against displacements and turns, with the mass that MuJoCo knows of each body at its first pose.
-bool SceneContact::is_stiff(const mjModel* m, const Scratch& scratch) const noexcept {
+bool SceneContact::is_stiff(const mjModel* m, const PairContact& pair, const ContactReport& report,
+                            std::size_t site) const noexcept {
   if (options().implicit == Implicit::kAlways) return true;
   const double h = m->opt.timestep;
+  const InverseMass inverse = inverse_mass(m, pair.geoms);
+  // Beside native contacts an implicit step does more harm than chatter.
+  const Friction* friction = pair.laws.laws.friction.get();
+  if (friction && options().pairs != PairRule::kListed) {
+    if (shakes_bristles(pair, h)) return true;
+    if (friction->states().empty() && reverses_slip(report.sites[site], inverse, h)) return true;
+  }
+  if (h * h * pair.largest_rate < kPossibleNumber) return false;
+  const VolumeMetrics& metrics = report.sites[site].metrics;
+  const double k_v = report.inputs[site].normal_out.elastic / metrics.volume;
+  const double spread = 0.5 * metrics.inertia.trace() / metrics.volume;
+  const double stiffness = k_v * metrics.area_vector.norm();
+  return h * h * stiffness * (inverse.along + spread * inverse.about) > kStiffNumber;
+}
+
+bool SceneContact::find_stiff_sites(const mjModel* m, Scratch& scratch) const noexcept {
+  scratch.stiff.clear();
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    const ContactReport& report = scratch.reports[k];
-    if (report.sites.empty()) continue;
     const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
-    const InverseMass inverse = inverse_mass(m, pair.geoms);
-    // Beside native contacts an implicit step does more harm than chatter.
-    const Friction* friction = pair.laws.laws.friction.get();
-    if (friction && options().pairs != PairRule::kListed) {
-      if (shakes_bristles(pair, h)) return true;
-      for (const SiteReport& site : report.sites) {
-        if (friction->states().empty() && reverses_slip(site, inverse, h)) return true;
-      }
-    }
-    if (h * h * pair.largest_rate < kPossibleNumber) continue;
+    const ContactReport& report = scratch.reports[k];
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
-      const VolumeMetrics& metrics = report.sites[i].metrics;
-      const double k_v = report.inputs[i].normal_out.elastic / metrics.volume;
-      const double spread = 0.5 * metrics.inertia.trace() / metrics.volume;
-      const double stiffness = k_v * metrics.area_vector.norm();
-      if (h * h * stiffness * (inverse.along + spread * inverse.about) > kStiffNumber) return true;
+      scratch.stiff.push_back(is_stiff(m, pair, report, i) ? 1 : 0);
     }
   }
-  return false;
+  return std::find(scratch.stiff.begin(), scratch.stiff.end(), 1) != scratch.stiff.end();
 }
 
 void SceneContact::solve_implicit(const mjModel* m, mjData* d, Scratch& scratch) const noexcept {
   ImplicitStep& implicit = scratch.implicit;
   implicit.clear();
+  std::size_t site = 0;
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
     ContactReport& report = scratch.reports[k];
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
+      const bool is_stiff = scratch.stiff[site++] != 0;
       if (report.sites[i].normal.isZero(0.0)) continue;
       implicit.add(pair.model, report, i, m->geom_bodyid[pair.geoms.a],
-                   m->geom_bodyid[pair.geoms.b]);
+                   m->geom_bodyid[pair.geoms.b], is_stiff);
     }
   }
   if (implicit.empty()) return;

@@ -152,7 +152,7 @@ TEST_P(DenseStep, IsWhatMuJoCoDoes) {
     const VectorXd after = j * Eigen::Map<VectorXd>(d->qvel, nv);
     bool cut = false;
     for (std::size_t i = 0; i < sites.size(); ++i) {
-      const auto f = Eigen::Map<const VectorXd>(&step.forces()[6 * i], 6);
+      const auto& f = step.force(i);
       const VectorXd linear =
           step.constant(i) - step.slope(i) * after.segment(6 * static_cast<Eigen::Index>(i), 6);
       cut = cut || (f - linear).tail(3).norm() > 1e-9 * f.norm();
@@ -208,9 +208,11 @@ TEST(ImplicitStep, FormsForForcesAndForVelocitiesAgree) {
       {2, 1, {0.0, 0.02, 0.2}, basis_with_z(Vec3(0.1, 0.0, 1.0).normalized())},
       {4, 2, {0.05, 0.0, 0.3}, basis_with_z(Vec3::UnitZ())}};
   const std::vector<double> known(static_cast<std::size_t>(m->nv), 1.0);
+  ContactIslands islands;
+  islands.build(m.get(), places);
+  ASSERT_EQ(islands.count(), 1);
   ContactSpace space;
-  space.build(m.get(), d.get(), places, known.data());
-  ASSERT_TRUE(space.prefers_dofs());
+  space.build(m.get(), d.get(), places, islands, 0, known.data());
   ContactEquations equations;
   test::Random random(3);
   for (int first = 0; first < 18; first += 3) {
@@ -221,7 +223,7 @@ TEST(ImplicitStep, FormsForForcesAndForVelocitiesAgree) {
   }
   std::vector<double> force, velocity, other_force, other_velocity;
   equations.solve_for_dofs(space, 2e-3, force, velocity);
-  // Lambda, which the smaller form does without.
+  space.build_mobility();
   space.build_delassus();
   equations.solve_for_forces(space, 2e-3, other_force, other_velocity);
   const Eigen::Map<VectorXd> f(force.data(), 18), other(other_force.data(), 18);
@@ -254,6 +256,81 @@ TEST(ImplicitStep, SoftContactIsExplicitToTheBit) {
   for (int i = 0; i < with->nq; ++i) EXPECT_EQ(d->qpos[i], e->qpos[i]);
   for (int i = 0; i < with->nv; ++i) EXPECT_EQ(d->qvel[i], e->qvel[i]);
   EXPECT_LT(least, 0.05);  // it did touch
+}
+
+// A ball that an explicit step holds, and 3 m from it a box on the same floor that it does not.
+std::string ball_and_box(const std::string& mode, bool with_box) {
+  const std::string box =
+      "<body pos=\"3 0 .12\" euler=\"10 5 0\"><freejoint/><geom name=\"box\" type=\"box\" "
+      "size=\".1 .1 .1\" mass=\"3\"/></body>";
+  const auto material = [](const char* name, const char* stiffness, const char* geom) {
+    return testing::material(
+        name, {{"stiffness", stiffness}, {"damping", "0.3"}, {"friction", "0"}}, {geom});
+  };
+  return "<mujoco><option timestep=\"2e-3\"><flag energy=\"enable\"/></option><worldbody>"
+         "<geom name=\"floor\" type=\"plane\" size=\"9 9 .1\"/><body pos=\"0 0 .06\"><freejoint/>"
+         "<geom name=\"ball\" type=\"sphere\" size=\".05\" mass=\"2\"/></body>" +
+         (with_box ? box : "") + "</worldbody>" +
+         testing::numeric("volcontact/option/implicit/" + mode, "1") +
+         material("rock", "1e12", "floor") + material("foam", "3e6", "ball") +
+         (with_box ? material("steel", "1e12", "box") : "") + "</mujoco>";
+}
+
+TEST(ImplicitStep, SoftContactIsExplicitBesideStiff) {
+  const ModelPointer both = testing::load(ball_and_box("auto", true));
+  const ModelPointer alone = testing::load(ball_and_box("off", false));
+  const DataPointer d = testing::make_data(both), e = testing::make_data(alone);
+  const Attached attached(both), also(alone);
+  int together = 0;
+  for (int i = 0; i < 500; ++i) {
+    mj_step(both.get(), d.get());
+    mj_step(alone.get(), e.get());
+    const ImplicitStep& step = thread_scratch().implicit;
+    volcontact_site sites[2];
+    if (volcontact_sites(both.get(), d.get(), sites, 2) < 2) continue;
+    ++together;
+    EXPECT_NE(step.is_solved(0), step.is_solved(1));
+  }
+  EXPECT_GT(together, 100);
+  for (int i = 0; i < alone->nq; ++i) EXPECT_EQ(d->qpos[i], e->qpos[i]) << i;
+  for (int i = 0; i < alone->nv; ++i) EXPECT_EQ(d->qvel[i], e->qvel[i]) << i;
+}
+
+// What a body does depends on no contact of others that it does not touch.
+TEST(ImplicitStep, IslandsAreSolvedAsIfAlone) {
+  const ModelPointer both = testing::load(ball_and_box("on", true));
+  const ModelPointer alone = testing::load(ball_and_box("on", false));
+  const DataPointer d = testing::make_data(both), e = testing::make_data(alone);
+  const Attached attached(both), also(alone);
+  for (int i = 0; i < 500; ++i) {
+    mj_step(both.get(), d.get());
+    mj_step(alone.get(), e.get());
+  }
+  for (int i = 0; i < alone->nq; ++i) EXPECT_EQ(d->qpos[i], e->qpos[i]) << i;
+  for (int i = 0; i < alone->nv; ++i) EXPECT_EQ(d->qvel[i], e->qvel[i]) << i;
+}
+
+TEST(ImplicitStep, EnergyAccountClosesWhereSomeContactsAreExplicit) {
+  const ModelPointer m = testing::load(ball_and_box("auto", true));
+  m->opt.gravity[2] = 0.0;
+  const Attached attached(m);
+  const DataPointer d = testing::make_data(m);
+  d->qvel[2] = d->qvel[8] = -1.0;
+  double first = 0.0;
+  volcontact_energy e{};
+  bool mixed = false;
+  for (int i = 0; i < 60; ++i) {
+    mj_forward(m.get(), d.get());
+    ASSERT_EQ(volcontact_get_energy(m.get(), d.get(), &e), 0);
+    volcontact_site sites[2];
+    mixed = mixed || volcontact_sites(m.get(), d.get(), sites, 2) == 2;
+    double sum = d->energy[1] + e.elastic + e.numerical;
+    for (const double dissipated : e.dissipated) sum += dissipated;
+    if (i == 0) first = sum;
+    EXPECT_NEAR(sum, first, 1e-9 * std::max(first, e.elastic)) << i;
+    mj_step(m.get(), d.get());
+  }
+  EXPECT_TRUE(mixed);
 }
 
 TEST(ImplicitStep, SitesReportTheForcesThatAct) {

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "volcontact/base/types.h"
+
+namespace volcontact::adaptor {
+
+/// The lower triangle of a symmetric matrix, of each row what lies between its first entry that is
+/// not zero and the diagonal. A Cholesky factor fills no more, so bodies that do not touch cost
+/// each other nothing. Memory is reused from matrix to matrix.
+class EnvelopeMatrix {
+ public:
+  int size() const { return static_cast<int>(first_.size()); }
+
+  /// Sets all to zero; `first` has the first column of each row.
+  void reset(std::span<const int> first) {
+    first_.assign(first.begin(), first.end());
+    start_.resize(first.size());
+    std::ptrdiff_t count = 0;
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      start_[i] = count - first_[i];
+      count += static_cast<std::ptrdiff_t>(i) + 1 - first_[i];
+    }
+    numbers_.assign(static_cast<std::size_t>(count), 0.0);
+  }
+
+  int first(int i) const { return first_[static_cast<std::size_t>(i)]; }
+
+  /// Entry (i, j), first(i) <= j <= i.
+  double& operator()(int i, int j) { return numbers_[index(i, j)]; }
+  double operator()(int i, int j) const { return numbers_[index(i, j)]; }
+
+  /// Adds a matrix whose envelope is within that of this one.
+  void add(const EnvelopeMatrix& other) {
+    for (int i = 0; i < size(); ++i) {
+      for (int k = other.first(i); k <= i; ++k) (*this)(i, k) += other(i, k);
+    }
+  }
+
+  /// The Cholesky factor of a positive definite matrix, in place; its diagonal as inverses.
+  void factor() {
+    for (int i = 0; i < size(); ++i) {
+      const int begin = first(i);
+      for (int k = begin; k < i; ++k) {
+        const int from = std::max(begin, first(k));
+        double& entry = (*this)(i, k);
+        entry = (entry - dot(at(i, from), at(k, from), k - from)) * (*this)(k, k);
+      }
+      double& diagonal = (*this)(i, i);
+      diagonal = 1.0 / std::sqrt(diagonal - dot(at(i, begin), at(i, begin), i - begin));
+    }
+  }
+
+  /// After `factor`: solves for the unknowns begin ... end - 1, which no other row has entries
+  /// with, under `kSides` right sides. `x` has as many numbers for each of these unknowns, the
+  /// right sides at first.
+  template <int kSides = 1>
+  void solve(double* x, int begin, int end) const {
+    using Numbers = Eigen::Matrix<double, kSides, 1>;
+    const auto of = [&](int i) { return Eigen::Map<Numbers>(x + kSides * (i - begin)); };
+    for (int i = begin; i < end; ++i) {
+      const double* row = at(i, first(i));
+      Numbers sum = of(i);
+      for (int k = first(i); k < i; ++k) sum -= *row++ * of(k);
+      of(i) = *row * sum;
+    }
+    for (int i = end - 1; i >= begin; --i) {
+      const Numbers solved = (*this)(i, i) * of(i);
+      of(i) = solved;
+      const double* row = at(i, first(i));
+      for (int k = first(i); k < i; ++k) of(k) -= *row++ * solved;
+    }
+  }
+
+ private:
+  // In four sums, which the compiler makes side by side.
+  static double dot(const double* a, const double* b, int count) {
+    double sums[4] = {};
+    int i = 0;
+    for (; i + 4 <= count; i += 4) {
+      for (int k = 0; k < 4; ++k) sums[k] += a[i + k] * b[i + k];
+    }
+    for (; i < count; ++i) sums[0] += a[i] * b[i];
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  }
+
+  const double* at(int i, int j) const { return numbers_.data() + index(i, j); }
+  std::size_t index(int i, int j) const {
+    return static_cast<std::size_t>(start_[static_cast<std::size_t>(i)] + j);
+  }
+
+  std::vector<int> first_;
+  std::vector<std::ptrdiff_t> start_;  // where column 0 of each row would be
+  std::vector<double> numbers_;
+};
+
+}  // namespace volcontact::adaptor
