@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Programs that know nothing of volcontact, loaded together with it."""
 
+import importlib.util
 import os
 import re
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import mujoco
@@ -119,6 +121,31 @@ def test_library_in_a_plugin_folder_needs_no_variable(host, tmp_path):
     assert quiet[0] == 1
 
 
+def run_under_display(command, folder, **variables):
+    """Runs a program with windows for 8 s and returns what it wrote on standard error."""
+    environment = {**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1", "MUJOCO_GL": "glfw", **variables}
+    command = ["timeout", "8", "xvfb-run", "-a", *command]
+    ran = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
+    assert ran.returncode == 124, ran.stderr  # it ran until it was stopped
+    assert not (folder / "MUJOCO_LOG.TXT").exists()
+    return ran.stderr
+
+
+# The wheels carry no program of that name, but `simulate` as the module that the viewer runs.
+@pytest.mark.skipif(
+    importlib.util.find_spec("mujoco.viewer") is None or shutil.which("xvfb-run") is None,
+    reason="needs MuJoCo's viewer, and from Debian xvfb with xauth",
+)
+def test_simulate_of_the_wheel_takes_the_scene(tmp_path):
+    (tmp_path / "scene.xml").write_text(with_room(SCENE))
+    command = [sys.executable, "-m", "mujoco.viewer", "--mjcf=scene.xml"]
+    variables = {"VOLCONTACT_AUTO": "1"}
+    if int(mujoco.__version__.split(".")[0]) < 4:  # no entry point `mujoco.plugins`
+        variables["LD_PRELOAD"] = str(ADAPTOR)
+    said = run_under_display(command, tmp_path, **variables)
+    assert "the contact of model 'rubber ball' is volumetric" in said
+
+
 # Debian's, of package libmujoco-samples. Its library is the one that the wheel of 2.2.2 has too.
 SIMULATE = shutil.which("mujoco-simulate")
 
@@ -129,10 +156,6 @@ SIMULATE = shutil.which("mujoco-simulate")
 )
 def test_simulate_of_debian_takes_the_scene(tmp_path):
     (tmp_path / "scene.xml").write_text(with_room(SCENE))
-    command = ["timeout", "8", "xvfb-run", "-a", SIMULATE, tmp_path / "scene.xml"]
-    environment = {**os.environ, "LD_PRELOAD": str(ADAPTOR), "VOLCONTACT_AUTO": "1"}
-    environment["LIBGL_ALWAYS_SOFTWARE"] = "1"
-    ran = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
-    assert ran.returncode == 124, ran.stderr  # it ran until it was stopped
-    assert "the contact of model 'rubber ball' is volumetric" in ran.stderr
-    assert not (tmp_path / "MUJOCO_LOG.TXT").exists()
+    variables = {"LD_PRELOAD": str(ADAPTOR), "VOLCONTACT_AUTO": "1"}
+    said = run_under_display([SIMULATE, "scene.xml"], tmp_path, **variables)
+    assert "the contact of model 'rubber ball' is volumetric" in said
