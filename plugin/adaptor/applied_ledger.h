@@ -5,6 +5,11 @@
 
 namespace volcontact::adaptor {
 
+/// What is left where contact and user cancel to the last bit, as in equilibrium. A zero there
+/// could not be told from one that the user assigns; this number nobody does, and it moves nothing
+/// [N].
+inline constexpr double kCancelled = 1e-200;
+
 /// Adds `forces` to an array that the user writes as well and that MuJoCo never clears
 /// (qfrc_applied, xfrc_applied), without losing or accumulating anything.
 ///
@@ -18,7 +23,8 @@ inline void apply_beside_user(const UserdataBlock& block, int count, const doubl
   const bool known = block.ledger_is_valid();
   for (int i = 0; i < count; ++i) {
     if (!known || array[i] != left[i]) base[i] = array[i];
-    array[i] = left[i] = base[i] + forces[i];
+    const double sum = base[i] + forces[i];
+    array[i] = left[i] = sum == 0.0 && forces[i] != 0.0 ? kCancelled : sum;
   }
   block.set_ledger_valid();
 }

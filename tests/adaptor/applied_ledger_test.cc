@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 namespace volcontact::adaptor {
@@ -47,6 +48,19 @@ TEST_F(AppliedLedger, NothingIsLeftWhenContactEnds) {
   apply(0.1, 0.2);
   apply(0.0, 0.0);
   EXPECT_EQ(array, (std::vector<double>{10.0, 0.0}));
+}
+
+// In equilibrium contact and user cancel exactly; then the user takes the force away.
+TEST_F(AppliedLedger, ZeroIsAnAssignmentAlsoWhereTheSumWasZero) {
+  array = {6.0, 0.0};
+  apply(-6.0, 0.0);
+  EXPECT_LT(std::abs(array[0]), 1e-100);
+  EXPECT_EQ(array[1], 0.0);  // no contact, no trace
+  apply(-6.0, 0.0);
+  EXPECT_EQ(block.base()[0], 6.0);  // not assigned: it stays
+  array[0] = 0.0;
+  apply(-1.0, 0.0);
+  EXPECT_EQ(array[0], -1.0);
 }
 
 TEST_F(AppliedLedger, ReleaseLeavesWhatIsTheUsers) {
