@@ -89,12 +89,15 @@ class ReferenceSolid {
                                 Vec3& x);
   bool has_torus() const;
 
+  /// Keeps in `worst` how far x is outside of the face that it is farthest outside of [m], and the
+  /// gradient there, where that is more than `worst` was.
+  void cut_at(const Vec3& x, double& worst, Vec3& gradient) const;
+
  private:
   enum class Kind { kPiece, kTorus, kCapsule, kUnion, kIntersection, kDifference };
   static ReferenceSolid joined(Kind kind, const ReferenceSolid& a, const ReferenceSolid& b);
   ReferenceSpans piece_column(double u, double v) const;
   ReferenceSpans torus_column(double u, double v) const;
-  void cut_at(const Vec3& x, double& worst, Vec3& gradient) const;
   void invert();
 
   Kind kind_ = Kind::kPiece;
