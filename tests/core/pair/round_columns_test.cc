@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/support/evaluated.h"
 #include "core/support/gradient.h"
 #include "core/support/matchers.h"
@@ -250,6 +252,20 @@ TEST(RoundColumns, BothOrdersAgree) {
     const Pose X_AB{test::turn(Vec3(1.0, -2.0, 0.5), 0.9), Vec3(0.25, 0.3, 1.1)};
     const Interference one = evaluated(mesh, b, X_AB), other = evaluated(b, mesh, X_AB.inverse());
     EXPECT_TRUE(test::same(transformed(reversed(other.total), X_AB), one.total, {1e-6, 1.0}));
+  }
+}
+
+// Faces along the axis cut the wall in straight lines, which leave no slivers; beside the columns
+// straight below the faces the rod bulges.
+TEST(RoundColumns, FacesAlongTheAxisSeeTheBulgeBelowThem) {
+  const Mesh plate = mesh_of(box_soup(Vec3(.25, .35, .3), 8));
+  const Cylinder rod({.radius = .3, .half_length = .25});
+  const double segment = .09 * std::acos(.25 / .3) - .25 * std::sqrt(.09 - .0625);
+  const double volume = .5 * (kPi * .09 - 2.0 * segment);
+  for (const double y : {0.0, .05, .04}) {
+    const Interference out = evaluated(plate, rod, shifted(0.0, y, 0.0));
+    EXPECT_EQ(out.engine, Engine::kColumns);
+    EXPECT_NEAR(out.total.volume, volume, 1e-5 * volume) << y;
   }
 }
 

@@ -181,7 +181,14 @@ class FaceCut {
   // Appends the points of the arc after p, before q, and the slivers that they leave, none of them
   // larger than `most` where halving can help it.
   void add_arc(const Arc& arc, double most, int halvings) {
-    if (!(arc.sag > 0.0)) return;
+    if (!(arc.sag > 0.0)) {
+      // No sliver beside a straight line of the round face, but the outline runs there.
+      if (s_.has_axis && arc.chord() > 0.0) {
+        const Vec3 middle = 0.5 * (arc.p + arc.q);
+        pieces_.slivers.push_back({middle, Vec3::Zero(), middle, face_});
+      }
+      return;
+    }
     const double area = 2.0 / 3.0 * arc.chord() * arc.sag;
     if (area > most && halvings < kMostHalvings) {
       add_arc(arc_between(arc.p, arc.tip), most, halvings + 1);
