@@ -28,6 +28,13 @@ class EnvelopeMatrix {
       count += static_cast<std::ptrdiff_t>(i) + 1 - first_[i];
     }
     numbers_.assign(static_cast<std::size_t>(count), 0.0);
+    last_.resize(first.size());
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      last_[i] = static_cast<int>(i);
+      int& last = last_[static_cast<std::size_t>(first_[i])];
+      last = std::max(last, static_cast<int>(i));
+    }
+    for (std::size_t k = 1; k < last_.size(); ++k) last_[k] = std::max(last_[k], last_[k - 1]);
   }
 
   int first(int i) const { return first_[static_cast<std::size_t>(i)]; }
@@ -43,17 +50,19 @@ class EnvelopeMatrix {
     }
   }
 
-  /// The Cholesky factor of a positive definite matrix, in place; its diagonal as inverses.
+  /// The Cholesky factor of a positive definite matrix, in place; its diagonal as inverses. Column
+  /// by column, whose entries do not wait for each other.
   void factor() {
-    for (int i = 0; i < size(); ++i) {
-      const int begin = first(i);
-      for (int k = begin; k < i; ++k) {
-        const int from = std::max(begin, first(k));
+    for (int k = 0; k < size(); ++k) {
+      const double* const pivot = at(k, first(k));
+      double& diagonal = (*this)(k, k);
+      diagonal = 1.0 / std::sqrt(diagonal - dot(pivot, pivot, k - first(k)));
+      for (int i = k + 1; i <= last_[static_cast<std::size_t>(k)]; ++i) {
+        if (first(i) > k) continue;
+        const int from = std::max(first(i), first(k));
         double& entry = (*this)(i, k);
-        entry = (entry - dot(at(i, from), at(k, from), k - from)) * (*this)(k, k);
+        entry = (entry - dot(at(i, from), at(k, from), k - from)) * diagonal;
       }
-      double& diagonal = (*this)(i, i);
-      diagonal = 1.0 / std::sqrt(diagonal - dot(at(i, begin), at(i, begin), i - begin));
     }
   }
 
@@ -79,15 +88,16 @@ class EnvelopeMatrix {
   }
 
  private:
-  // In four sums, which the compiler makes side by side.
-  static double dot(const double* a, const double* b, int count) {
-    double sums[4] = {};
-    int i = 0;
-    for (; i + 4 <= count; i += 4) {
-      for (int k = 0; k < 4; ++k) sums[k] += a[i + k] * b[i + k];
+  // In two sums, side by side; rows are short.
+  static double dot(const double* a, const double* b, std::ptrdiff_t count) {
+    double even = 0.0, odd = 0.0;
+    std::ptrdiff_t i = 0;
+    for (; i + 2 <= count; i += 2) {
+      even += a[i] * b[i];
+      odd += a[i + 1] * b[i + 1];
     }
-    for (; i < count; ++i) sums[0] += a[i] * b[i];
-    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+    if (i < count) even += a[i] * b[i];
+    return even + odd;
   }
 
   const double* at(int i, int j) const { return numbers_.data() + index(i, j); }
@@ -96,6 +106,7 @@ class EnvelopeMatrix {
   }
 
   std::vector<int> first_;
+  std::vector<int> last_;              // the last row that begins at or before each column
   std::vector<std::ptrdiff_t> start_;  // where column 0 of each row would be
   std::vector<double> numbers_;
 };
