@@ -57,8 +57,8 @@ void unknown_part(SceneKey key, std::size_t part, const std::vector<std::string>
   const std::string stem = key.stem(part) + (part ? "/" : "");
   std::string message =
       key.text + ": unknown key; after '" + stem + "' comes one of " + joined(words);
-  const std::string word = part < key.parts.size() ? key.parts[part] : "";
-  const std::string nearest = nearest_spelling(word, words);
+  const std::string nearest =
+      part < key.parts.size() ? nearest_spelling(key.parts[part], words) : "";
   if (!nearest.empty()) {
     key.parts[part] = nearest;
     message += " (did you mean '" + key.stem(key.parts.size()) + "'?)";

@@ -36,5 +36,11 @@ TEST(SceneKey, UnknownPartOffersTheNearest) {
   EXPECT_TRUE(contains(message, "did you mean 'volcontact/option/threads'?"));
 }
 
+TEST(SceneKey, AMissingPartIsNamed) {
+  const auto key = parse_key("volcontact/option/implicit");
+  const std::string message = message_of([&] { unknown_part(*key, 2, {"on", "off", "auto"}); });
+  EXPECT_TRUE(contains(message, "after 'volcontact/option/implicit/' comes one of on, off, auto"));
+}
+
 }  // namespace
 }  // namespace volcontact::adaptor
