@@ -21,7 +21,9 @@ constexpr double kRoundRim = 2.0;     // longest by shortest way to the rim; the
 constexpr double kMostTurn = 0.5;  // of the columns towards the normal of the rim; more: no normal
 constexpr double kAligned = 0.1;   // a turn after which the next one would be too small to matter
 constexpr double kWhole = 0.999;   // share of a solid in the overlap, that is all of it
-constexpr double kLeastSeen = 1e-9;   // of the smaller solid: an overlap not to be missed
+// Of the smaller solid. An overlap of 1e-9 is not to be missed, and from a far corner of a thin one
+// the window sees a small part of it.
+constexpr double kLeastSeen = 1e-12;
 constexpr int kLeastArcs = 4;         // where no corners are known
 constexpr double kWidestAngle = 2.3;  // of an arc between corners [rad]
 
