@@ -46,7 +46,6 @@ OTHERS = ("MuJoCo", "Drake, hydroelastic", "Drake, point", "manifold3d, boolean,
 SCENES = (
     "battery box, seated",
     "pile of 20 boxes, at rest",
-    "20 boxes on a floor",
     "18 boxes apart",
 )
 
