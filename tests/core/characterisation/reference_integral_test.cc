@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/support/common_point.h"
 #include "core/support/contact_poses.h"
 #include "core/support/csg_solids.h"
 #include "core/support/evaluated.h"

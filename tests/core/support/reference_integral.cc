@@ -6,6 +6,8 @@
 #include <map>
 #include <vector>
 
+#include "core/support/common_point.h"
+
 namespace volcontact::test {
 namespace {
 

@@ -83,10 +83,7 @@ class ReferenceSolid {
   /// differences are left, so that every term is convex but for tori.
   std::vector<ReferenceTerm> terms() const;
 
-  /// A point within both where there is one: false when none is, or for tori. Both are terms,
-  /// within `range` of the origin. The volume that can be missed is 1e-12 of the range's cube.
-  friend bool find_common_point(const ReferenceSolid& a, const ReferenceSolid& b, double range,
-                                Vec3& x);
+  /// Whether a torus is among its members, which keeps a term from being convex.
   bool has_torus() const;
 
   /// Keeps in `worst` how far x is outside of the face that it is farthest outside of [m], and the
