@@ -182,6 +182,15 @@ TEST(ReferenceSolid, FindsAPointOfThinOverlaps) {
   }
 }
 
+// The search begins at the origin; in a face of both no chord goes through it.
+TEST(CommonPoint, IsFoundFromAPlaceInAFace) {
+  const ReferenceSolid ball = reference_solid(Sphere({.radius = 0.2}));
+  const ReferenceSolid box = reference_solid(Box({.half_sizes = Vec3(0.5, 0.5, 0.5)}));
+  Vec3 x;
+  ASSERT_TRUE(find_common_point(box, ball.posed({Mat3::Identity(), Vec3(0.0, 0.2, 0.0)}), 1.0, x));
+  EXPECT_LT((x - Vec3(0.0, 0.2, 0.0)).norm(), 0.2);
+}
+
 TEST(ContactPoses, ShallowPosesOverlapAndTheSurfaceNormalsAreOpposed) {
   Random random(6);
   const Example &ball = examples()[1], &box = examples()[6];
