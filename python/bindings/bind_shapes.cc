@@ -143,6 +143,16 @@ A half-space may be a member; where the solid stays unbounded it can only meet b
 
 using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
+// nanobind changes the numbers of NumPy's own arrays alone, not those of types derived from them.
+template <typename Rows>
+Rows rows_from(const nb::object& array, const char* message) {
+  Rows rows;
+  if (!nb::try_cast(nb::module_::import_("numpy").attr("asarray")(array), rows)) {
+    throw nb::type_error(message);
+  }
+  return rows;
+}
+
 void bind_mesh(nb::module_& m) {
   nb::class_<Mesh> type(
       m, "Mesh", R"(Solid 'mesh': the inside of a closed oriented triangle mesh, in its own frame.
@@ -152,7 +162,11 @@ vertices are welded. A mesh that is inside out as a whole is turned: see `turned
 overlap each other count twice.)");
   type.def(
       "__init__",
-      [](Mesh* self, const Vertices& vertices, const Triangles& faces) {
+      [](Mesh* self, const nb::object& given_vertices, const nb::object& given_faces) {
+        const auto vertices = rows_from<Vertices>(
+            given_vertices, "mesh: vertices must be an array of numbers, shape (n, 3)");
+        const auto faces = rows_from<Triangles>(
+            given_faces, "mesh: faces must be an array of whole numbers, shape (m, 3)");
         std::vector<Vec3> points;
         std::vector<Triangle> triangles;
         for (Eigen::Index i = 0; i < vertices.rows(); ++i) points.push_back(vertices.row(i));
@@ -162,6 +176,9 @@ overlap each other count twice.)");
         new (self) Mesh(points, triangles);
       },
       nb::arg("vertices"), nb::arg("faces"),
+      nb::sig("def __init__(self, vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, "
+              "3), order='C')], faces: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), "
+              "order='C')]) -> None"),
       "vertices [m], shape (n, 3); faces: indices of vertices from 0, counterclockwise seen from "
       "outside, shape (m, 3). Raises ValueError when they bound no solid, and says where");
   def_solid(type);

@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+import trimesh
 from numpy.typing import NDArray
 
 import volcontact as vc
@@ -120,6 +121,18 @@ def test_mesh_tells_what_it_is() -> None:
     assert vc.Mesh(vertices, faces[:, ::-1]).turned
     low, high = mesh.bounds
     assert np.allclose(high, vertices.max(axis=0)) and np.allclose(low, vertices.min(axis=0))
+
+
+def test_mesh_takes_arrays_derived_from_those_of_numpy() -> None:
+    """As those of trimesh, whose indices are of 64 bits."""
+    box = trimesh.creation.box((0.2, 0.2, 0.2))
+    assert type(box.faces) is not np.ndarray and box.faces.dtype == np.int64
+    assert vc.Mesh(box.vertices, box.faces).own_metrics().volume == pytest.approx(0.008)
+    assert vc.Mesh(box.vertices.tolist(), box.faces.tolist()).faces.shape == (12, 3)
+    with pytest.raises(TypeError, match=r"mesh: faces must be .* shape \(m, 3\)"):
+        vc.Mesh(box.vertices, box.faces[:, :2])
+    with pytest.raises(TypeError, match=r"mesh: vertices must be .* shape \(n, 3\)"):
+        vc.Mesh(box.vertices[:, :2], box.faces)
 
 
 def test_surface_that_bounds_no_solid_is_refused() -> None:
