@@ -16,7 +16,7 @@ language = "en"
 extensions = ["myst_parser", "sphinx.ext.githubpages"]
 include_patterns = [
     "*.md",
-    "docs/*.md",
+    "docs/**.md",
     "plugin/**.md",
     "mjcf_models/**.md",
     "python/examples/*.md",
@@ -51,6 +51,22 @@ SECTIONS = {
         "docs/components",
         "docs/meshes",
         "mjcf_models/README",
+    ],
+    "Engines": [
+        f"docs/engines/{name}" for name in ("closed_form", "clip", "lines", "columns", "octree")
+    ],
+    "Laws": [
+        f"docs/laws/{name}"
+        for name in (
+            "volume_spring",
+            "hunt_crossley",
+            "regularized_coulomb",
+            "bristle",
+            "coupling",
+            "rolling",
+            "gonthier",
+            "potential",
+        )
     ],
     "In MuJoCo and elsewhere": [
         "docs/plugin",

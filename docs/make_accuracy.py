@@ -101,7 +101,7 @@ def _number(row: Row, key: str) -> float | None:
     return float(row[key]) if row[key] else None
 
 
-def _short(value: float | None) -> str:
+def short(value: float | None) -> str:
     """One digit: 3e-7. Rounding counts as none."""
     if value is None:
         return "-"
@@ -129,14 +129,14 @@ def _is_beyond(row: Row, key: str) -> bool:
 
 
 def _cell(row: Row, key: str) -> str:
-    text = _short(_number(row, key))
+    text = short(_number(row, key))
     return f"**{text}**" if _is_beyond(row, key) else text
 
 
 def _pair_of_cells(row: Row, name: str) -> str:
     if not row[f"{name}_median"]:
         return "-"
-    return f"{_short(_number(row, f'{name}_median'))} / {_cell(row, f'{name}_worst')}"
+    return f"{short(_number(row, f'{name}_median'))} / {_cell(row, f'{name}_worst')}"
 
 
 def _table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
@@ -168,8 +168,8 @@ def _summary(rows: list[Row], engines: list[str]) -> str:
         held = sum(int(row["bounds_held"]) for row in mine)
         times = [float(row["microseconds"]) for row in mine]
         spreads = [
-            f"{_short(_over(mine, f'{name}_median', median))} / "
-            f"{_short(_over(mine, f'{name}_worst', max))}"
+            f"{short(over(mine, f'{name}_median', median))} / "
+            f"{short(over(mine, f'{name}_worst', max))}"
             for name in SPREADS
         ]
         lines.append(
@@ -178,7 +178,7 @@ def _summary(rows: list[Row], engines: list[str]) -> str:
                 str(len(mine)),
                 str(poses),
                 *spreads,
-                _short(_over(mine, "noise", median)),
+                short(over(mine, "noise", median)),
                 f"{100 * held / poses:.3g} %",
                 str(sum(int(row["missed"]) for row in mine)),
                 f"{_time(min(times))} to {_time(max(times))}",
@@ -190,7 +190,8 @@ def _summary(rows: list[Row], engines: list[str]) -> str:
     )
 
 
-def _over(rows: list[Row], key: str, function: Callable[[list[float]], float]) -> float | None:
+def over(rows: list[Row], key: str, function: Callable[[list[float]], float]) -> float | None:
+    """A function of all numbers of a column; None where there are none."""
     values = [float(row[key]) for row in rows if row[key]]
     return function(values) if values else None
 
@@ -247,8 +248,8 @@ def _weak(rows: list[Row], search: dict[str, Any]) -> str:
                         row["a"],
                         row["b"],
                         SPREADS[name],
-                        _short(_number(row, f"{name}_median")),
-                        _short(_number(row, f"{name}_worst")),
+                        short(_number(row, f"{name}_median")),
+                        short(_number(row, f"{name}_worst")),
                     ]
                     for _, row, name in shown
                 ),
@@ -273,8 +274,8 @@ def _solids(rows: list[Row]) -> str:
 def _section(engine: str, rows: list[Row]) -> str:
     answered = [row for row in rows if int(row["poses"])]
     header = ["A - B", "poses", *SPREADS.values(), "noise", "bound", "missed", "µs"]
-    limits = [_short(_limit(engine, f"{name}_worst")) for name in SPREADS]
-    lines = [["*limit of the worst*", "", *limits, _short(LIMITS[engine]["noise"]), "", "0", ""]]
+    limits = [short(_limit(engine, f"{name}_worst")) for name in SPREADS]
+    lines = [["*limit of the worst*", "", *limits, short(LIMITS[engine]["noise"]), "", "0", ""]]
     by_pair = {(row["a"], row["b"]): row for row in answered}
     for (a, b), row in by_pair.items():
         other = by_pair.get((b, a))
@@ -380,7 +381,7 @@ are of these. {search["undecided"]} it could not decide.
                 f"`{row['engine']}`",
                 row["kind"],
                 *(str(row[key]) for key in ("poses", "overlapping", "compared")),
-                *(_short(row.get(part)) for part in parts),
+                *(short(row.get(part)) for part in parts),
             ]
             for row in rows
         ),

@@ -13,10 +13,11 @@ from pathlib import Path
 from volcontact import Friction, NormalForce, _volcontact
 
 PAGE = Path(__file__).with_name("components.md")
+PAGES = "laws"  # the folder of the pages of the laws
 
-_FIELD = re.compile(r"^    (\w+) \[(.+?)\]: (.+?)(, shape \(3,\))?; (.+)$", re.MULTILINE)
-_CHOICE = re.compile(r"^    (\w+): (.+?); one of (.+)$", re.MULTILINE)
-_NAME = re.compile(r"'(\w+)'")
+FIELD = re.compile(r"^    (\w+) \[(.+?)\]: (.+?)(, shape \(3,\))?; (.+)$", re.MULTILINE)
+CHOICE = re.compile(r"^    (\w+): (.+?); one of (.+)$", re.MULTILINE)
+NAME = re.compile(r"'(\w+)'")
 
 _INTRODUCTION = """\
 # Components
@@ -30,17 +31,35 @@ error that names the component, the field, the unit and the range.
 
 def render() -> str:
     """The whole page as Markdown text."""
+    parts = [_INTRODUCTION]
+    for title, members in groups().items():
+        parts.append(f"## {title}\n")
+        parts += [_section(component) for component in members]
+    return "\n".join(parts)
+
+
+def groups() -> dict[str, list[type]]:
+    """The compiled components, by kind."""
     components = [item for item in vars(_volcontact).values() if isinstance(item, type)]
-    groups = {
+    return {
         "Normal laws": [c for c in components if _is_derived(c, NormalForce)],
         "Friction laws": [c for c in components if _is_derived(c, Friction)],
         "Solids": [c for c in components if hasattr(c, "own_metrics")],
     }
-    parts = [_INTRODUCTION]
-    for title, members in groups.items():
-        parts.append(f"## {title}\n")
-        parts += [_section(component) for component in members]
-    return "\n".join(parts)
+
+
+def name_of(component: type) -> str:
+    """Its name in MJCF and C++."""
+    name = NAME.search(component.__doc__ or "")
+    if name is None:
+        raise ValueError(f"{component.__name__}: the docstring does not name the component")
+    return name[1]
+
+
+def laws() -> dict[str, type]:
+    """The compiled laws, by name."""
+    kinds = groups()
+    return {name_of(law): law for law in kinds["Normal laws"] + kinds["Friction laws"]}
 
 
 def _is_derived(component: type, base: type) -> bool:
@@ -49,21 +68,19 @@ def _is_derived(component: type, base: type) -> bool:
 
 
 def _section(component: type) -> str:
-    doc = component.__doc__ or ""
-    name = _NAME.search(doc)
-    if name is None:
-        raise ValueError(f"{component.__name__}: the docstring does not name the component")
+    doc, name = component.__doc__ or "", name_of(component)
+    page = f"[What it does]({PAGES}/{name}.md). " if name in laws() else ""
     defaults = None if hasattr(component, "own_metrics") else component()
     rows = []
-    for field, unit, meaning, vector, allowed in _FIELD.findall(doc):
+    for field, unit, meaning, vector, allowed in FIELD.findall(doc):
         size = " (3 numbers)" if vector else ""
-        default = "" if defaults is None else _number(getattr(defaults, field))
+        default = "" if defaults is None else number(getattr(defaults, field))
         rows.append((f"`{field}`", unit, meaning + size, allowed, default))
-    for field, meaning, words in _CHOICE.findall(doc):
-        allowed = ", ".join(f"`{word}`" for word in _NAME.findall(words))
+    for field, meaning, words in CHOICE.findall(doc):
+        allowed = ", ".join(f"`{word}`" for word in NAME.findall(words))
         default = "" if defaults is None else f"`{getattr(defaults, field)}`"
         rows.append((f"`{field}`", "", meaning, allowed, default))
-    return f"### `{name.group(1)}`\n\nPython: `{component.__name__}`\n\n" + _table(
+    return f"### `{name}`\n\n{page}Python: `{component.__name__}`\n\n" + _table(
         rows, with_defaults=defaults is not None, signature=component.__init__.__doc__ or ""
     )
 
@@ -78,7 +95,7 @@ def _table(rows: list[tuple[str, ...]], *, with_defaults: bool, signature: str) 
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
-def _number(value: float) -> str:
+def number(value: float) -> str:
     """As people write it: 1e7, not 1e+07."""
     return re.sub(r"e([+-])0*", lambda exponent: "e" + exponent.group(1).strip("+"), f"{value:g}")
 

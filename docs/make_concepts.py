@@ -88,9 +88,9 @@ def engines() -> Drawn:
     for axes, title in zip(panels, ("lines", "columns", "octree"), strict=True):
         draw_section(axes, a, b, x, z)
         axes.set_title(title, family="monospace", fontsize=10)
-    _rays(panels[0], a, b)
-    _chords(panels[1], at)
-    _cells(panels[2], lambda u, v: max(a(u, v), b(u, v)), (x[0], -0.04), x[1] - x[0], 6)
+    draw_rays(panels[0], a, b)
+    draw_chords(panels[1], at)
+    draw_cells(panels[2], lambda u, v: max(a(u, v), b(u, v)), (x[0], -0.04), x[1] - x[0], 6)
     for axes in panels:
         axes.set(xlim=x, ylim=z)
     return figure, [vc.interference(box, ball, at).volume]
@@ -103,7 +103,8 @@ def _column(a: Distance, b: Distance, x: float) -> tuple[float, float]:
     return (inside[0], inside[-1]) if inside else (0.0, 0.0)
 
 
-def _rays(axes: Axes, a: Distance, b: Distance) -> None:
+def draw_rays(axes: Axes, a: Distance, b: Distance) -> None:
+    """The overlap on the nodes of a Gauss rule."""
     nodes = 0.005 + 0.043 * np.polynomial.legendre.leggauss(9)[0]
     for x in nodes:
         low, high = _column(a, b, x)
@@ -111,7 +112,7 @@ def _rays(axes: Axes, a: Distance, b: Distance) -> None:
             axes.plot([x, x], [low, high], color=INK, lw=1.2)
 
 
-def _chords(axes: Axes, at: np.ndarray) -> None:
+def draw_chords(axes: Axes, at: np.ndarray) -> None:
     """The same ball as a mesh: a column under each edge, the sum exact for the triangles."""
     angle = np.linspace(0.0, 2.0 * np.pi, 25)
     rim = at[[0, 2]] @ np.array(
@@ -123,7 +124,9 @@ def _chords(axes: Axes, at: np.ndarray) -> None:
             axes.plot([x, x], [z, 0.04], color=INK, lw=1.2)
 
 
-def _cells(axes: Axes, both: Distance, corner: tuple[float, float], size: float, left: int) -> None:
+def draw_cells(
+    axes: Axes, both: Distance, corner: tuple[float, float], size: float, left: int
+) -> None:
     """Cells that are certainly inside or outside are not divided."""
     middle = both(corner[0] + size / 2, corner[1] + size / 2)
     reach = size * np.sqrt(0.5)
@@ -135,7 +138,7 @@ def _cells(axes: Axes, both: Distance, corner: tuple[float, float], size: float,
     for i in (0, 1):
         for j in (0, 1):
             low = corner[0] + i * size / 2, corner[1] + j * size / 2
-            _cells(axes, both, low, size / 2, left - 1)
+            draw_cells(axes, both, low, size / 2, left - 1)
 
 
 def normal_law() -> Drawn:

@@ -12,6 +12,7 @@ import textwrap
 from pathlib import Path
 
 import make_comparison
+import make_component_pages
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure as Canvas
@@ -142,9 +143,10 @@ def _draw(plot: Plot, file: Path) -> None:
 
 
 def main() -> None:
-    """Writes the page, and the one that takes figures from it."""
+    """Writes the page, and those that take figures from it."""
     PAGE.write_text(render(), encoding="utf-8")
     make_comparison.main()
+    make_component_pages.main()
 
 
 if __name__ == "__main__":

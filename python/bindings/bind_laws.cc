@@ -15,7 +15,8 @@ namespace nb = nanobind;
 
 template <typename Law, typename Base>
 void bind_law(nb::module_& m, const char* what) {
-  const std::string doc = std::string(what) + " '" + Law::kName + "'." + describe_fields<Law>();
+  const std::string doc = std::string(what) + " '" + Law::kName + "'." + describe_fields<Law>() +
+                          describe_states<Law>();
   nb::class_<Law, Base> type(m, camel_case(Law::kName).c_str(), doc.c_str());
   detail::def_law_init<Law, Base>(type, std::make_index_sequence<Law::kFields.size()>{},
                                   std::make_index_sequence<detail::choice_count<Law>()>{});

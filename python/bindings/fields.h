@@ -51,6 +51,19 @@ std::string describe_fields() {
   return text.empty() ? text : "\n\nArgs:" + text;
 }
 
+/// One line a state that a law keeps for each contact site: name, unit, meaning.
+template <typename Law>
+std::string describe_states() {
+  std::string text;
+  if constexpr (requires { Law::kStates; }) {
+    for (const auto& state : Law::kStates) {
+      text += std::string("\n    ") + state.name + " [" + state.unit + "]: " + state.meaning +
+              (state.size() == 3 ? ", shape (3,)" : "");
+    }
+  }
+  return text.empty() ? text : "\n\nKeeps, for each contact site:" + text;
+}
+
 namespace detail {
 
 template <typename Component, std::size_t I>

@@ -810,6 +810,9 @@ class HuntCrossley(NormalForce):
         damping [s/m]: a, relative rise of the force per approach speed; >= 0
         restitution [-]: e, in place of damping: a from the speed at first touch; > 0 and <= 1
         restitution_speed_floor [m/s]: slower impacts are damped as if they had this speed; > 0
+
+    Keeps, for each contact site:
+        impact_speed [m/s]: v_n at first touch, 0 before
     """
 
     def __init__(self, *, stiffness: float = 10000000.0, damping: float = 0.0, restitution: float = 1.0, restitution_speed_floor: float = 0.01) -> None: ...
@@ -881,6 +884,11 @@ class Bristle(Friction):
         stribeck_speed [m/s]: v_s, where sticking gives way to sliding; > 0
         dwell_time [s]: tau_dw, in which friction at rest grows to mu_S; > 0
         coupling: how sliding and spinning share the friction; one of 'ellipsoid' 'quadrature' 'none'
+
+    Keeps, for each contact site:
+        deflection [m]: of the bristles along the plane, shape (3,)
+        twist [m]: deflection of the spin, at the radius r_g
+        dwell [-]: how much of the rise to mu_S is there, 0 to 1
     """
 
     def __init__(self, *, friction: float = 0.2, static_friction: float = 0.2, bristle_stiffness: float = 100000.0, bristle_damping: float = 500.0, viscous_friction: float = 0.0, stribeck_speed: float = 0.01, dwell_time: float = 0.1, coupling: str = 'ellipsoid') -> None: ...

@@ -19,7 +19,7 @@ import volcontact as vc
 from volcontact.cli import make_parser
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = [ROOT / "README.md", ROOT / "plugin" / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", ROOT / "plugin" / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 SOURCES = [
     path
     for folder in ("plugin", "python", "tests")
@@ -130,6 +130,37 @@ def test_pictures_of_the_concepts_show_what_the_core_computes(
         assert f"<dc:source>{module.digest(draw()[1])}</dc:source>" in picture, (
             "run './run python docs/make_concepts.py'"
         )
+
+
+def test_every_engine_and_law_has_a_page() -> None:
+    words, laws = generator("make_mjcf_keys").words_after, generator("make_components").laws()
+    engines = {path.stem for path in (ROOT / "docs" / "engines").glob("*.md")}
+    assert engines == set(words("options", "engine")) - {"auto"}
+    pages = {path.stem for path in (ROOT / "docs" / "laws").glob("*.md")}
+    choices = {"coupling", "rolling"}  # of every pair, whatever its laws
+    assert pages == set(laws) | choices | set(words("options", "formulation"))
+
+
+def test_pages_of_engines_and_laws_say_what_the_code_and_the_results_say(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    module = generator("make_component_pages")
+    command = "run './run python docs/make_component_pages.py'"
+    for page in module.pages():
+        text = page.read_text(encoding="utf-8")
+        assert text == module.render(text), f"{page.name}: {command}"
+        assert f"]({page.stem}.svg)" in text or "](formulations.svg)" in text, page.name
+    monkeypatch.setattr("concepts_sections.POINTS", 20)  # the test looks at numbers alone
+    for name, draw in module.PICTURE.items():
+        picture = (module.DOCS / f"{name}.svg").read_text(encoding="utf-8")
+        assert f"<dc:source>{module.digest(draw()[1])}</dc:source>" in picture, command
+
+
+def test_times_on_the_pages_of_the_engines_are_all_there_are() -> None:
+    """Every pair of the performance page is some engine's, and what that engine is."""
+    module = generator("component_blocks")
+    titles = [title for timed in module.TIMED.values() for title in timed]
+    assert sorted(titles) == sorted(asked.title for asked in module.ASKED)
 
 
 def test_accuracy_page_is_generated_from_the_results() -> None:

@@ -15,7 +15,7 @@ import volcontact as vc
 
 ROOT = Path(__file__).parents[2]
 PUBLIC = [name for name in vc.__all__ if not name.startswith("_")]
-PAGES = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
+PAGES = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
 
 
 def members(name):
