@@ -99,13 +99,16 @@ def is_served(engine: str, a: str, b: str) -> bool:
 
 def pairs(engine: str) -> str:
     """Which solids an engine serves with which, and where it is the one that `auto` takes."""
-    rows = []
+    alike: dict[tuple[str, str], list[str]] = {}
     for a in SOLIDS:
-        partners = [b for b in SOLIDS if (a, b) in chosen() and is_served(engine, a, b)]
-        first = [b for b in partners if chosen()[a, b] == engine]
-        if partners:
-            others = ", ".join(b for b in partners if b not in first)
-            rows.append((a, ", ".join(first), others))
+        known = [b for b in SOLIDS if (a, b) in chosen()]
+        served = [b for b in known if is_served(engine, a, b)]
+        first = [b for b in served if chosen()[a, b] == engine]
+        asked = [b for b in served if b not in first]
+        if served:
+            others = "all others" if served == known else ", ".join(asked)
+            alike.setdefault((", ".join(first), others if asked else ""), []).append(a)
+    rows = [(", ".join(solids), *cells) for cells, solids in alike.items()]
     return table(("solid", "`auto` takes it with", "serves also, when asked for, with"), rows)
 
 
