@@ -7,6 +7,7 @@
 
 #include "adaptor/applied_ledger.h"
 #include "adaptor/scene_contact.h"
+#include "adaptor/scene_key.h"
 #include "volcontact/base/check.h"
 
 namespace volcontact::adaptor {
@@ -46,6 +47,11 @@ double number_of(const PairLaws& laws, std::string_view name, double otherwise) 
   return otherwise;
 }
 
+// What explicit steps hold: h^2 k/m of an undamped spring, h c/m of a damper. Of both Euler's,
+// which take the velocity first, hold h^2 k/m + 2 h c/m = 4.
+constexpr double kEulerSpring = 4.0, kEulerDamper = 2.0;
+constexpr double kRungeKuttaSpring = 8.0, kRungeKuttaDamper = 2.785;
+
 // The mass at the patch is that of a solid ball: 1/m and 5/2 of it for the arm.
 constexpr double kBall = 3.5;
 
@@ -53,26 +59,54 @@ constexpr double kBall = 3.5;
 // slide or spin now: h c > 2 m, with c the friction per slip. Once the slip is so small they would
 // chatter for ever.
 bool reverses_slip(const SiteReport& site, const InverseMass& inverse, double h) {
-  constexpr double kLimit = 2.0;
   const double across = (site.force_on_A - site.normal_force * site.normal).norm();
-  if (h * across * kBall * inverse.along > kLimit * site.slip.norm()) return true;
+  if (h * across * kBall * inverse.along > kEulerDamper * site.slip.norm()) return true;
   const double torque = std::abs(site.torque_on_A.dot(site.normal));
-  return h * torque * inverse.about > kLimit * std::abs(site.spin);
+  return h * torque * inverse.about > kEulerDamper * std::abs(site.spin);
 }
 
 // Whether bristles are too stiff for an explicit step: docs/theory.md, "Time step".
 bool shakes_bristles(const PairContact& pair, double h) {
-  constexpr double kLimit = 4.0;  // of a spring and damper
-  return h * (h * pair.bristle_rate + 2.0 * pair.bristle_damping_rate) > kLimit;
+  return h * (h * pair.bristle_rate + 2.0 * pair.bristle_damping_rate) > kEulerSpring;
 }
 
-// Of the solid's box, its largest face [m^2].
-double largest_face(const Shape& solid) {
+// Sides of the solid's box, the smallest first [m].
+std::array<double, 3> sides_of(const Shape& solid) {
   const auto bounds = bounds_of(solid);
   std::array<double, 3> sides{};
   for (int i = 0; i < 3; ++i) sides[static_cast<std::size_t>(i)] = bounds.max[i] - bounds.min[i];
   std::sort(sides.begin(), sides.end());
+  return sides;
+}
+double largest_face(const Shape& solid) {
+  const auto sides = sides_of(solid);
   return sides[1] * sides[2];
+}
+
+// What slides at a patch that lies under the middle of a solid's largest face: of its mass, and of
+// its inertia with the arm from there to the middle [1/kg].
+double inverse_sliding_mass(const mjModel* m, int geom, const Shape& solid) {
+  const mjtNum* inverse = m->body_invweight0 + 2 * m->geom_bodyid[geom];
+  if (inverse[0] == 0.0) return 0.0;
+  const double arm = 0.5 * sides_of(solid)[0];
+  return inverse[0] + inverse[1] * arm * arm;
+}
+
+// The longest explicit step under which friction lets the pair lie still, one upon the other [s].
+double longest_friction_step(const mjModel* m, const PairContact& pair, double inverse_mass,
+                             double weight) {
+  const bool is_rk4 = m->opt.integrator == mjINT_RK4;
+  const Friction& friction = *pair.laws.laws.friction;
+  if (friction.states().empty()) {
+    FrictionInput at_rest;
+    at_rest.normal_force = weight;
+    const double rate = friction.slope(at_rest, LawState{}).damping * inverse_mass;
+    return (is_rk4 ? kRungeKuttaDamper : kEulerDamper) / rate;
+  }
+  const double spring = number_of(pair.laws, "bristle_stiffness", 0.0) * inverse_mass;
+  const double damper = number_of(pair.laws, "bristle_damping", 0.0) * inverse_mass;
+  if (is_rk4) return std::min(std::sqrt(kRungeKuttaSpring / spring), kRungeKuttaDamper / damper);
+  return kEulerSpring / (damper + std::sqrt(damper * damper + kEulerSpring * spring));
 }
 
 }  // namespace
@@ -101,14 +135,34 @@ SceneContact::ImplicitUse SceneContact::implicit_use(const mjModel* m,
           std::sqrt(kPossibleNumber / pair.largest_rate)};
 }
 
+void SceneContact::warn_about_friction(const mjModel* m) {
+  if (may_be_implicit(m)) return;
+  const double gravity = Eigen::Map<const Vec3>(m->opt.gravity).norm();
+  for (const PairContact& pair : pairs_) {
+    const int a = pair.geoms.a, b = pair.geoms.b;
+    const double along = inverse_mass(m, pair.geoms).along;
+    if (!pair.laws.laws.friction || along == 0.0) continue;
+    const double inverse = inverse_sliding_mass(m, a, solids_[static_cast<std::size_t>(a)]) +
+                           inverse_sliding_mass(m, b, solids_[static_cast<std::size_t>(b)]);
+    const double longest = longest_friction_step(m, pair, inverse, gravity / along);
+    if (m->opt.timestep <= longest) continue;
+    warn_once("friction of geoms '" + label(m, mjOBJ_GEOM, a) + "' and '" +
+              label(m, mjOBJ_GEOM, b) +
+              "' shakes them at rest: explicit steps (integrator=\"RK4\" or "
+              "volcontact/option/implicit/off) hold it up to " +
+              number_text(longest) +
+              " s; use shorter ones, a larger slip_speed or softer bristles, or implicit contact");
+    return;
+  }
+}
+
 void SceneContact::check_integrator(const mjModel* m) {
   if (m->opt.integrator != mjINT_RK4 || options().implicit == Implicit::kNever) return;
   require(options().implicit != Implicit::kAlways,
           "volcontact/option/implicit/on does not go with integrator=\"RK4\", whose stages are "
           "explicit; use Euler, implicit or implicitfast, or implicit/off");
-  constexpr double kLimit = 8.0;  // of an undamped spring under RK4
   for (const PairContact& pair : pairs_) {
-    if (implicit_use(m, pair).largest_number < kLimit) continue;
+    if (implicit_use(m, pair).largest_number < kRungeKuttaSpring) continue;
     warn_once("geoms '" + label(m, mjOBJ_GEOM, pair.geoms.a) + "' and '" +
               label(m, mjOBJ_GEOM, pair.geoms.b) +
               "' may touch too stiffly for integrator=\"RK4\" at this time step, which no "

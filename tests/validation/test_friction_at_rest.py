@@ -6,6 +6,8 @@ of 1 mm/s that is every step above 0.2 ms, whatever the mass. Bristles are where
 damper are, as the default ones under a kilogram at 2 ms.
 """
 
+import re
+
 import mujoco
 import numpy as np
 import pytest
@@ -74,6 +76,45 @@ def test_thrown_body_comes_to_rest_on_bristles(mass):
     if mass == 1.0:  # lighter ones are implicit by their patch, or gone when they are not
         chattering, _, _ = thrown(step=2e-3, friction=0.5, mass=mass, law="bristle", implicit="off")
         assert chattering > 1e-3
+
+
+@pytest.mark.parametrize("law", ["regularized_coulomb", "bristle"])
+@pytest.mark.parametrize(("integrator", "implicit"), [("RK4", "auto"), ("Euler", "off")])
+@pytest.mark.parametrize("shape", ["box", "sphere"])
+def test_explicit_steps_shake_beyond_what_the_warning_says(integrator, implicit, law, shape):
+    """Pushed at 1 mm/s, or rolling at that: below the step named it rests, above it does not."""
+
+    def model_at(step):
+        text = SCENE.format(
+            step=step, friction=0.5, shape=shape, mass=1.0, implicit=implicit, law=law
+        )
+        model = vc.load(text)
+        model.opt.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}")
+        return model
+
+    with vc.attach(model_at(1e-2)) as contact:
+        (longest,) = (
+            float(found[1])
+            for warning in contact.description["warnings"]
+            if (found := re.search(r"hold it up to (\S+) s", warning))
+        )
+    slips = []
+    for factor in (0.8, 1.6):
+        model = model_at(factor * longest)
+        data = mujoco.MjData(model)
+        data.qpos[:] = 0.0, 0.0, 0.0499, 1.0, 0.0, 0.0, 0.0
+        data.qvel[0] = 1e-3
+        with vc.attach(model) as contact:
+            told = any("shakes them at rest" in text for text in contact.description["warnings"])
+            assert told == (factor > 1.0)
+            mujoco.mj_step(model, data, round(3.8 / model.opt.timestep))
+            slip = 0.0
+            for _ in range(round(0.2 / model.opt.timestep)):
+                mujoco.mj_step(model, data)
+                slip = max(slip, abs(data.qvel[0] - 0.05 * data.qvel[4]))
+            slips.append(slip)
+    assert slips[0] < 3e-5  # a ball still rolls
+    assert slips[1] > 1e-4
 
 
 def creep(law, mass):
