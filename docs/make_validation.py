@@ -11,8 +11,8 @@ import sys
 import textwrap
 from pathlib import Path
 
+import make_blocks
 import make_comparison
-import make_component_pages
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure as Canvas
@@ -146,7 +146,7 @@ def main() -> None:
     """Writes the page, and those that take figures from it."""
     PAGE.write_text(render(), encoding="utf-8")
     make_comparison.main()
-    make_component_pages.main()
+    make_blocks.main()
 
 
 if __name__ == "__main__":

@@ -139,17 +139,23 @@ def test_every_engine_and_law_has_a_page() -> None:
     pages = {path.stem for path in (ROOT / "docs" / "laws").glob("*.md")}
     choices = {"coupling", "rolling"}  # of every pair, whatever its laws
     assert pages == set(laws) | choices | set(words("options", "formulation"))
+    module = generator("make_blocks")
+    named = {path.name for path in module.pages()}
+    for name in engines | pages:
+        assert f"{name}.md" in named, f"{name}.md has no block from the code or the results"
+    shown = "".join(page.read_text("utf-8") for page in module.pages())
+    for picture in module.PICTURE:
+        assert f"]({Path(picture).name}.svg)" in shown, picture
 
 
-def test_pages_of_engines_and_laws_say_what_the_code_and_the_results_say(
+def test_blocks_of_pages_say_what_the_code_and_the_results_say(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    module = generator("make_component_pages")
-    command = "run './run python docs/make_component_pages.py'"
+    module = generator("make_blocks")
+    command = "run './run python docs/make_blocks.py'"
     for page in module.pages():
         text = page.read_text(encoding="utf-8")
         assert text == module.render(text), f"{page.name}: {command}"
-        assert f"]({page.stem}.svg)" in text or "](formulations.svg)" in text, page.name
     monkeypatch.setattr("concepts_sections.POINTS", 20)  # the test looks at numbers alone
     for name, draw in module.PICTURE.items():
         picture = (module.DOCS / f"{name}.svg").read_text(encoding="utf-8")
@@ -158,7 +164,7 @@ def test_pages_of_engines_and_laws_say_what_the_code_and_the_results_say(
 
 def test_times_on_the_pages_of_the_engines_are_all_there_are() -> None:
     """Every pair of the performance page is some engine's, and what that engine is."""
-    module = generator("component_blocks")
+    module = generator("page_blocks")
     titles = [title for timed in module.TIMED.values() for title in timed]
     assert sorted(titles) == sorted(asked.title for asked in module.ASKED)
 

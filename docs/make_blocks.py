@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fills the pages of engines and laws, docs/engines and docs/laws, and draws their pictures.
+"""Fills the blocks of pages, as of those of engines and laws, and draws the pictures of these.
 
 The text of a page is written by hand. Between `<!-- block: argument -->` and `<!-- end -->` stands
-what the code and the tables of results have to say: `component_blocks.py` has the blocks. Run
-`./run python docs/make_component_pages.py` after a change of a law, of results or of these pages.
+what the code and the tables of results have to say: `page_blocks.py` has the blocks. Run
+`./run python docs/make_blocks.py` after a change of a law, of results or of these pages.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ import re
 from pathlib import Path
 
 import matplotlib
-from component_blocks import BLOCK
-from component_pictures import PICTURE
 from make_concepts import digest
+from page_blocks import BLOCK
+from page_pictures import PICTURE
 from performance_plots import STYLE
 
 DOCS = Path(__file__).parent
@@ -22,8 +22,9 @@ _BLOCK = re.compile(r"(<!-- (\w+): (.+?) -->)\n.*?(<!-- end -->)", re.DOTALL)
 
 
 def pages() -> list[Path]:
-    """All of them."""
-    return sorted([*(DOCS / "engines").glob("*.md"), *(DOCS / "laws").glob("*.md")])
+    """Those that have blocks."""
+    every = [*DOCS.glob("*.md"), *DOCS.glob("*/*.md")]
+    return sorted(page for page in every if _BLOCK.search(page.read_text(encoding="utf-8")))
 
 
 def render(text: str) -> str:

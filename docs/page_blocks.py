@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the pages of engines and laws have from the code and from the tables of results."""
+"""What pages have from the code and from the tables of results: a function each."""
 
 from __future__ import annotations
 
@@ -208,6 +208,28 @@ def validation(what: str) -> str:
     return table(("case", "figure", "unit", "expected", "measured", "error"), rows)
 
 
+# ---- Packages ------------------------------------------------------------------------------------
+
+
+def wheels(_: str) -> str:
+    """Which wheel was tried with which MuJoCo."""
+    rows = read("wheels")
+    depth = {row["depth_um"] for row in rows}
+    pythons = sorted({row["python"] for row in rows}, key=lambda tag: int(tag[3:]))
+    releases = sorted({row["mujoco"] for row in rows}, key=lambda r: [int(n) for n in r.split(".")])
+    lines = []
+    for release in releases:
+        how = {row["python"]: row["adaptor"] for row in rows if row["mujoco"] == release}
+        lines.append((release, *(how.get(python, "") for python in pythons)))
+    platform = {row["platform"] for row in rows}
+    head = ("MuJoCo", *(f"CPython {tag[2]}.{tag[3:]}" for tag in pythons))
+    return (
+        f"Platform `{', '.join(sorted(platform))}`; the box came to rest {', '.join(sorted(depth))} um deep in all "
+        "of them. Where a field is empty that MuJoCo\nhas no package for that Python, or was not tried.\n\n"
+        + table(head, lines)
+    )
+
+
 BLOCK: dict[str, Callable[[str], str]] = {
     "pairs": pairs,
     "accuracy": accuracy,
@@ -216,4 +238,5 @@ BLOCK: dict[str, Callable[[str], str]] = {
     "states": states,
     "words": words,
     "validation": validation,
+    "wheels": wheels,
 }
