@@ -224,9 +224,9 @@ def wheels(_: str) -> str:
     platform = {row["platform"] for row in rows}
     head = ("MuJoCo", *(f"CPython {tag[2]}.{tag[3:]}" for tag in pythons))
     return (
-        f"Platform `{', '.join(sorted(platform))}`; the box came to rest {', '.join(sorted(depth))} um deep in all "
-        "of them. Where a field is empty that MuJoCo\nhas no package for that Python, or was not tried.\n\n"
-        + table(head, lines)
+        f"Platform `{', '.join(sorted(platform))}`; the box came to rest "
+        f"{', '.join(sorted(depth))} um deep in all of them. Where a field is empty that MuJoCo\n"
+        "has no package for that Python, or was not tried.\n\n" + table(head, lines)
     )
 
 
