@@ -99,8 +99,8 @@ def beside_simbody() -> str:
         "The last column is processor time of a simulated second at rest, and its steps: Simbody's integrator, with error control, chooses them.\n\n"  # noqa: E501
         "| what | of | figure | error | time, steps |\n| --- | --- | --- | --- | --- |\n"
         + "\n".join(lines)
-        + "\n\n`regularized_coulomb` bears explicit steps of 0.12 ms here ([time step](theory.md#time-step)). In steps of 1 ms the slip changes\n"  # noqa: E501
-        "sign sideways, and the cube creeps faster than its slip speed: take `bristle`, a larger slip speed or shorter steps.\n"  # noqa: E501
+        + "\n\n`regularized_coulomb` bears explicit steps of 0.12 ms here ([time step](theory.md#time-step)). Steps of 1 ms are implicit, and friction\n"  # noqa: E501
+        "near the cone comes out weaker in them than the law says: take `bristle`, a larger slip speed or shorter steps.\n"  # noqa: E501
     )
 
 

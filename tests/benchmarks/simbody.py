@@ -202,7 +202,7 @@ def ours() -> list[Row]:
     depth, _, cost = run_ours(box, HALF, CUBE_STIFFNESS, 0.0, "bristle")
     rows.append(Row(CUBE_DEPTH, "volcontact", "", "m", rest_of_the_cube(), depth, cost, 1000))
     slope = math.atan(SHARE * FRICTION)
-    # An explicit step bears this friction up to 0.12 ms; beyond, the slip changes sign sideways.
+    # An explicit step bears this friction up to 0.12 ms; longer ones are implicit.
     for law, step in (
         ("bristle", 1e-3),
         ("regularized_coulomb", 1e-4),
