@@ -39,9 +39,9 @@ def measure() -> Case:
         "release, over what its case allows. Between one thread and two no bit differs. Beside it "
         "stands what a rounding makes, all masses larger by 1e-14: where this is as large, the "
         "motion is chaotic and no engine can do better. The octree runs at its default tolerance, "
-        "a thousandth of the volume, and for the ball in the cylinder at 5e-5: by default its normal "
-        "is tilted by 4e-5, and down such a slope a ball that rolls creeps at 0.3 mm/s, for as long "
-        "as the run goes on. "
+        "a thousandth of the volume, and for the ball in the cylinder at 5e-5: by default its "
+        "normal is tilted by 4e-5, and down such a slope a ball that rolls creeps at 0.3 mm/s, for "
+        "as long as the run goes on. "
         "Energy is not compared: the octree moves the tumbling box alike, but its account of "
         "elastic energy leaves out columns that end early, and closes to 8 %.",
     )
