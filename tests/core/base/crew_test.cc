@@ -3,14 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <thread>
 #include <vector>
 
 namespace volcontact {
 namespace {
 
 TEST(Crew, CallsEveryTaskOnce) {
-  for (int threads : {1, 2, 3, 4, 8, 16}) {
+  for (int threads : {1, 2, 3, 4, 8, 16, 70}) {  // of 70 some have no share of their own
     for (int grain : {1, 7, 1000}) {
       Crew crew;
       std::vector<std::atomic<int>> calls(1003);
@@ -47,6 +49,30 @@ TEST(Crew, ALoopEndsWithTheLastOfItsTasks) {
       for (int i = 0; i < 500; ++i) ASSERT_EQ(two[i], round + 499 - i);
     }
   });
+}
+
+// Whoever has much to do is helped.
+TEST(Crew, NobodyWaitsWhileOthersHaveTasksLeft) {
+  Crew crew;
+  std::vector<std::atomic<int>> calls(200);
+  crew.run(4, [&] {
+    crew.for_each(200, 1, [&](int i) {
+      if (i == 0) {  // all others are done by those who do not hang on this one
+        while (std::count(calls.begin() + 1, calls.end(), 1) < 199) std::this_thread::yield();
+      }
+      ++calls[i];
+    });
+  });
+  EXPECT_EQ(calls[0].load(), 1);
+}
+
+TEST(Crew, RunsAgain) {
+  Crew crew;
+  std::vector<int> calls(100, 0);
+  for (int run = 0; run < 50; ++run) {
+    crew.run(1 + run % 5, [&] { crew.for_each(100, 3, [&](int i) { ++calls[i]; }); });
+  }
+  for (const int count : calls) EXPECT_EQ(count, 50);
 }
 
 TEST(Crew, IsOpenDuringItsProgramOnly) {
