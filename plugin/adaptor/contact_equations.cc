@@ -75,7 +75,7 @@ void ContactEquations::add_slope(const ContactSpace& space, int place, double st
         const ContactSpace::Block column = other.col(i - to.begin);
         const int begin = std::max(from.begin, matrix_.first(i)), end = std::min(from.end, i + 1);
         for (int k = begin; k < end; ++k) {
-          matrix_(i, k) += column.dot(response.col(k - from.begin));
+          matrix_.add_both(i, k, column.dot(response.col(k - from.begin)));
         }
       }
     }
@@ -92,8 +92,8 @@ void ContactEquations::solve_for_dofs(const ContactSpace& space, double step,
     slopes_[size(column.first / kRows)].block<3, 3>(at, at).noalias() +=
         column.numbers * column.numbers.transpose();
   }
-  matrix_.reset(space.envelope());
-  matrix_.add(space.mass());
+  matrix_.reset(space.envelope(), space.matrix().is_symmetric());
+  matrix_.add(space.matrix());
   // What the contacts would bear at the velocities of now.
   force.assign(constant.begin(), constant.end());
   velocity.resize(size(rows));

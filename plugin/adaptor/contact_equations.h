@@ -21,7 +21,8 @@ struct ContactEquations {
 
   /// Writes f and u'. In the form that is the smaller one: for the forces,
   /// (1 + h L' Lambda L) y = L' (u_free + h Lambda e), f = e - L y, or for the velocities,
-  /// (Mh + h J' C J) dv = h (t + J' (e - C u)).
+  /// (H + h J' C J) dv = h (t + J' (e - C u)), the only one where H is not symmetric or joins
+  /// trees.
   void solve(const ContactSpace& space, double step, std::vector<double>& force,
              std::vector<double>& velocity) noexcept;
 

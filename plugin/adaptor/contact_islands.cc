@@ -31,23 +31,26 @@ void ContactIslands::find_trees(const mjModel* m) {
 }
 
 // The neighbours of each tree, one after the other; itself for a place that it has alone.
-void ContactIslands::link(const mjModel* m, std::span<const ContactPlace> places) {
+void ContactIslands::link(const mjModel* m, std::span<const ContactPlace> places,
+                          std::span<const std::pair<int, int>> joined) {
   ends_.clear();
-  link_begin_.assign(trees_.size() + 2, 0);
+  pairs_.clear();
   for (const ContactPlace& place : places) {
-    const std::pair<int, int> ends(tree_of(m, place.body_a), tree_of(m, place.body_b));
-    ends_.push_back(ends);
-    const int a = ends.first == kNone ? ends.second : ends.first;
-    const int b = ends.second == kNone ? ends.first : ends.second;
-    if (a == kNone) continue;
+    const auto& [a, b] = ends_.emplace_back(tree_of(m, place.body_a), tree_of(m, place.body_b));
+    if (a != kNone || b != kNone) pairs_.emplace_back(a == kNone ? b : a, b == kNone ? a : b);
+  }
+  for (const auto& [a, b] : joined) {
+    const int tree_a = tree_of(m, m->dof_bodyid[a]), tree_b = tree_of(m, m->dof_bodyid[b]);
+    if (tree_a != tree_b) pairs_.emplace_back(tree_a, tree_b);
+  }
+  link_begin_.assign(trees_.size() + 2, 0);
+  for (const auto& [a, b] : pairs_) {
     ++link_begin_[size(a) + 2];
     ++link_begin_[size(b) + 2];
   }
   for (std::size_t i = 2; i < link_begin_.size(); ++i) link_begin_[i] += link_begin_[i - 1];
   links_.resize(size(link_begin_.back()));
-  for (const auto& [first, second] : ends_) {
-    const int a = first == kNone ? second : first, b = second == kNone ? first : second;
-    if (a == kNone) continue;
+  for (const auto& [a, b] : pairs_) {
     links_[size(link_begin_[size(a) + 1]++)] = b;
     links_[size(link_begin_[size(b) + 1]++)] = a;
   }
@@ -107,9 +110,10 @@ void ContactIslands::sort_places() {
   }
 }
 
-void ContactIslands::build(const mjModel* m, std::span<const ContactPlace> places) noexcept {
+void ContactIslands::build(const mjModel* m, std::span<const ContactPlace> places,
+                           std::span<const std::pair<int, int>> joined) noexcept {
   find_trees(m);
-  link(m, places);
+  link(m, places, joined);
   islands_.clear();
   ordered_trees_.clear();
   seen_.assign(trees_.size(), 0);
@@ -135,6 +139,11 @@ std::span<const DofRange> ContactIslands::trees(int island) const {
 std::pair<int, int> ContactIslands::trees_of(int place) const {
   const auto [a, b] = ends_[size(place)];
   return {a == kNone ? kNone : rank_[size(a)], b == kNone ? kNone : rank_[size(b)]};
+}
+
+int ContactIslands::island_of(const mjModel* m, int dof) const {
+  const int tree = tree_of(m, m->dof_bodyid[dof]);
+  return tree == kNone ? kNone : island_of_[size(tree)];
 }
 
 }  // namespace volcontact::adaptor

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "adaptor/mujoco_compat.h"
@@ -31,7 +32,10 @@ struct DofRange {
 /// places is between them; what does not move joins nothing. Memory is reused from call to call.
 class ContactIslands {
  public:
-  void build(const mjModel* m, std::span<const ContactPlace> places) noexcept;
+  /// `joined`: pairs of degrees of freedom that something else joins. An island may have trees of
+  /// that alone and no place.
+  void build(const mjModel* m, std::span<const ContactPlace> places,
+             std::span<const std::pair<int, int>> joined = {}) noexcept;
 
   int count() const { return static_cast<int>(islands_.size()); }
   /// Indices of the places of an island, ascending.
@@ -42,6 +46,8 @@ class ContactIslands {
   /// Where the trees of a place are in that list: of body a, of body b; negative when it does not
   /// move.
   std::pair<int, int> trees_of(int place) const;
+  /// The island of a degree of freedom; negative when nothing joins or touches its tree.
+  int island_of(const mjModel* m, int dof) const;
 
  private:
   struct Island {
@@ -52,16 +58,18 @@ class ContactIslands {
   };
   int tree_of(const mjModel* m, int body) const;
   void find_trees(const mjModel* m);
-  void link(const mjModel* m, std::span<const ContactPlace> places);
+  void link(const mjModel* m, std::span<const ContactPlace> places,
+            std::span<const std::pair<int, int>> joined);
   void visit_from(int tree);
   void add_island(int tree);
   void sort_places();
 
   std::vector<DofRange> trees_;
-  std::vector<int> tree_of_root_;          // by root body
-  std::vector<std::pair<int, int>> ends_;  // of each place, its two trees or negative
-  std::vector<int> link_begin_, links_;    // neighbours of each tree
-  std::vector<int> queue_;                 // of one search through neighbours
+  std::vector<int> tree_of_root_;           // by root body
+  std::vector<std::pair<int, int>> ends_;   // of each place, its two trees or negative
+  std::vector<std::pair<int, int>> pairs_;  // of trees that are linked
+  std::vector<int> link_begin_, links_;     // neighbours of each tree
+  std::vector<int> queue_;                  // of one search through neighbours
   std::vector<char> seen_;
   std::vector<int> island_of_, rank_;  // of each tree; its place in the island
   std::vector<DofRange> ordered_trees_;

@@ -12,34 +12,6 @@ std::size_t size(int count) { return static_cast<std::size_t>(count); }
 
 }  // namespace
 
-// Numbers for the degrees of freedom of an island, and the envelope of their masses: each has
-// inertia in common with those it carries and with those that carry it.
-void ContactSpace::number_dofs(const mjModel* m, std::span<const DofRange> trees) noexcept {
-  trees_.clear();
-  dofs_.clear();
-  numbers_.resize(size(static_cast<int>(m->nv)));
-  limits_.resize(numbers_.size());
-  for (const DofRange& tree : trees) {
-    const int begin = static_cast<int>(dofs_.size());
-    for (int dof = tree.end - 1; dof >= tree.begin; --dof) {
-      numbers_[size(dof)] = static_cast<int>(dofs_.size());
-      dofs_.push_back(dof);
-    }
-    trees_.push_back({begin, static_cast<int>(dofs_.size())});
-    for (int dof = tree.begin; dof < tree.end; ++dof) limits_[size(dof)] = dof;
-    for (int dof = tree.end - 1; dof >= tree.begin; --dof) {
-      const int parent = m->dof_parentid[dof];
-      if (parent < 0) continue;
-      limits_[size(parent)] = std::max(limits_[size(parent)], limits_[size(dof)]);
-    }
-  }
-  mass_envelope_.resize(dofs_.size());
-  for (std::size_t i = 0; i < dofs_.size(); ++i) {
-    mass_envelope_[i] = numbers_[size(limits_[size(dofs_[i])])];
-  }
-  envelope_ = mass_envelope_;
-}
-
 // Adds the motion that each degree of freedom beyond the world gives the body at the place.
 void ContactSpace::add_body(const mjModel* m, const mjData* d, const ContactPlace& place, int body,
                             double sign, const Side& side) noexcept {
@@ -53,13 +25,13 @@ void ContactSpace::add_body(const mjModel* m, const mjData* d, const ContactPlac
     const Vec3 turn = to_site * angular;
     const Vec3 way = to_site * (vec3_at(d->cdof, 2 * dof + 1) + angular.cross(offset));
     const double column[kRows] = {way[2], turn[0], turn[1], way[0], way[1], turn[2]};
-    double* to = columns + kRows * (numbers_[size(dof)] - side.begin);
+    double* to = columns + kRows * (matrix_.number(dof) - side.begin);
     for (int i = 0; i < kRows; ++i) to[i] += column[i];
   }
 }
 
 ContactSpace::Side ContactSpace::add_side(int tree) noexcept {
-  const DofRange& range = trees_[size(tree)];
+  const DofRange& range = matrix_.tree(tree);
   const std::size_t start = jacobian_.size();
   jacobian_.resize(start + size(kRows * range.size()), 0.0);
   return {range.begin, range.end, static_cast<std::ptrdiff_t>(start)};
@@ -102,25 +74,18 @@ void ContactSpace::widen_envelope(std::size_t place) noexcept {
   }
 }
 
-void ContactSpace::make_mass(const mjModel* m, const mjData* d) noexcept {
-  mass_.reset(mass_envelope_);
-  const double damping = damps_implicitly(m) ? m->opt.timestep : 0.0;
-  for (int i = 0; i < dofs(); ++i) {
-    const int dof = dofs_[size(i)];
-    for_row_of_mass(m, d, dof, [&](int other, double mass) {
-      mass_(numbers_[size(other)], i) = mass;  // those that carry it come after it
-    });
-    mass_(i, i) += damping * m->dof_damping[dof];
-  }
-}
-
 void ContactSpace::build_mobility() noexcept {
-  response_ = jacobian_;
   mobility_.resize(sides_.size());
+  if (!matrix_.is_by_trees()) {
+    prefers_dofs_ = true;
+    for (int place = 0; place < static_cast<int>(sides_.size()); ++place) respond(place);
+    return;
+  }
+  response_ = jacobian_;
   for (std::size_t place = 0; place < sides_.size(); ++place) {
     mobility_[place].setZero();
     for (const Side& side : sides(static_cast<int>(place))) {
-      factor_.solve<kRows>(&response_[at(side)], side.begin, side.end);
+      matrix_.factor().solve<kRows>(&response_[at(side)], side.begin, side.end);
       const Rows moves = jacobian(side), responds = response(side);
       for (int i = 0; i < side.size(); ++i) {
         mobility_[place].noalias() += moves.col(i) * responds.col(i).transpose();
@@ -135,6 +100,23 @@ void ContactSpace::build_mobility() noexcept {
   const double all = rows();
   prefers_dofs_ = work <= all * all * all / 2.0;  // as measured
   if (!prefers_dofs_) build_delassus();
+}
+
+// The mobility of one place, where what it moves moves other trees.
+void ContactSpace::respond(int place) noexcept {
+  response_.assign(size(kRows * dofs()), 0.0);
+  for (const Side& side : sides(place)) {
+    std::copy_n(&jacobian_[at(side)], kRows * side.size(), &response_[size(kRows * side.begin)]);
+  }
+  matrix_.factor().solve<kRows>(response_.data(), 0, dofs());
+  const Rows responds(response_.data(), kRows, dofs());
+  mobility_[size(place)].setZero();
+  for (const Side& side : sides(place)) {
+    const Rows moves = jacobian(side);
+    for (int i = 0; i < side.size(); ++i) {
+      mobility_[size(place)].noalias() += moves.col(i) * responds.col(side.begin + i).transpose();
+    }
+  }
 }
 
 void ContactSpace::build_delassus() noexcept {
@@ -181,35 +163,45 @@ void ContactSpace::move(const std::vector<double>& f, std::vector<double>& u) no
   generalized_.assign(size(dofs()), 0.0);
   add_load(f.data(), generalized_.data());
   for (double& load : generalized_) load *= step_;
-  factor_.solve(generalized_.data(), 0, dofs());
+  matrix_.factor().solve(generalized_.data(), 0, dofs());
   std::copy(free_.begin(), free_.end(), u.begin());
   add_motion(generalized_.data(), u.data());
 }
 
-void ContactSpace::build(const mjModel* m, mjData* d, std::span<const ContactPlace> places,
-                         const ContactIslands& islands, int island, const double* known) noexcept {
+void ContactSpace::accelerate(const std::vector<double>& f, std::vector<double>& a) noexcept {
+  generalized_ = known_;
+  add_load(f.data(), generalized_.data());
+  for (double& load : generalized_) load *= step_;
+  matrix_.factor().solve(generalized_.data(), 0, dofs());
+  matrix_.to_acceleration(generalized_, step_);
+  for (int i = 0; i < dofs(); ++i) a[size(matrix_.dofs()[size(i)])] = generalized_[size(i)];
+}
+
+void ContactSpace::build(const mjModel* m, mjData* d, Damping damping,
+                         std::span<const ContactPlace> places, const ContactIslands& islands,
+                         int island, const NativeConstraints& constraints,
+                         const double* known) noexcept {
   step_ = m->opt.timestep;
-  number_dofs(m, islands.trees(island));
+  matrix_.build(m, d, damping, islands.trees(island), constraints);
+  envelope_.assign(matrix_.envelope().begin(), matrix_.envelope().end());
   sides_.clear();
   side_count_.clear();
   jacobian_.clear();
-  known_.resize(dofs_.size());
+  known_.resize(size(matrix_.size()));
   for (const int place : islands.places(island)) {
     add_place(m, d, places[size(place)], islands.trees_of(place));
     widen_envelope(sides_.size() - 1);
   }
-  make_mass(m, d);
-  factor_ = mass_;
-  factor_.factor();
-  generalized_.resize(dofs_.size());
-  for (std::size_t i = 0; i < dofs_.size(); ++i) {
-    known_[i] = known[dofs_[i]];
-    generalized_[i] = d->qvel[dofs_[i]];
+  generalized_.resize(known_.size());
+  for (std::size_t i = 0; i < known_.size(); ++i) {
+    const int dof = matrix_.dofs()[i];
+    known_[i] = known[dof] + matrix_.load()[i];
+    generalized_[i] = d->qvel[dof];
   }
   velocity_.assign(size(rows()), 0.0);
   add_motion(generalized_.data(), velocity_.data());
-  for (std::size_t i = 0; i < dofs_.size(); ++i) generalized_[i] = step_ * known_[i];
-  factor_.solve(generalized_.data(), 0, dofs());
+  for (std::size_t i = 0; i < known_.size(); ++i) generalized_[i] = step_ * known_[i];
+  matrix_.factor().solve(generalized_.data(), 0, dofs());
   free_ = velocity_;
   add_motion(generalized_.data(), free_.data());
 }

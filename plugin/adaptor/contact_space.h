@@ -7,17 +7,13 @@
 #include <vector>
 
 #include "adaptor/contact_islands.h"
-#include "adaptor/envelope_matrix.h"
+#include "adaptor/step_matrix.h"
 
 namespace volcontact::adaptor {
 
 /// What one step of MuJoCo makes of forces at the contact places of an island: u' = u_free + h
-/// Lambda f, with u = J v, Lambda = J Mh^-1 J' and u_free = u + h J Mh^-1 t. Mh is what the
-/// integrator divides by: M, or M + h B with the damping B of the degrees of freedom. Memory is
-/// reused from step to step.
-///
-/// The degrees of freedom have numbers of their own, tree by tree, in each the last one first: then
-/// the limbs of a tree are apart in the matrices.
+/// Lambda f, with u = J v, Lambda = J H^-1 J' and u_free = u + h J H^-1 t. H is the matrix of the
+/// step: step_matrix.h. Memory is reused from step to step.
 class ContactSpace {
  public:
   static constexpr int kRows = 6;  ///< of a place
@@ -26,7 +22,7 @@ class ContactSpace {
   /// A row a coordinate of the place, a column a degree of freedom of one tree.
   using Rows = Eigen::Map<const Eigen::Matrix<double, kRows, Eigen::Dynamic>>;
 
-  /// What a place has to do with one tree: columns begin ... end - 1 of J and of J Mh^-1.
+  /// What a place has to do with one tree: columns begin ... end - 1 of J and of J H^-1.
   struct Side {
     int begin = 0;
     int end = 0;
@@ -35,10 +31,11 @@ class ContactSpace {
     int size() const { return end - begin; }
   };
 
-  /// `known`: t, all generalized forces but those at the places, nv numbers. Uses the mass matrix
-  /// and the positions that are current in `d`.
-  void build(const mjModel* m, mjData* d, std::span<const ContactPlace> places,
-             const ContactIslands& islands, int island, const double* known) noexcept;
+  /// `known`: t, all generalized forces but those at the places and of constraints, nv numbers.
+  /// Uses the mass matrix and the positions that are current in `d`, and what make_damping() left.
+  void build(const mjModel* m, mjData* d, Damping damping, std::span<const ContactPlace> places,
+             const ContactIslands& islands, int island, const NativeConstraints& constraints,
+             const double* known) noexcept;
 
   int rows() const { return static_cast<int>(sides_.size()) * kRows; }
   int dofs() const { return static_cast<int>(known_.size()); }
@@ -49,13 +46,13 @@ class ContactSpace {
   }
   Rows jacobian(const Side& side) const { return {&jacobian_[at(side)], kRows, side.size()}; }
   Rows response(const Side& side) const { return {&response_[at(side)], kRows, side.size()}; }
-  /// Mh.
-  const EnvelopeMatrix& mass() const { return mass_; }
-  /// The first column of each row of Mh + J' C J, whatever C is.
+  /// H.
+  const EnvelopeMatrix& matrix() const { return matrix_.matrix(); }
+  /// The first column of each row of H + J' C J, whatever C is.
   std::span<const int> envelope() const { return envelope_; }
   /// Whether it is cheaper to solve for the velocities of the degrees of freedom than for forces.
   bool prefers_dofs() const { return prefers_dofs_; }
-  /// Makes J Mh^-1 and what is made of it: `mobility`, and `delassus` where it is of use.
+  /// Makes J H^-1 and what is made of it: `mobility`, and `delassus` where it is of use.
   void build_mobility() noexcept;
   void build_delassus() noexcept;
   /// Lambda.
@@ -69,29 +66,28 @@ class ContactSpace {
   Eigen::Map<const Eigen::VectorXd> free_velocity() const { return {free_.data(), rows()}; }
   /// u' under the forces f.
   void move(const std::vector<double>& f, std::vector<double>& u) noexcept;
+  /// The acceleration that MuJoCo's solver finds under the forces f, into those of the nv numbers
+  /// that are of the island.
+  void accelerate(const std::vector<double>& f, std::vector<double>& a) noexcept;
   /// Adds J' f to numbers by degree of freedom, and J x to those by row.
   void add_load(const double* f, double* load) const noexcept;
   void add_motion(const double* x, double* u) const noexcept;
 
  private:
   std::size_t at(const Side& side) const { return static_cast<std::size_t>(side.start); }
-  void number_dofs(const mjModel* m, std::span<const DofRange> trees) noexcept;
   void add_place(const mjModel* m, const mjData* d, const ContactPlace& place,
                  std::pair<int, int> trees) noexcept;
   Side add_side(int tree) noexcept;
   void add_body(const mjModel* m, const mjData* d, const ContactPlace& place, int body, double sign,
                 const Side& side) noexcept;
   void widen_envelope(std::size_t place) noexcept;
-  void make_mass(const mjModel* m, const mjData* d) noexcept;
+  void respond(int place) noexcept;
 
-  std::vector<DofRange> trees_;        // by the numbers here
-  std::vector<int> dofs_;              // of the model, by the numbers here
-  std::vector<int> numbers_, limits_;  // the other way, and the last one of each subtree
+  StepMatrix matrix_;
   std::vector<std::array<Side, 2>> sides_;
   std::vector<int> side_count_;
   std::vector<double> jacobian_, response_;
-  std::vector<int> mass_envelope_, envelope_;
-  EnvelopeMatrix mass_, factor_;
+  std::vector<int> envelope_;
   std::vector<Eigen::Matrix<double, kRows, kRows>> mobility_;
   std::vector<double> known_, delassus_, velocity_, free_, generalized_;
   bool prefers_dofs_ = true;

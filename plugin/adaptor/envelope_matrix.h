@@ -13,13 +13,14 @@ namespace volcontact::adaptor {
 
 /// The lower triangle of a symmetric matrix, of each row what lies between its first entry that is
 /// not zero and the diagonal. A Cholesky factor fills no more, so bodies that do not touch cost
-/// each other nothing. Memory is reused from matrix to matrix.
+/// each other nothing. A matrix that is not symmetric has the mirror image of this pattern above
+/// the diagonal, and LU factors without exchange of rows. Memory is reused from matrix to matrix.
 class EnvelopeMatrix {
  public:
   int size() const { return static_cast<int>(first_.size()); }
 
   /// Sets all to zero; `first` has the first column of each row.
-  void reset(std::span<const int> first) {
+  void reset(std::span<const int> first, bool is_symmetric = true) {
     first_.assign(first.begin(), first.end());
     start_.resize(first.size());
     std::ptrdiff_t count = 0;
@@ -28,6 +29,7 @@ class EnvelopeMatrix {
       count += static_cast<std::ptrdiff_t>(i) + 1 - first_[i];
     }
     numbers_.assign(static_cast<std::size_t>(count), 0.0);
+    upper_.assign(is_symmetric ? 0 : numbers_.size(), 0.0);
     last_.resize(first.size());
     for (std::size_t i = 0; i < first.size(); ++i) {
       last_[i] = static_cast<int>(i);
@@ -37,22 +39,84 @@ class EnvelopeMatrix {
     for (std::size_t k = 1; k < last_.size(); ++k) last_[k] = std::max(last_[k], last_[k - 1]);
   }
 
+  bool is_symmetric() const { return upper_.empty(); }
   int first(int i) const { return first_[static_cast<std::size_t>(i)]; }
 
   /// Entry (i, j), first(i) <= j <= i.
   double& operator()(int i, int j) { return numbers_[index(i, j)]; }
   double operator()(int i, int j) const { return numbers_[index(i, j)]; }
+  /// Entry (j, i), first(i) <= j < i, of a matrix that is not symmetric.
+  double& mirrored(int i, int j) { return upper_[index(i, j)]; }
+  double mirrored(int i, int j) const {
+    return is_symmetric() ? (*this)(i, j) : upper_[index(i, j)];
+  }
 
-  /// Adds a matrix whose envelope is within that of this one.
+  /// Adds `x` to entries (i, j) and (j, i), j <= i.
+  void add_both(int i, int j, double x) {
+    (*this)(i, j) += x;
+    if (!is_symmetric() && j < i) mirrored(i, j) += x;
+  }
+
+  /// Adds a matrix whose envelope is within that of this one; to a symmetric one a symmetric one.
   void add(const EnvelopeMatrix& other) {
     for (int i = 0; i < size(); ++i) {
-      for (int k = other.first(i); k <= i; ++k) (*this)(i, k) += other(i, k);
+      for (int k = other.first(i); k <= i; ++k) {
+        (*this)(i, k) += other(i, k);
+        if (!is_symmetric() && k < i) mirrored(i, k) += other.mirrored(i, k);
+      }
     }
   }
 
-  /// The Cholesky factor of a positive definite matrix, in place; its diagonal as inverses. Column
-  /// by column, whose entries do not wait for each other.
+  /// The Cholesky factor of a positive definite matrix, or L and U of one that is not symmetric, L
+  /// with ones on its diagonal; in place, the diagonal as inverses.
   void factor() {
+    if (is_symmetric()) {
+      factor_symmetric();
+    } else {
+      factor_other();
+    }
+  }
+
+  /// Before `factor`: A x, and A' x.
+  void multiply(const double* x, double* out) const { multiply(x, out, false); }
+  void multiply_transposed(const double* x, double* out) const { multiply(x, out, true); }
+
+  /// After `factor`: solves for the unknowns begin ... end - 1, which no other row has entries
+  /// with, under `kSides` right sides. `x` has as many numbers for each of these unknowns, the
+  /// right sides at first.
+  template <int kSides = 1>
+  void solve(double* x, int begin, int end) const {
+    using Numbers = Eigen::Matrix<double, kSides, 1>;
+    const auto of = [&](int i) { return Eigen::Map<Numbers>(x + kSides * (i - begin)); };
+    for (int i = begin; i < end; ++i) {
+      const double* row = at(i, first(i));
+      Numbers sum = of(i);
+      for (int k = first(i); k < i; ++k) sum -= *row++ * of(k);
+      of(i) = is_symmetric() ? Numbers(*row * sum) : sum;
+    }
+    for (int i = end - 1; i >= begin; --i) {
+      const Numbers solved = (*this)(i, i) * of(i);
+      of(i) = solved;
+      const double* row = is_symmetric() ? at(i, first(i)) : &upper_[index(i, first(i))];
+      for (int k = first(i); k < i; ++k) of(k) -= *row++ * solved;
+    }
+  }
+
+ private:
+  void multiply(const double* x, double* out, bool is_transposed) const {
+    std::fill(out, out + size(), 0.0);
+    for (int i = 0; i < size(); ++i) {
+      out[i] += (*this)(i, i) * x[i];
+      for (int k = first(i); k < i; ++k) {
+        const double low = (*this)(i, k), up = mirrored(i, k);
+        out[i] += (is_transposed ? up : low) * x[k];
+        out[k] += (is_transposed ? low : up) * x[i];
+      }
+    }
+  }
+
+  // Column by column, whose entries do not wait for each other.
+  void factor_symmetric() {
     for (int k = 0; k < size(); ++k) {
       const double* const pivot = at(k, first(k));
       double& diagonal = (*this)(k, k);
@@ -66,28 +130,22 @@ class EnvelopeMatrix {
     }
   }
 
-  /// After `factor`: solves for the unknowns begin ... end - 1, which no other row has entries
-  /// with, under `kSides` right sides. `x` has as many numbers for each of these unknowns, the
-  /// right sides at first.
-  template <int kSides = 1>
-  void solve(double* x, int begin, int end) const {
-    using Numbers = Eigen::Matrix<double, kSides, 1>;
-    const auto of = [&](int i) { return Eigen::Map<Numbers>(x + kSides * (i - begin)); };
-    for (int i = begin; i < end; ++i) {
-      const double* row = at(i, first(i));
-      Numbers sum = of(i);
-      for (int k = first(i); k < i; ++k) sum -= *row++ * of(k);
-      of(i) = *row * sum;
-    }
-    for (int i = end - 1; i >= begin; --i) {
-      const Numbers solved = (*this)(i, i) * of(i);
-      of(i) = solved;
-      const double* row = at(i, first(i));
-      for (int k = first(i); k < i; ++k) of(k) -= *row++ * solved;
+  void factor_other() {
+    for (int i = 0; i < size(); ++i) {
+      const double* const left = at(i, first(i));
+      const double* const above = &upper_[index(i, first(i))];
+      for (int k = first(i); k < i; ++k) {
+        const int from = std::max(first(i), first(k));
+        const std::ptrdiff_t count = k - from, skipped = from - first(i);
+        double& entry = (*this)(i, k);
+        entry = (entry - dot(left + skipped, &upper_[index(k, from)], count)) * (*this)(k, k);
+        mirrored(i, k) -= dot(at(k, from), above + skipped, count);
+      }
+      double& diagonal = (*this)(i, i);
+      diagonal = 1.0 / (diagonal - dot(left, above, i - first(i)));
     }
   }
 
- private:
   // In two sums, side by side; rows are short.
   static double dot(const double* a, const double* b, std::ptrdiff_t count) {
     double even = 0.0, odd = 0.0;
@@ -109,6 +167,7 @@ class EnvelopeMatrix {
   std::vector<int> last_;              // the last row that begins at or before each column
   std::vector<std::ptrdiff_t> start_;  // where column 0 of each row would be
   std::vector<double> numbers_;
+  std::vector<double> upper_;  // column by column, as the rows in `numbers_`; empty when symmetric
 };
 
 }  // namespace volcontact::adaptor

@@ -297,8 +297,8 @@ void ImplicitStep::write_results() noexcept {
   }
 }
 
-// The forces stay; the account of a step that is implicit elsewhere wants the power over all of it.
-void ImplicitStep::keep_explicit() noexcept {
+// The forces stay.
+void ImplicitStep::take_explicit() noexcept {
   for (std::size_t i = 0; i < island_.size(); ++i) {
     Site& site = this->site(i);
     const SiteReport& report = site.report->sites[site.index];
@@ -307,6 +307,10 @@ void ImplicitStep::keep_explicit() noexcept {
     site.force << force[2], torque[0], torque[1], force[0], force[1], torque[2];
     std::copy_n(site.force.data(), kRows, &force_[i * size(kRows)]);
   }
+}
+
+// The account of a step that is implicit elsewhere wants the power over all of it.
+void ImplicitStep::write_explicit() noexcept {
   space_.move(force_, velocity_);
   for (std::size_t i = 0; i < island_.size(); ++i) {
     site(i).report->sites[site(i).index].taken = taken(site(i), i);
@@ -334,25 +338,46 @@ void ImplicitStep::solve_island(ImplicitParts parts, double step, double resting
     if (is_settled()) break;
   }
   if (rubs) bound_friction();
-  write_results();
+}
+
+// Solves again until MuJoCo's own constraints bear what was taken for granted.
+void ImplicitStep::solve_with_constraints(const mjModel* m, mjData* d, ImplicitParts parts,
+                                          int island, const double* known) noexcept {
+  constexpr int kRounds = 12;
+  const double step = m->opt.timestep;
+  const double resting = step * Eigen::Map<const Vec3>(m->opt.gravity).norm();
+  const bool is_stiff = std::any_of(island_.begin(), island_.end(),
+                                    [this](int i) { return sites_[size(i)].is_stiff; });
+  constraints_.select(m, d, islands_, island);
+  for (int round = 0; round < kRounds; ++round) {
+    space_.build(m, d, damping_, places_, islands_, island, constraints_, known);
+    force_.resize(size(space_.rows()));
+    velocity_.resize(size(space_.rows()));
+    if (is_stiff) {
+      solve_island(parts, step, resting);
+    } else {
+      take_explicit();
+    }
+    if (constraints_.empty()) break;
+    space_.accelerate(force_, acceleration_);
+    if (constraints_.improve(m, d, acceleration_)) break;
+  }
+  if (is_stiff) {
+    write_results();
+  } else {
+    write_explicit();
+  }
 }
 
 void ImplicitStep::solve(const mjModel* m, mjData* d, ImplicitParts parts,
                          const double* known) noexcept {
-  const double step = m->opt.timestep;
-  const double resting = step * Eigen::Map<const Vec3>(m->opt.gravity).norm();
-  islands_.build(m, places_);
+  constraints_.read(m, d);
+  damping_ = make_damping(m, d);
+  acceleration_.assign(size(static_cast<int>(m->nv)), 0.0);
+  islands_.build(m, places_, constraints_.joined());
   for (int island = 0; island < islands_.count(); ++island) {
     island_ = islands_.places(island);
-    space_.build(m, d, places_, islands_, island, known);
-    force_.resize(size(space_.rows()));
-    velocity_.resize(size(space_.rows()));
-    if (std::any_of(island_.begin(), island_.end(),
-                    [this](int i) { return sites_[size(i)].is_stiff; })) {
-      solve_island(parts, step, resting);
-    } else {
-      keep_explicit();
-    }
+    if (!island_.empty()) solve_with_constraints(m, d, parts, island, known);
   }
 }
 

@@ -95,7 +95,10 @@ class ImplicitStep {
     return sites_[static_cast<std::size_t>(island_[i])];
   }
   void solve_island(ImplicitParts parts, double step, double resting) noexcept;
-  void keep_explicit() noexcept;
+  void solve_with_constraints(const mjModel* m, mjData* d, ImplicitParts parts, int island,
+                              const double* known) noexcept;
+  void take_explicit() noexcept;
+  void write_explicit() noexcept;
   void make_points(ImplicitParts parts, double step, double resting) noexcept;
   void place_points(Site& site, const Mat3& mobility, const Vec3& falling, double resting,
                     ImplicitParts parts, double step) noexcept;
@@ -114,6 +117,9 @@ class ImplicitStep {
   std::vector<Site> sites_;
   std::vector<ContactPlace> places_;
   ContactIslands islands_;
+  NativeConstraints constraints_;
+  Damping damping_ = Damping::kNone;
+  std::vector<double> acceleration_;
   std::span<const int> island_;  // the sites of the one at hand; what follows is of these
   ContactSpace space_;
   ContactEquations equations_;

@@ -10,6 +10,19 @@
 // All that differs between the releases of MuJoCo, and nothing else. mjVERSION_HEADER grows with
 // every release: 222 is 2.2.2, 340 is 3.4.0, 4000000 is 4.0.0.
 
+// Functions that MuJoCo's library has but its headers do not; null where it has them no more. The
+// derivative of actuator and passive forces, and of the bias if wished, by velocities goes into
+// mjData.qDeriv; of a body that flies alone the matrix that `implicitfast` divides by.
+extern "C" {
+[[gnu::weak]] void mjd_smooth_vel(const mjModel* m, mjData* d, int with_bias);
+[[gnu::weak]] int mjd_freeMhat(const mjModel* m, const mjData* d, int joint, mjtNum step,
+                               mjtNum out[36]);
+#if mjVERSION_HEADER < 233
+[[gnu::weak]] void mj_makeMSparse(const mjModel* m, mjData* d, int* rownnz, int* rowadr,
+                                  int* colind);
+#endif
+}
+
 namespace volcontact::adaptor {
 
 /// Number under which an <exclude> of two bodies is stored.
@@ -64,6 +77,59 @@ inline bool damps_implicitly(const mjModel* m) {
   return std::any_of(m->dof_damping, m->dof_damping + m->nv, [](double b) { return b > 0.0; });
 }
 
+/// Whether the constraint solver takes the matrix of the integrator for the mass matrix.
+inline bool solves_with_step_matrix([[maybe_unused]] const mjModel* m) {
+#if mjVERSION_HEADER >= 3013000
+  return m->opt.integrator == mjINT_DISCRETE;
+#else
+  return false;
+#endif
+}
+
+/// What the integrator takes implicitly of the forces by velocities.
+enum class Damping { kNone, kOfJoints, kAllSymmetric, kAll };
+
+/// Prepares what `for_row_of_damping` reads. Overwrites mjData.qDeriv, as the integrator will.
+inline Damping make_damping(const mjModel* m, mjData* d) {
+  const bool all = m->opt.integrator == mjINT_IMPLICIT;
+#if mjVERSION_HEADER >= 233
+  const bool fast = m->opt.integrator != mjINT_EULER && m->opt.integrator != mjINT_RK4 && !all;
+#else
+  constexpr bool fast = false;
+  if (all && mj_makeMSparse) mj_makeMSparse(m, d, d->D_rownnz, d->D_rowadr, d->D_colind);
+#endif
+  if ((all || fast) && mjd_smooth_vel) {
+    mjd_smooth_vel(m, d, all);
+    return all ? Damping::kAll : Damping::kAllSymmetric;
+  }
+  return damps_implicitly(m) ? Damping::kOfJoints : Damping::kNone;
+}
+
+/// Calls use(k, B_ik) for degree of freedom i, where the integrator divides by M + h B. Of a
+/// symmetric B only for what carries i.
+template <typename Use>
+void for_row_of_damping(const mjModel* m, const mjData* d, Damping damping, int i, Use use) {
+  if (damping == Damping::kNone) return;
+  if (damping == Damping::kOfJoints) return use(i, m->dof_damping[i]);
+#if mjVERSION_HEADER >= 336
+  const int *counts = m->D_rownnz, *begins = m->D_rowadr, *columns = m->D_colind;
+#else
+  const int *counts = d->D_rownnz, *begins = d->D_rowadr, *columns = d->D_colind;
+#endif
+  for (int at = begins[i]; at < begins[i] + counts[i]; ++at) {
+    if (damping == Damping::kAll || columns[at] <= i) use(columns[at], -d->qDeriv[at]);
+  }
+}
+
+/// The matrix that `implicitfast` divides by for a body that flies alone, where it knows one, into
+/// `out`, 6 x 6; after `make_damping`.
+inline bool matrix_of_free_body(const mjModel* m, const mjData* d, Damping damping, int joint,
+                                double* out) {
+  return damping == Damping::kAllSymmetric && !solves_with_step_matrix(m) &&
+         m->jnt_type[joint] == mjJNT_FREE && mjd_freeMhat &&
+         mjd_freeMhat(m, d, joint, m->opt.timestep, out) != 0;
+}
+
 /// Calls use(k, M_ik) for degree of freedom i, and for each k that carries it.
 template <typename Use>
 void for_row_of_mass(const mjModel* m, const mjData* d, int i, Use use) {
@@ -74,6 +140,17 @@ void for_row_of_mass(const mjModel* m, const mjData* d, int i, Use use) {
   const int begin = m->M_rowadr[i], end = begin + m->M_rownnz[i];
   for (int address = begin; address < end; ++address) use(m->M_colind[address], d->M[address]);
 #endif
+}
+
+/// Calls use(k, J_ik) for row i of the Jacobian of MuJoCo's constraints; zeros may be left out.
+template <typename Use>
+void for_row_of_constraint(const mjModel* m, const mjData* d, int i, Use use) {
+  if (mj_isSparse(m)) {
+    const int begin = d->efc_J_rowadr[i], end = begin + d->efc_J_rownnz[i];
+    for (int at = begin; at < end; ++at) use(d->efc_J_colind[at], d->efc_J[at]);
+  } else {
+    for (int k = 0; k < m->nv; ++k) use(k, d->efc_J[i * static_cast<int>(m->nv) + k]);
+  }
 }
 
 /// Whether bodies may fall asleep; volumetric contact would never wake them.

@@ -129,7 +129,6 @@ class SceneContact {
   void warn_about_meshes(const mjModel* m);
   void check_integrator(const mjModel* m);
   void warn_about_friction(const mjModel* m);
-  void warn_about_mixed_steps(const mjModel* m);
   void set_rates(const mjModel* m, PairContact& pair) const;
   void warn_once(const std::string& warning);
   void alert(const std::string& warning);

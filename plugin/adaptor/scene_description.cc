@@ -119,8 +119,7 @@ std::string implicit_text(const mjModel* m, const SceneContact& contact, const P
   const SceneContact::ImplicitUse use = contact.implicit_use(m, pair);
   if (use.by_bristles) return "always, for its bristles";
   const Friction* friction = pair.laws.laws.friction.get();
-  const bool by_friction =
-      friction && friction->states().empty() && contact.options().pairs != PairRule::kListed;
+  const bool by_friction = friction && friction->states().empty();
   if (!use.is_possible) return by_friction ? "where friction would reverse the slip" : "not needed";
   char text[64];
   std::snprintf(text, sizeof text, "from a patch of %.2g m^2 on", use.least_area);

@@ -129,10 +129,8 @@ SceneContact::ImplicitUse SceneContact::implicit_use(const mjModel* m,
   const double number = square * pair.largest_rate;
   const double per_area =
       square * number_of(pair.laws, "stiffness", HUGE_VAL) * inverse_mass(m, pair.geoms).along;
-  const bool by_bristles =
-      options().pairs != PairRule::kListed && shakes_bristles(pair, m->opt.timestep);
-  return {number >= kPossibleNumber, by_bristles, number, kStiffNumber / per_area,
-          std::sqrt(kPossibleNumber / pair.largest_rate)};
+  return {number >= kPossibleNumber, shakes_bristles(pair, m->opt.timestep), number,
+          kStiffNumber / per_area, std::sqrt(kPossibleNumber / pair.largest_rate)};
 }
 
 void SceneContact::warn_about_friction(const mjModel* m) {
@@ -171,19 +169,6 @@ void SceneContact::check_integrator(const mjModel* m) {
   }
 }
 
-void SceneContact::warn_about_mixed_steps(const mjModel* m) {
-  if (options().pairs != PairRule::kListed || !may_be_implicit(m)) return;
-  const bool always = options().implicit == Implicit::kAlways;
-  for (const PairContact& pair : pairs_) {
-    if (!always && !implicit_use(m, pair).is_possible) continue;
-    warn_once(
-        "steps may be implicit in the volumetric contacts, and these know nothing of MuJoCo's own "
-        "contacts: a body that touches both is not held as it should be; use "
-        "volcontact/option/implicit/off with a smaller time step, or let all pairs be volumetric");
-    return;
-  }
-}
-
 bool SceneContact::may_be_implicit(const mjModel* m) const noexcept {
   return options().implicit != Implicit::kNever && m->opt.integrator != mjINT_RK4;
 }
@@ -195,9 +180,7 @@ bool SceneContact::is_stiff(const mjModel* m, const PairContact& pair, const Con
   if (options().implicit == Implicit::kAlways) return true;
   const double h = m->opt.timestep;
   const InverseMass inverse = inverse_mass(m, pair.geoms);
-  // Beside native contacts an implicit step does more harm than chatter.
-  const Friction* friction = pair.laws.laws.friction.get();
-  if (friction && options().pairs != PairRule::kListed) {
+  if (const Friction* friction = pair.laws.laws.friction.get()) {
     if (shakes_bristles(pair, h)) return true;
     if (friction->states().empty() && reverses_slip(report.sites[site], inverse, h)) return true;
   }

@@ -79,7 +79,6 @@ SceneContact::SceneContact(const mjModel* m, const std::vector<GivenKey>& given,
   for (const GeomPair& pair : geom_pairs_) add_pair(m, pair);
   check_integrator(m);
   warn_about_friction(m);
-  warn_about_mixed_steps(m);
   if (sites_.row_size > 0) sites_.rows = rows_of(geom_pairs_);
   if (options().implicit != Implicit::kNever) solved_rows_ = rows_of(geom_pairs_);
 }

@@ -72,6 +72,23 @@ TEST(ContactIslands, StackIsOrderedAlongItself) {
   }
 }
 
+// Body i has degrees of freedom from 6 (i - 1) on.
+TEST(ContactIslands, ConstraintsJoinTrees) {
+  const ModelPointer m = free_bodies(5);
+  const std::vector<ContactPlace> places = {place(1, 0), place(2, 0)};
+  const std::vector<std::pair<int, int>> joined = {{0, 12}, {13, 8}, {18, 24}, {24, 30}};
+  ContactIslands islands;
+  islands.build(m.get(), places, joined);
+  ASSERT_EQ(islands.count(), 2);  // the second one without a place
+  EXPECT_EQ(places_of(islands, 0), (std::vector<int>{0, 1}));
+  EXPECT_EQ(islands.trees(0).size(), 3u);
+  EXPECT_TRUE(islands.places(1).empty());
+  EXPECT_EQ(islands.island_of(m.get(), 8), 0);
+  EXPECT_EQ(islands.island_of(m.get(), 30), 1);
+  islands.build(m.get(), places);
+  EXPECT_LT(islands.island_of(m.get(), 12), 0);
+}
+
 TEST(ContactIslands, IsBuiltAnewEachTime) {
   const ModelPointer m = free_bodies(3);
   const std::vector<ContactPlace> one = {place(1, 2)}, other = {place(2, 3), place(1, 0)};

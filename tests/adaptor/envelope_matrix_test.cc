@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <vector>
 
 #include "core/support/random.h"
@@ -45,6 +46,34 @@ TEST(EnvelopeMatrix, SolvesAsTheWholeMatrix) {
     EXPECT_LT((right - truth).norm(), 1e-13 * truth.norm());
     EXPECT_LT((one - truth.row(2).transpose()).norm(), 1e-13 * truth.norm());
   }
+}
+
+TEST(EnvelopeMatrix, SolvesAndMultipliesWhereItIsNotSymmetric) {
+  test::Random random(4);
+  const std::vector<int> first = {0, 0, 0, 2, 2, 1, 0, 7, 7, 3, 9};
+  const int n = static_cast<int>(first.size());
+  EnvelopeMatrix matrix, symmetric;
+  MatrixXd dense = fill(first, random, symmetric);
+  matrix.reset(first, false);
+  matrix.add(symmetric);
+  for (int i = 0; i < n; ++i) {
+    for (int k = matrix.first(i); k < i; ++k) {
+      const double below = random.uniform(-1.0, 1.0), above = random.uniform(-1.0, 1.0);
+      matrix(i, k) += below;
+      matrix.mirrored(i, k) += above;
+      dense(i, k) += below;
+      dense(k, i) += above;
+    }
+  }
+  Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(n, -1.0, 2.0), product(n);
+  matrix.multiply(x.data(), product.data());
+  EXPECT_LT((product - dense * x).norm(), 1e-14 * product.norm());
+  matrix.multiply_transposed(x.data(), product.data());
+  EXPECT_LT((product - dense.transpose() * x).norm(), 1e-14 * product.norm());
+  const Eigen::VectorXd truth = dense.partialPivLu().solve(x);
+  matrix.factor();
+  matrix.solve(x.data(), 0, n);
+  EXPECT_LT((x - truth).norm(), 1e-13 * truth.norm());
 }
 
 TEST(EnvelopeMatrix, SolvesForUnknownsThatStandAlone) {

@@ -3,178 +3,24 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "adaptor/passive_callback.h"
 #include "adaptor/support/count_allocations.h"
 #include "adaptor/support/models.h"
+#include "adaptor/support/servo_scene.h"
 #include "core/support/random.h"
 
 namespace volcontact::adaptor {
 namespace {
 
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using testing::Attached;
+using testing::bodies;
 using testing::DataPointer;
+using testing::keys;
 using testing::ModelPointer;
-
-std::string keys(const std::string& mode, const std::string& friction, const std::string& stiffness,
-                 const std::vector<std::string>& geoms = {"floor", "low", "high", "hand"}) {
-  return testing::numeric("volcontact/option/implicit/" + mode, "1") +
-         testing::numeric("volcontact/material/m/friction_law/" + friction, "1") +
-         testing::material("m", {{"stiffness", stiffness}, {"damping", "0.3"}, {"friction", "0.4"}},
-                           geoms);
-}
-
-// A box on a floor, one on it, and the hand of a jointed arm on that, driven by a servo.
-std::string bodies(const std::string& option, double joint_damping, const std::string& keys) {
-  const std::string damping = " damping=\"" + std::to_string(joint_damping) + "\"/>";
-  return "<mujoco><option timestep=\"2e-3\" " + option +
-         "/><worldbody><geom name=\"floor\" type=\"plane\" size=\"2 2 .1\"/>"
-         "<body pos=\"0 0 .099\"><freejoint/>"
-         "<geom name=\"low\" type=\"box\" size=\".15 .12 .1\" mass=\"3\"/></body>"
-         "<body pos=\".02 .01 .248\"><freejoint/>"
-         "<geom name=\"high\" type=\"box\" size=\".08 .1 .05\" mass=\"1\"/></body>"
-         "<body pos=\".5 0 .29\"><joint name=\"lift\" axis=\"0 1 0\"" +
-         damping + "<geom type=\"sphere\" size=\".02\" mass=\"2\" pos=\"-.2 0 0\" contype=\"0\" " +
-         "conaffinity=\"0\"/><body pos=\"-.3 0 0\"><joint axis=\"0 1 0\"" + damping +
-         "<joint type=\"slide\" axis=\"0 1 0\"" + damping +
-         "<geom name=\"hand\" type=\"box\" size=\".1 .03 .02\" pos=\"-.15 0 .026\" mass=\"1\" "
-         "euler=\"3 2 0\"/></body></body></worldbody>"
-         "<actuator><position joint=\"lift\" kp=\"50\"/></actuator>" +
-         keys + "</mujoco>";
-}
-
-void scatter(const ModelPointer& m, const DataPointer& d, std::uint64_t seed) {
-  test::Random random(seed);
-  for (int i = 0; i < m->nv; ++i) d->qvel[i] = random.uniform(-0.5, 0.5);
-  for (const int body : {0, 7}) {
-    d->qpos[body + 2] -= random.uniform(0.0, 2e-3);
-    for (int i = 4; i < 7; ++i) d->qpos[body + i] = random.uniform(-0.01, 0.01);
-    mju_normalize4(d->qpos + body + 3);
-  }
-  d->ctrl[0] = random.uniform(-1.0, 1.0);
-  for (int i = 0; i < m->nv; ++i) d->qfrc_applied[i] = random.uniform(-5.0, 5.0);
-  for (int i = 6; i < 6 * m->nbody; ++i) d->xfrc_applied[i] = random.uniform(-1.0, 1.0);
-}
-
-// J of the sites by MuJoCo's own function; rows as in ContactPlace.
-MatrixXd jacobian(const ModelPointer& m, const DataPointer& d,
-                  const std::vector<volcontact_site>& sites) {
-  using RowMajor = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>;
-  MatrixXd out = MatrixXd::Zero(6 * static_cast<Eigen::Index>(sites.size()), m->nv);
-  for (std::size_t i = 0; i < sites.size(); ++i) {
-    const Mat3 axes = basis_with_z(Vec3(sites[i].normal));
-    for (const double sign : {1.0, -1.0}) {
-      const int geom = sign > 0.0 ? sites[i].geom_a : sites[i].geom_b;
-      RowMajor way(3, m->nv), turn(3, m->nv);
-      mj_jac(m.get(), d.get(), way.data(), turn.data(), sites[i].centroid, m->geom_bodyid[geom]);
-      const MatrixXd w = sign * axes.transpose() * way, t = sign * axes.transpose() * turn;
-      const Eigen::Index row = 6 * static_cast<Eigen::Index>(i);
-      out.row(row) += w.row(2);
-      out.middleRows(row + 1, 2) += t.topRows(2);
-      out.middleRows(row + 3, 2) += w.topRows(2);
-      out.row(row + 5) += t.row(2);
-    }
-  }
-  return out;
-}
-
-MatrixXd mass_matrix(const ModelPointer& m, const DataPointer& d) {
-  MatrixXd out(m->nv, m->nv);
-  for (int i = 0; i < m->nv; ++i) {
-    const VectorXd unit = VectorXd::Unit(m->nv, i);
-    mj_mulM(m.get(), d.get(), out.col(i).data(), unit.data());
-  }
-  return out;
-}
-
-struct Scene {
-  const char* integrator;
-  double joint_damping;
-  const char* friction;
-  const char* target;
-};
-
-class DenseStep : public ::testing::TestWithParam<Scene> {};
-
-// (Mh + h J' C J) dv = h (t + J' (e - C u)), with J, M and t had from MuJoCo without volcontact.
-TEST_P(DenseStep, IsWhatMuJoCoDoes) {
-  constexpr double kTolerance = 1e-10;
-  const Scene& scene = GetParam();
-  const std::string option = std::string("integrator=\"") + scene.integrator + "\"";
-  const std::string text =
-      bodies(option, scene.joint_damping,
-             keys("on", scene.friction, "2e9") +
-                 testing::numeric(std::string("volcontact/option/target/") + scene.target, "1"));
-  const ModelPointer m = testing::load(text), plain = testing::compile(text);
-  plain->opt.disableflags |= mjDSBL_CONTACT;
-  const Attached attached(m);
-  int most = 0, compared = 0;
-  for (std::uint64_t seed = 0; seed < 8; ++seed) {
-    const DataPointer d = testing::make_data(m), free = testing::make_data(plain);
-    scatter(m, d, seed);
-    scatter(plain, free, seed);
-    mj_forward(plain.get(), free.get());
-    const int nv = static_cast<int>(m->nv);
-    VectorXd known = VectorXd::Zero(nv);
-    for (int body = 1; body < m->nbody; ++body) {
-      mj_applyFT(plain.get(), free.get(), free->xfrc_applied + 6 * body,
-                 free->xfrc_applied + 6 * body + 3, free->xipos + 3 * body, body, known.data());
-    }
-    MatrixXd left = mass_matrix(plain, free);
-    const double h = m->opt.timestep;
-    for (int i = 0; i < nv; ++i) {
-      known[i] += free->qfrc_passive[i] - free->qfrc_bias[i] + free->qfrc_actuator[i] +
-                  free->qfrc_applied[i];
-      left(i, i) += h * plain->dof_damping[i];
-    }
-    const VectorXd before = Eigen::Map<VectorXd>(d->qvel, nv);
-    mj_step(m.get(), d.get());
-    const VectorXd change = Eigen::Map<VectorXd>(d->qvel, nv) - before;
-
-    std::vector<volcontact_site> sites(100);
-    sites.resize(static_cast<std::size_t>(volcontact_sites(m.get(), d.get(), sites.data(), 100)));
-    most = std::max(most, static_cast<int>(sites.size()));
-    const MatrixXd j = jacobian(plain, free, sites);
-    const VectorXd u = j * before;
-    const ImplicitStep& step = thread_scratch().implicit;
-    VectorXd right = known;
-    for (std::size_t i = 0; i < sites.size(); ++i) {
-      const Eigen::Index row = 6 * static_cast<Eigen::Index>(i);
-      const auto block = j.middleRows(row, 6);
-      left += h * block.transpose() * step.slope(i) * block;
-      right += block.transpose() * (step.constant(i) - step.slope(i) * u.segment(row, 6));
-    }
-    // What friction could not hold was cut off after the solution: not linear.
-    const VectorXd after = j * Eigen::Map<VectorXd>(d->qvel, nv);
-    bool cut = false;
-    for (std::size_t i = 0; i < sites.size(); ++i) {
-      const auto& f = step.force(i);
-      const VectorXd linear =
-          step.constant(i) - step.slope(i) * after.segment(6 * static_cast<Eigen::Index>(i), 6);
-      cut = cut || (f - linear).tail(3).norm() > 1e-9 * f.norm();
-    }
-    if (cut) continue;
-    ++compared;
-    const VectorXd truth = left.ldlt().solve(h * right);
-    EXPECT_LT((change - truth).norm(), kTolerance * truth.norm()) << seed;
-  }
-  EXPECT_GE(most, 3);
-  EXPECT_GE(compared, 5);
-}
-
-INSTANTIATE_TEST_SUITE_P(Scenes, DenseStep,
-                         ::testing::Values(Scene{"Euler", 0.0, "regularized_coulomb", "applied"},
-                                           Scene{"Euler", 3.0, "regularized_coulomb", "passive"},
-                                           Scene{"Euler", 3.0, "bristle", "xfrc"},
-                                           Scene{"Euler", 0.0, "bristle", "applied"}),
-                         [](const auto& run) {
-                           return std::string(run.param.integrator) + run.param.friction +
-                                  run.param.target;
-                         });
+using testing::scatter;
 
 // The linear model of a site is that of theory: f = f_0 - D (u' - u) - h K u'.
 TEST(ImplicitStep, TakesStiffnessAndDampingOfTheSite) {
@@ -212,7 +58,8 @@ TEST(ImplicitStep, FormsForForcesAndForVelocitiesAgree) {
   islands.build(m.get(), places);
   ASSERT_EQ(islands.count(), 1);
   ContactSpace space;
-  space.build(m.get(), d.get(), places, islands, 0, known.data());
+  const Damping damping = make_damping(m.get(), d.get());
+  space.build(m.get(), d.get(), damping, places, islands, 0, {}, known.data());
   ContactEquations equations;
   test::Random random(3);
   for (int first = 0; first < 18; first += 3) {
@@ -384,8 +231,11 @@ TEST(ImplicitStep, EnergyAccountCloses) {
 }
 
 TEST(ImplicitStep, AllocatesNothingWhenWarm) {
-  for (const double damping : {0.0, 2.0}) {
-    const ModelPointer m = testing::load(bodies("", damping, keys("auto", "bristle", "2e10")));
+  const std::string limits = "limited=\"true\" range=\".001 2\"";
+  for (const double damping : {0.0, 2.0, 3.0}) {
+    const ModelPointer m =
+        testing::load(bodies(damping == 3.0 ? "integrator=\"implicit\"" : "", damping,
+                             keys("auto", "bristle", "2e10"), damping > 0.0 ? limits : ""));
     const Attached attached(m);
     const DataPointer d = testing::make_data(m);
     scatter(m, d, 1);

@@ -225,12 +225,3 @@ def test_forces_of_data_that_are_nobodys_are_refused():
         with pytest.raises(ValueError, match="2 attached models have"):
             vc.contact_forces(data)
         assert len(contact.contact_forces(data)) == 0  # nothing evaluated yet
-
-
-@pytest.mark.parametrize(("key", "warned"), [("on", True), ("off", False)])
-def test_implicit_steps_beside_native_contact_are_warned_of(key, warned):
-    option = f'<numeric name="volcontact/option/implicit/{key}" data="1"/>'
-    model = vc.load(TABLE.format(custom=two_feet() + option))
-    with vc.attach(model) as contact:
-        text = "".join(contact.description["warnings"])
-    assert ("know nothing of MuJoCo's own contacts" in text) == warned
