@@ -200,7 +200,7 @@ TEST(StiffContact, RungeKuttaIsWarnedOfWhereContactIsStiff) {
     m->opt.integrator = mjINT_RK4;
     std::vector<char> text(20000);
     ASSERT_GT(volcontact_describe(m.get(), text.data(), 20000, nullptr, 0), 0);
-    EXPECT_EQ(std::string(text.data()).find("RK4") != std::string::npos, factor > 1.0);
+    EXPECT_EQ(std::string(text.data()).find("too stiffly") != std::string::npos, factor > 1.0);
   }
 }
 
