@@ -230,6 +230,16 @@ def wheels(_: str) -> str:
     )
 
 
+# ---- Releases of MuJoCo --------------------------------------------------------------------------
+
+
+def releases(_: str) -> str:
+    """What the tests of the plugin found on each release."""
+    head = ("MuJoCo", "CPython", "tests passed", "failed", "skipped", "for")
+    keys = ("mujoco", "python", "passed", "failed", "skipped", "left_out")
+    return table(head, [tuple(row[key] for key in keys) for row in read("releases")])
+
+
 BLOCK: dict[str, Callable[[str], str]] = {
     "pairs": pairs,
     "accuracy": accuracy,
@@ -239,4 +249,5 @@ BLOCK: dict[str, Callable[[str], str]] = {
     "words": words,
     "validation": validation,
     "wheels": wheels,
+    "releases": releases,
 }
