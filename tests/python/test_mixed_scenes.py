@@ -225,3 +225,47 @@ def test_forces_of_data_that_are_nobodys_are_refused():
         with pytest.raises(ValueError, match="2 attached models have"):
             vc.contact_forces(data)
         assert len(contact.contact_forces(data)) == 0  # nothing evaluated yet
+
+
+def stack(seed):
+    """Five boxes thrown on a sixth; MuJoCo's contact but for the lowest two and the floor."""
+    rng = np.random.default_rng(seed)
+    boxes = "".join(
+        f'<body pos="{rng.uniform(-0.1, 0.1)} {rng.uniform(-0.1, 0.1)} {0.3 + 0.16 * i}" '
+        f'euler="{rng.uniform(0, 90)} {rng.uniform(0, 90)} 0"><freejoint/>'
+        f'<geom name="n{i}" type="box" size=".05 .05 .05" mass="1"/></body>'
+        for i in range(5)
+    )
+    pairs = "".join(
+        f'<tuple name="volcontact/pair/{name}"><element objtype="geom" objname="{name}"/>'
+        '<element objtype="geom" objname="low"/></tuple>'
+        f'<numeric name="volcontact/pair/{name}/stiffness" data="5e10"/>'
+        f'<numeric name="volcontact/pair/{name}/damping" data="0"/>'
+        for name in ("floor", "n0")
+    )
+    return f"""<mujoco><option timestep="2e-3"><flag energy="enable"/></option><worldbody>
+      <geom name="floor" type="plane" size="2 2 .1"/><body pos="0 0 .1"><freejoint/>
+      <geom name="low" type="box" size=".15 .15 .1" mass="12"/></body>{boxes}</worldbody>
+      <custom>{LISTED}{pairs}</custom></mujoco>"""
+
+
+@pytest.mark.parametrize("cone", [mujoco.mjtCone.mjCONE_PYRAMIDAL, mujoco.mjtCone.mjCONE_ELLIPTIC])
+def test_implicit_contact_under_native_contact_gains_nothing_and_bears_what_is_on_it(cone):
+    model = vc.load(stack(1))
+    model.opt.cone = cone
+    data = mujoco.MjData(model)
+    with vc.attach(model) as contact:
+        mujoco.mj_forward(model, data)
+        first = most = data.energy.sum()
+        for _ in range(1500):
+            mujoco.mj_step(model, data)
+            most = max(most, data.energy.sum())
+        assert most <= 1.000001 * first
+        assert np.abs(data.qvel[:6]).max() < 1e-6  # MuJoCo's own contacts creep
+        on_floor = contact.sites(data)[contact.sites(data)["geom_a"] == 0]
+        above = sum(
+            model.body_mass[i] for i in range(1, 7) if np.hypot(*data.xipos[i, :2]) < 0.25
+        )
+        assert on_floor["normal_force"].sum() == pytest.approx(9.81 * above, rel=1e-6)
+        assert (5e10 * on_floor["volume"]).sum() == pytest.approx(9.81 * above, rel=1e-5)
+        assert abs(contact.energy(data).numerical) < 1e-5 * first
