@@ -263,9 +263,7 @@ def test_implicit_contact_under_native_contact_gains_nothing_and_bears_what_is_o
         assert most <= 1.000001 * first
         assert np.abs(data.qvel[:6]).max() < 1e-6  # MuJoCo's own contacts creep
         on_floor = contact.sites(data)[contact.sites(data)["geom_a"] == 0]
-        above = sum(
-            model.body_mass[i] for i in range(1, 7) if np.hypot(*data.xipos[i, :2]) < 0.25
-        )
+        above = sum(model.body_mass[i] for i in range(1, 7) if np.hypot(*data.xipos[i, :2]) < 0.25)
         assert on_floor["normal_force"].sum() == pytest.approx(9.81 * above, rel=1e-6)
         assert (5e10 * on_floor["volume"]).sum() == pytest.approx(9.81 * above, rel=1e-5)
         assert abs(contact.energy(data).numerical) < 1e-5 * first
