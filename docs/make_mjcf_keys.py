@@ -75,7 +75,10 @@ All are `<numeric>` and `<tuple>` elements below `<custom>`:
 | `volcontact/material/MATERIAL/CHOICE/WORD` | `<numeric>`, data 1 | a choice of the material |
 | `volcontact/pair/PAIR` | `<tuple>` of two geoms or bodies | which two |
 | `volcontact/pair/PAIR/FIELD`, `.../CHOICE/WORD` | `<numeric>` | replaces what the two materials give |
-| `volcontact/solid/SOLID` | `<tuple>` of geoms of one body | one solid: `prm="1"` adds a geom, `prm="-1"` cuts it out |
+| `volcontact/shape/SHAPE` | `<tuple>` of geoms | geoms that stand for another shape: [writing_a_scene.md](writing_a_scene.md#shapes-that-mujoco-has-no-geom-for) |
+| `volcontact/shape/SHAPE/frustum`, `.../torus` | `<numeric>`, its fields in metres | which one: `bottom_radius top_radius half_length`, or `major_radius minor_radius` |
+| `volcontact/shape/SHAPE/convex_polytope` | `<numeric>`, data 1 | the convex hull of mesh geoms |
+| `volcontact/solid/SOLID` | `<tuple>` of geoms of one body | one solid: `prm="1"` adds a geom, `prm="-1"` cuts it out, `prm="2"` keeps what lies in it |
 
 Data 0 of a choice stands for "not this one". Names may carry a prefix before `volcontact/`, as `MjSpec.attach` gives them.
 """  # noqa: E501 (rows of a table)

@@ -83,11 +83,23 @@ void write_materials(const mjModel* m, const SceneContact& contact, JsonText& js
   json.end_object().end_object();
 }
 
+std::string sign_of(Csg::Operation operation) {
+  switch (operation) {
+    case Csg::Operation::kUnion:
+      return "+ ";
+    case Csg::Operation::kIntersection:
+      return "& ";
+    case Csg::Operation::kDifference:
+      break;
+  }
+  return "- ";
+}
+
 void write_parts(const mjModel* m, const ComposedGeoms& solid, JsonText& json) {
   json.member("key", solid.key);
   json.name("parts").begin_array();
   for (const ComposedGeoms::Part& part : solid.parts) {
-    json.value((part.adds ? "+ " : "- ") + label(m, mjOBJ_GEOM, part.geom));
+    json.value(sign_of(part.operation) + label(m, mjOBJ_GEOM, part.geom));
   }
   json.end_array();
 }

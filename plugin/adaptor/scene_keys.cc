@@ -11,7 +11,7 @@
 namespace volcontact::adaptor {
 namespace {
 
-const std::vector<std::string> kSections{"material", "option", "pair", "solid"};
+const std::vector<std::string> kSections{"material", "option", "pair", "shape", "solid"};
 
 using Key = SceneKey;
 
@@ -20,15 +20,16 @@ class KeyReader {
   KeyReader(const mjModel* m, const std::vector<GivenKey>& given) : m_(m) {
     keys_.given = given;
     keys_.material_of_geom.assign(static_cast<std::size_t>(m->ngeom), -1);
+    keys_.shape_of_geom.assign(static_cast<std::size_t>(m->ngeom), -1);
     keys_.solid_of_geom.assign(static_cast<std::size_t>(m->ngeom), -1);
   }
 
   SceneKeys read() {
     refuse_texts();
-    for (const bool solids : {true, false}) {  // pairs are about solids
+    for (const int stage : {0, 1, 2}) {
       for (int i = 0; i < m_->ntuple; ++i) {
         const auto key = parse_key(m_->names + m_->name_tupleadr[i]);
-        if (key && (key->parts[0] == "solid") == solids) read_tuple(*key, i);
+        if (key && stage_of(key->parts[0]) == stage) read_tuple(*key, i);
       }
     }
     for (int i = 0; i < m_->nnumeric; ++i) {
@@ -38,6 +39,9 @@ class KeyReader {
     for (const GivenKey& given : keys_.given) read_given(given);
     keys_.options = options_.finish();
     keys_.has_target = options_.has("target");
+    for (int geom = 0; geom < m_->ngeom; ++geom) {
+      if (const GivenShape* shape = keys_.given_shape(geom)) check_stand_in(m_, geom, *shape);
+    }
     for (const KeyedValues& material : keys_.materials) check_fields(material);
     for (const ListedPair& pair : keys_.pairs) check_fields(pair.keyed);
     return std::move(keys_);
@@ -53,8 +57,13 @@ class KeyReader {
 
   // Tuples: which geoms a material or a pair is about.
 
+  // Solids are made of shapes, and pairs are about solids.
+  static int stage_of(const std::string& section) {
+    return section == "shape" ? 0 : section == "solid" ? 1 : 2;
+  }
+
   void read_tuple(const Key& key, int tuple) {
-    const std::vector<std::string> sections{"material", "pair", "solid"};
+    const std::vector<std::string> sections{"material", "pair", "shape", "solid"};
     const std::string& section = key.parts[0];
     if (std::find(sections.begin(), sections.end(), section) == sections.end()) {
       unknown_part(key, 0, sections);
@@ -66,6 +75,8 @@ class KeyReader {
       read_material(key, tuple);
     } else if (section == "pair") {
       read_pair(key, tuple);
+    } else if (section == "shape") {
+      read_stand_ins(key, tuple);
     } else {
       read_solid(key, tuple);
     }
@@ -76,18 +87,40 @@ class KeyReader {
     return key.text + ": geom '" + label(m_, mjOBJ_GEOM, geom) + "'";
   }
 
+  // The one geom of an element.
+  int geom_of_element(const Key& key, int tuple, int element, const char* rule) const {
+    const int at = m_->tuple_adr[tuple] + element, type = m_->tuple_objtype[at];
+    require(type == mjOBJ_GEOM, key.text + ": element " + std::to_string(element + 1) + " is a " +
+                                    mju_type2Str(type) + "; " + rule);
+    return m_->tuple_objid[at];
+  }
+
+  void read_stand_ins(const Key& key, int tuple) {
+    for (int element = 0; element < m_->tuple_size[tuple]; ++element) {
+      const int geom = geom_of_element(key, tuple, element, "a shape lists its geoms one by one");
+      int& owner = keys_.shape_of_geom[static_cast<std::size_t>(geom)];
+      require(owner < 0, part_text(key, geom) + " is listed already; a geom has one shape");
+      owner = static_cast<int>(keys_.shapes.size());
+    }
+    keys_.shapes.push_back({key.text, {}, {}});
+  }
+
+  static Csg::Operation operation_of(const std::string& part, double sign) {
+    if (sign == 1.0) return Csg::Operation::kUnion;
+    if (sign == -1.0) return Csg::Operation::kDifference;
+    require(sign == 2.0, part + " has prm=\"" + number_text(sign) +
+                             "\"; write prm=\"1\" to add it, prm=\"-1\" to cut it out or "
+                             "prm=\"2\" to keep only what lies in it");
+    return Csg::Operation::kIntersection;
+  }
+
   void read_solid(const Key& key, int tuple) {
     const int index = static_cast<int>(keys_.solids.size());
     ComposedGeoms solid{key.text, {}};
     for (int element = 0; element < m_->tuple_size[tuple]; ++element) {
-      const int at = m_->tuple_adr[tuple] + element, type = m_->tuple_objtype[at];
-      require(type == mjOBJ_GEOM, key.text + ": element " + std::to_string(element + 1) + " is a " +
-                                      mju_type2Str(type) + "; a solid lists its geoms one by one");
-      const int geom = m_->tuple_objid[at];
-      const double sign = m_->tuple_objprm[at];
-      require(sign == 1.0 || sign == -1.0,
-              part_text(key, geom) + " has prm=\"" + number_text(sign) +
-                  "\"; write prm=\"1\" to add it or prm=\"-1\" to cut it out");
+      const int geom = geom_of_element(key, tuple, element, "a solid lists its geoms one by one");
+      const Csg::Operation operation =
+          operation_of(part_text(key, geom), m_->tuple_objprm[m_->tuple_adr[tuple] + element]);
       check_part(key, geom);
       int& owner = keys_.solid_of_geom[static_cast<std::size_t>(geom)];
       require(owner < 0, part_text(key, geom) + " is listed already, in " +
@@ -96,12 +129,13 @@ class KeyReader {
                                               : key.text) +
                              "; a geom belongs to one solid, once");
       owner = index;
-      solid.parts.push_back({geom, sign > 0.0});
+      solid.parts.push_back({geom, operation});
     }
     const ComposedGeoms::Part first = solid.parts[0];
-    require(first.adds, part_text(key, first.geom) +
-                            " is the first one and has prm=\"-1\": there is nothing yet to cut it "
-                            "out of; begin with a geom that has prm=\"1\"");
+    require(first.operation == Csg::Operation::kUnion,
+            part_text(key, first.geom) +
+                " is the first one and has not prm=\"1\": there is nothing "
+                "yet to cut; begin with a geom that has prm=\"1\"");
     for (const ComposedGeoms::Part& part : solid.parts) {
       const int own = m_->geom_bodyid[part.geom], body = m_->geom_bodyid[first.geom];
       require(own == body,
@@ -114,12 +148,14 @@ class KeyReader {
 
   void check_part(const Key& key, int geom) const {
     const int type = m_->geom_type[geom];
+    if (keys_.given_shape(geom)) return;
     require(type != mjGEOM_PLANE,
             part_text(key, geom) + " is a plane; cut with a box that is large enough instead");
     const bool simple = type == mjGEOM_SPHERE || type == mjGEOM_CAPSULE ||
                         type == mjGEOM_ELLIPSOID || type == mjGEOM_CYLINDER || type == mjGEOM_BOX;
     require(simple, part_text(key, geom) + " is of type " + type_name(m_, geom) +
-                        "; a solid is made of spheres, ellipsoids, capsules, cylinders and boxes");
+                        "; a solid is made of spheres, ellipsoids, capsules, cylinders, boxes and "
+                        "what a volcontact/shape/... says");
   }
 
   std::vector<int> geoms_of_element(const Key& key, int tuple, int element) const {
@@ -223,13 +259,31 @@ class KeyReader {
       options_.read(key, numbers, reads_given_);
     } else if (key.parts[0] == "material" || key.parts[0] == "pair") {
       read_keyed(key, numbers);
+    } else if (key.parts[0] == "shape") {
+      read_shape_of(key, numbers);
     } else {
       require(key.parts[0] != "solid",
               key.text +
-                  ": a solid has no numbers; its geoms are listed in a <tuple>, with prm=\"1\" "
-                  "or prm=\"-1\"");
+                  ": a solid has no numbers; its geoms are listed in a <tuple>, with prm=\"1\", "
+                  "\"-1\" or \"2\"");
       unknown_part(key, 0, kSections);
     }
+  }
+
+  void read_shape_of(const Key& key, const std::vector<double>& numbers) {
+    if (key.parts.size() < 3) unknown_part(key, 2, shape_words());
+    std::vector<std::string> names;
+    for (GivenShape& shape : keys_.shapes) {
+      if (shape.key == key.stem(2)) return read_shape(key, numbers, shape);
+      names.push_back(shape.key);
+    }
+    no_tuple(key, names);
+  }
+
+  [[noreturn]] static void no_tuple(const Key& key, const std::vector<std::string>& names) {
+    throw std::invalid_argument(key.text + ": there is no <tuple name=\"" + key.stem(2) +
+                                "\"> that says which geoms it is for" +
+                                did_you_mean(key.stem(2), names));
   }
 
   KeyedValues& owner_of(const Key& key) {
@@ -243,8 +297,7 @@ class KeyReader {
       if (pair.keyed.key == stem) return pair.keyed;
       names.push_back(pair.keyed.key);
     }
-    throw std::invalid_argument(key.text + ": there is no <tuple name=\"" + stem +
-                                "\"> that says which geoms it is for" + did_you_mean(stem, names));
+    no_tuple(key, names);
   }
 
   void read_keyed(const Key& key, const std::vector<double>& numbers) {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "adaptor/given_shape.h"
 #include "adaptor/materials.h"
 #include "adaptor/mujoco_compat.h"
 #include "adaptor/scene_options.h"
@@ -22,7 +23,7 @@ struct ListedPair {
 struct ComposedGeoms {
   struct Part {
     int geom;
-    bool adds;  ///< else it is cut out of what came before
+    Csg::Operation operation;  ///< with what came before
   };
   std::string key;
   std::vector<Part> parts;
@@ -49,12 +50,20 @@ struct SceneKeys {
   std::vector<int> material_of_geom;  ///< index into `materials`, -1 for the default material
   std::vector<ListedPair> pairs;
   std::map<std::pair<int, int>, int> pair_of_geoms;  ///< index into `pairs`, lower geom first
+  std::vector<GivenShape> shapes;
+  std::vector<int>
+      shape_of_geom;  ///< index into `shapes`, -1 for a geom that is what its type says
   std::vector<ComposedGeoms> solids;
   std::vector<int> solid_of_geom;  ///< index into `solids`, -1 for a geom that is one by itself
   std::vector<NumericSpan> numerics;
   std::vector<GivenKey> given;  ///< by the program
   bool has_target = false;      ///< the target was chosen, by the file or the program
 
+  /// The shape that the geom stands for, or null.
+  const GivenShape* given_shape(int geom) const {
+    const int index = shape_of_geom[static_cast<std::size_t>(geom)];
+    return index < 0 ? nullptr : &shapes[static_cast<std::size_t>(index)];
+  }
   /// The composed solid that the geom belongs to, or null.
   const ComposedGeoms* composed(int geom) const {
     const int index = solid_of_geom[static_cast<std::size_t>(geom)];

@@ -26,14 +26,14 @@ std::vector<Shape> solids_of(const mjModel* m, const SceneKeys& keys,
     Shape& solid = solids[static_cast<std::size_t>(geom)];
     const ComposedGeoms* parts = keys.composed(geom);
     if (parts) {
-      solid = composed_solid(m, *parts);
-    } else if (m->geom_type[geom] == mjGEOM_MESH) {
+      solid = composed_solid(m, *parts, keys);
+    } else if (m->geom_type[geom] == mjGEOM_MESH && !keys.given_shape(geom)) {
       const int mesh = m->geom_dataid[geom];
       const auto known = meshes.find(mesh);
       solid = known != meshes.end() ? known->second : solid_of_geom(m, geom, keys.options.mesh);
       meshes.emplace(mesh, solid);
     } else {
-      solid = solid_of_geom(m, geom);
+      solid = simple_solid(m, geom, keys);
     }
   }
   return solids;

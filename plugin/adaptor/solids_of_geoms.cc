@@ -27,20 +27,25 @@ Pose pose_in_body(const mjModel* m, int geom) {
 
 }  // namespace
 
-Shape composed_solid(const mjModel* m, const ComposedGeoms& solid) {
+Shape simple_solid(const mjModel* m, int geom, const SceneKeys& keys) {
+  const GivenShape* given = keys.given_shape(geom);
+  if (!given) return solid_of_geom(m, geom, keys.options.mesh);
+  return given->shape ? *given->shape : mesh_solid(m, geom, MeshForm::kHull);
+}
+
+Shape composed_solid(const mjModel* m, const ComposedGeoms& solid, const SceneKeys& keys) {
   const int first = solid.parts[0].geom;
   const Pose X_SB = pose_in_body(m, first).inverse();
-  Csg whole = composed(solid_of_geom(m, first));
+  Csg whole = composed(simple_solid(m, first, keys));
   for (std::size_t i = 1; i < solid.parts.size(); ++i) {
     const ComposedGeoms::Part& part = solid.parts[i];
     const Pose X_SM = X_SB * pose_in_body(m, part.geom);
-    whole = Csg(part.adds ? Csg::Operation::kUnion : Csg::Operation::kDifference, whole,
-                composed(solid_of_geom(m, part.geom)).posed(X_SM));
+    whole = Csg(part.operation, whole, composed(simple_solid(m, part.geom, keys)).posed(X_SM));
   }
   whole.prepare();
-  require(
-      whole.own_metrics().volume > 0.0,
-      solid.key + ": the geoms with prm=\"-1\" cut everything away; check their sizes and poses");
+  require(whole.own_metrics().volume > 0.0,
+          solid.key +
+              ": the geoms with prm=\"-1\" or \"2\" leave nothing; check their sizes and poses");
   return whole;
 }
 

@@ -13,9 +13,12 @@ namespace volcontact::adaptor {
 /// mesh_solids.h) and for signed distance fields.
 Shape solid_of_geom(const mjModel* m, int geom, MeshForm form = MeshForm::kExact);
 
+/// The solid that a geom is by itself: what its type says, or a volcontact/shape/....
+Shape simple_solid(const mjModel* m, int geom, const SceneKeys& keys);
+
 /// The solid that a volcontact/solid/... makes of its geoms, in the frame of the first one, ready
 /// to be used.
-Shape composed_solid(const mjModel* m, const ComposedGeoms& solid);
+Shape composed_solid(const mjModel* m, const ComposedGeoms& solid, const SceneKeys& keys);
 
 /// MuJoCo's word for the geom's type: "box", "mesh".
 const char* type_name(const mjModel* m, int geom);

@@ -66,19 +66,19 @@ TEST(ComposedSolids, TupleNamesPartsInOrder) {
   const int hole = mj_name2id(m.get(), mjOBJ_GEOM, "hole");
   ASSERT_EQ(keys.solids[0].parts.size(), 2u);
   EXPECT_EQ(keys.solids[0].parts[0].geom, block);
-  EXPECT_TRUE(keys.solids[0].parts[0].adds);
-  EXPECT_FALSE(keys.solids[0].parts[1].adds);
+  EXPECT_EQ(keys.solids[0].parts[0].operation, Csg::Operation::kUnion);
+  EXPECT_EQ(keys.solids[0].parts[1].operation, Csg::Operation::kDifference);
   EXPECT_TRUE(keys.is_solid(block));
   EXPECT_FALSE(keys.is_solid(hole));
 }
 
 TEST(ComposedSolids, ErrorsSayWhatWhereAndTheFix) {
   EXPECT_EQ(message_of_solid(part("block", "1") + part("hole", "0")),
-            "volcontact/solid/bored: geom 'hole' has prm=\"0\"; write prm=\"1\" to add it or "
-            "prm=\"-1\" to cut it out");
+            "volcontact/solid/bored: geom 'hole' has prm=\"0\"; write prm=\"1\" to add it, "
+            "prm=\"-1\" to cut it out or prm=\"2\" to keep only what lies in it");
   EXPECT_EQ(message_of_solid(part("hole", "-1") + part("block", "1")),
-            "volcontact/solid/bored: geom 'hole' is the first one and has prm=\"-1\": there is "
-            "nothing yet to cut it out of; begin with a geom that has prm=\"1\"");
+            "volcontact/solid/bored: geom 'hole' is the first one and has not prm=\"1\": there "
+            "is nothing yet to cut; begin with a geom that has prm=\"1\"");
   EXPECT_EQ(
       message_of_solid(part("block", "1") + part("thing", "-1")),
       "volcontact/solid/bored: geom 'thing' is on body 'thing' and 'block' on body 'fixture'; "
@@ -104,7 +104,7 @@ TEST(ComposedSolids, ErrorsSayWhatWhereAndTheFix) {
   EXPECT_EQ(message_of(scene(bored(), ball(),
                              "<numeric name=\"volcontact/solid/bored/size\" data=\"1\"/>")),
             "volcontact/solid/bored/size: a solid has no numbers; its geoms are listed in a "
-            "<tuple>, with prm=\"1\" or prm=\"-1\"");
+            "<tuple>, with prm=\"1\", \"-1\" or \"2\"");
 }
 
 TEST(ComposedSolids, PartsTouchNothingByThemselves) {
