@@ -28,6 +28,35 @@ double settling(double speed, double fall) {
   return std::clamp((kBounces - speed / fall) / (kBounces - kSettles), 0.0, 1.0);
 }
 
+// The speed s at which friction of the damping c(s) leaves what would move at `free`:
+// s (1 + mobility c(s)) = free. Illinois' rule: c(s) s grows with s, or is constant.
+template <typename DampingAt>
+double speed_left(double free, double mobility, const DampingAt& damping_at) {
+  constexpr int kSteps = 12;
+  constexpr double kPrecision = 1e-6;
+  if (!(free > 0.0)) return 0.0;
+  double low = 0.0, high = free, below = -free, above = mobility * damping_at(free) * free;
+  double at = free;
+  int side = 0;  // of the last step
+  for (int i = 0; i < kSteps && above > 0.0 && high - low > kPrecision * high; ++i) {
+    at = (low * above - high * below) / (above - below);
+    const double error = at * (1.0 + mobility * damping_at(at)) - free;
+    if (error > 0.0) {
+      if (side > 0) below *= 0.5;
+      high = at;
+      above = error;
+      side = 1;
+    } else {
+      if (side < 0) above *= 0.5;
+      low = at;
+      below = error;
+      side = -1;
+    }
+    if (std::abs(error) <= kPrecision * free) break;
+  }
+  return at;
+}
+
 }  // namespace
 
 void ImplicitStep::clear() noexcept {
@@ -205,6 +234,10 @@ void ImplicitStep::set_friction(double step) noexcept {
     const double spin = velocity_[i * size(kRows) + 5];
     const FrictionOutput still = site.laws.friction(normal_force, Vec3::Zero(), 0.0);
     const FrictionSlope slope = site.laws.friction_slope(normal_force, along, spin);
+    if (slope.stiffness == 0.0) {
+      set_damper(site, normal_force, along, spin, slip.norm());
+      continue;
+    }
     site.tangent.friction = slope;
     site.strength = slope.strength;
     const double lever = slope.lever;
@@ -229,6 +262,27 @@ void ImplicitStep::set_friction(double step) noexcept {
       site.rub = slope.damping + step * slope.stiffness;
     }
   }
+}
+
+// Friction that keeps nothing: a damper, that at the slip which it leaves. How much it slows the
+// slip is known from the last solution.
+void ImplicitStep::set_damper(Site& site, double normal_force, const Vec3& along, double spin,
+                              double speed) const noexcept {
+  const auto slope_at = [&](double at) {
+    const double share = speed > 0.0 ? at / speed : 0.0;
+    return site.laws.friction_slope(normal_force, share * along, share * spin);
+  };
+  double at = speed;
+  if (site.rub > 0.0 && speed > 0.0 && speed < site.free_speed) {
+    const double mobility = (site.free_speed / speed - 1.0) / site.rub;
+    at = speed_left(site.free_speed, mobility, [&](double s) { return slope_at(s).damping; });
+  }
+  const FrictionSlope slope = slope_at(at);
+  site.tangent.friction = slope;
+  site.strength = slope.strength;
+  site.slides = false;
+  site.held.setZero();
+  site.rub = slope.damping;
 }
 
 // Shortens what friction was solved to hold to what it can hold.
@@ -329,6 +383,10 @@ void ImplicitStep::solve_island(ImplicitParts parts, double step, double resting
   space_.build_mobility();
   make_points(parts, step, resting);
   solve_active(false, step);
+  for (std::size_t i = 0; i < island_.size(); ++i) {
+    site(i).rub = 0.0;
+    site(i).free_speed = slip_of(site(i), velocity_, i).norm();
+  }
   const bool rubs = std::any_of(island_.begin(), island_.end(),
                                 [this](int i) { return sites_[size(i)].laws.has_friction(); });
   for (int pass = 0; rubs && pass < kFrictionPasses; ++pass) {

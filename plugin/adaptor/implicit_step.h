@@ -88,6 +88,7 @@ class ImplicitStep {
     Vec3 held = Vec3::Zero();
     double rub = 0.0;
     double strength = 0.0;
+    double free_speed = 0.0;  // slip at the end of the step without friction
     bool slides = false;
   };
   Site& site(std::size_t i) noexcept { return sites_[static_cast<std::size_t>(island_[i])]; }
@@ -106,6 +107,8 @@ class ImplicitStep {
   void solve_active(bool with_friction, double step) noexcept;
   void solve_once(bool with_friction, double step) noexcept;
   void set_friction(double step) noexcept;
+  void set_damper(Site& site, double normal_force, const Vec3& along, double spin,
+                  double speed) const noexcept;
   void bound_friction() noexcept;
   bool is_settled() const noexcept;
   void write_results() noexcept;

@@ -135,3 +135,20 @@ def creep(law, mass):
 def test_default_friction_creeps_and_bristles_do_not(mass):
     assert 1e-3 < creep("regularized_coulomb", mass) < 5e-3
     assert creep("bristle", mass) < 1e-12
+
+
+@pytest.mark.parametrize("step", [5e-4, 1e-3, 2e-3])
+@pytest.mark.parametrize("load", [0.5, 0.9, 0.99])
+def test_implicit_steps_creep_as_the_law_says(load, step):
+    """A box on a slope of `load` times the cone: f = mu f_n x (3 - x^2)/2 at x slip speeds."""
+    text = SCENE.format(
+        step=step, friction=0.5, shape="box", mass=1.0, implicit="on", law="regularized_coulomb"
+    )
+    model = vc.load(text)
+    model.opt.gravity[:] = 9.81 * 0.5 * load, 0.0, -9.81
+    data = mujoco.MjData(model)
+    data.qpos[:] = 0.0, 0.0, 0.0499, 1.0, 0.0, 0.0, 0.0
+    (x,) = (r.real for r in np.roots([-0.5, 0.0, 1.5, -load]) if 0.0 < r.real < 1.0)
+    with vc.attach(model):
+        mujoco.mj_step(model, data, round(8.0 / step))
+        assert data.qvel[0] == pytest.approx(1e-3 * x, rel=1e-2)
