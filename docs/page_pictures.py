@@ -45,7 +45,7 @@ def _errors(axes: Axes, name: str) -> list[float]:
     axes.set(
         xscale="log", xlabel="error of the volume [-]", ylabel="share of pairs", ylim=(0, 1.02)
     )
-    axes.legend(loc="upper left", fontsize=9)
+    axes.legend(loc="best", fontsize=9)
     return shown
 
 
@@ -294,7 +294,7 @@ def rolling() -> Drawn:
 
 def formulations() -> Drawn:
     """Energy that comes from nowhere on the way of a ball round the edge of a box."""
-    figure, axes = plot("turns round the loop [-]", "energy made, of the largest stored [-]")
+    figure, axes = plot("turns round the loop [-]", "energy made over\nlargest stored [-]")
     shown: list[float] = []
     for word, color in (("gonthier", NATIVE), ("potential", VOLUMETRIC)):
         made = _made_on_a_loop(word)
