@@ -11,11 +11,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import matplotlib
-from make_concepts import digest
+from make_concepts import save
 from page_blocks import BLOCK
 from page_pictures import PICTURE
-from performance_plots import STYLE
 
 DOCS = Path(__file__).parent
 _BLOCK = re.compile(r"(<!-- (\w+): (.+?) -->)\n.*?(<!-- end -->)", re.DOTALL)
@@ -36,11 +34,7 @@ def main() -> None:
     """Fills and draws all."""
     for page in pages():
         page.write_text(render(page.read_text(encoding="utf-8")), encoding="utf-8")
-    with matplotlib.rc_context(STYLE):
-        for name, draw in PICTURE.items():
-            figure, numbers = draw()
-            about = {"Date": None, "Source": digest(numbers)}
-            figure.savefig(DOCS / f"{name}.svg", metadata=about)
+    save(PICTURE, DOCS)
 
 
 if __name__ == "__main__":

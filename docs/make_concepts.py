@@ -276,14 +276,19 @@ def digest(numbers: list[float]) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
+def save(pictures: dict[str, Callable[[], Drawn]], folder: Path) -> None:
+    """Draws pictures in the style of the pages; each knows the numbers it was drawn from."""
+    with matplotlib.rc_context(STYLE):
+        for name, draw in pictures.items():
+            figure, numbers = draw()
+            about = {"Date": None, "Source": digest(numbers)}
+            figure.savefig(folder / f"{name}.svg", metadata=about)
+
+
 def main() -> None:
     """Draws all."""
     PICTURES.mkdir(exist_ok=True)
-    with matplotlib.rc_context(STYLE):
-        for name, draw in PICTURE.items():
-            figure, numbers = draw()
-            about = {"Date": None, "Source": digest(numbers)}
-            figure.savefig(PICTURES / f"{name}.svg", metadata=about)
+    save(PICTURE, PICTURES)
 
 
 if __name__ == "__main__":

@@ -61,14 +61,13 @@ void ImplicitStep::set_friction(double step) noexcept {
     const Mat3& axes = site.tangent.axes;
     const Vec3 along = axes.leftCols<2>() * slip.head<2>();
     const double spin = velocity_[i * size(kRows) + 5];
-    const FrictionOutput still = site.laws.friction(normal_force, Vec3::Zero(), 0.0);
-    const FrictionSlope slope = site.laws.friction_slope(normal_force, along, spin);
-    if (slope.stiffness == 0.0) {
+    if (!site.laws.friction_keeps()) {
       set_damper(site, normal_force, along, spin, slip.norm());
       continue;
     }
+    const FrictionOutput still = site.laws.friction(normal_force, Vec3::Zero(), 0.0);
+    const FrictionSlope slope = site.laws.friction_slope(normal_force, along, spin);
     site.tangent.friction = slope;
-    site.strength = slope.strength;
     const double lever = slope.lever;
     const Vec3 held(axes.col(0).dot(still.force), axes.col(1).dot(still.force),
                     lever > 0.0 ? still.torque / lever : 0.0);
@@ -81,11 +80,10 @@ void ImplicitStep::set_friction(double step) noexcept {
     const Vec3 scaled(direction[0], direction[1], lever * direction[2]);
     const double mobility = scaled.dot(space_.mobility(i).bottomRightCorner<3, 3>() * scaled);
     // The speed at which Coulomb's friction leaves it, when what acts now is replaced by it.
-    const double left = speed - step * mobility * (site.strength + acting.dot(direction));
-    site.slides = wanted.norm() > site.strength && left > 0.0;
-    if (site.slides) {
+    const double left = speed - step * mobility * (slope.strength + acting.dot(direction));
+    if (wanted.norm() > slope.strength && left > 0.0) {
       site.held.setZero();
-      site.rub = site.strength / left;
+      site.rub = slope.strength / left;
     } else {
       site.held = {held[0], held[1], lever * held[2]};
       site.rub = slope.damping + step * slope.stiffness;
@@ -108,8 +106,6 @@ void ImplicitStep::set_damper(Site& site, double normal_force, const Vec3& along
   }
   const FrictionSlope slope = slope_at(at);
   site.tangent.friction = slope;
-  site.strength = slope.strength;
-  site.slides = false;
   site.held.setZero();
   site.rub = slope.damping;
 }

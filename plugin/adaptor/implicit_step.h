@@ -87,9 +87,7 @@ class ImplicitStep {
     // Friction: force = held - rub * slip, or `rub` alone where it slides; as (t_1, t_2, about n).
     Vec3 held = Vec3::Zero();
     double rub = 0.0;
-    double strength = 0.0;
     double free_speed = 0.0;  // slip at the end of the step without friction
-    bool slides = false;
   };
   Site& site(std::size_t i) noexcept { return sites_[static_cast<std::size_t>(island_[i])]; }
   const Site& site(std::size_t i) const noexcept {

@@ -51,8 +51,7 @@ struct SceneKeys {
   std::vector<ListedPair> pairs;
   std::map<std::pair<int, int>, int> pair_of_geoms;  ///< index into `pairs`, lower geom first
   std::vector<GivenShape> shapes;
-  std::vector<int>
-      shape_of_geom;  ///< index into `shapes`, -1 for a geom that is what its type says
+  std::vector<int> shape_of_geom;  ///< index into `shapes`, -1 for what the geom's type says
   std::vector<ComposedGeoms> solids;
   std::vector<int> solid_of_geom;  ///< index into `solids`, -1 for a geom that is one by itself
   std::vector<NumericSpan> numerics;

@@ -152,6 +152,7 @@ def test_blocks_of_pages_say_what_the_code_and_the_results_say(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     module = generator("make_blocks")
+    digest = generator("make_concepts").digest
     command = "run './run python docs/make_blocks.py'"
     for page in module.pages():
         text = page.read_text(encoding="utf-8")
@@ -159,7 +160,7 @@ def test_blocks_of_pages_say_what_the_code_and_the_results_say(
     monkeypatch.setattr("concepts_sections.POINTS", 20)  # the test looks at numbers alone
     for name, draw in module.PICTURE.items():
         picture = (module.DOCS / f"{name}.svg").read_text(encoding="utf-8")
-        assert f"<dc:source>{module.digest(draw()[1])}</dc:source>" in picture, command
+        assert f"<dc:source>{digest(draw()[1])}</dc:source>" in picture, command
 
 
 def test_times_on_the_pages_of_the_engines_are_all_there_are() -> None:

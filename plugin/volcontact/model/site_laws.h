@@ -16,6 +16,8 @@ class SiteLaws {
 
   /// Friction under the normal force `normal_force` [N] at a slip and a spin as asked.
   bool has_friction() const noexcept { return laws_.friction != nullptr; }
+  /// Whether it depends on what was before, not on the motion of now alone.
+  bool friction_keeps() const noexcept { return !laws_.friction->states().empty(); }
   FrictionOutput friction(double normal_force, const Vec3& slip, double spin) const noexcept;
   FrictionSlope friction_slope(double normal_force, const Vec3& slip, double spin) const noexcept;
 
