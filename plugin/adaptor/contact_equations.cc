@@ -3,14 +3,13 @@
 
 #include <algorithm>
 
+#include "adaptor/sizes.h"
+
 namespace volcontact::adaptor {
 namespace {
 
 using Vector = Eigen::Map<Eigen::VectorXd>;
 using ConstVector = Eigen::Map<const Eigen::VectorXd>;
-constexpr int kRows = ContactSpace::kRows;
-
-std::size_t size(int count) { return static_cast<std::size_t>(count); }
 
 }  // namespace
 

@@ -33,7 +33,7 @@ struct ContactEquations {
                       std::vector<double>& velocity) noexcept;
 
  private:
-  using Slope = Eigen::Matrix<double, ContactSpace::kRows, ContactSpace::kRows>;
+  using Slope = Eigen::Matrix<double, kRows, kRows>;
 
   void add_slope(const ContactSpace& space, int place, double step) noexcept;
 

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
+#include "adaptor/sizes.h"
+
 namespace volcontact::adaptor {
 namespace {
 
 constexpr int kNone = -1;
-
-std::size_t size(int count) { return static_cast<std::size_t>(count); }
 
 }  // namespace
 

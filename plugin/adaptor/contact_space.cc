@@ -3,14 +3,10 @@
 
 #include <algorithm>
 
+#include "adaptor/sizes.h"
 #include "adaptor/solids_of_geoms.h"
 
 namespace volcontact::adaptor {
-namespace {
-
-std::size_t size(int count) { return static_cast<std::size_t>(count); }
-
-}  // namespace
 
 // Adds the motion that each degree of freedom beyond the world gives the body at the place.
 void ContactSpace::add_body(const mjModel* m, const mjData* d, const ContactPlace& place, int body,

@@ -11,12 +11,13 @@
 
 namespace volcontact::adaptor {
 
+inline constexpr int kRows = 6;  ///< of a contact place: along and about its three axes
+
 /// What one step of MuJoCo makes of forces at the contact places of an island: u' = u_free + h
 /// Lambda f, with u = J v, Lambda = J H^-1 J' and u_free = u + h J H^-1 t. H is the matrix of the
 /// step: step_matrix.h. Memory is reused from step to step.
 class ContactSpace {
  public:
-  static constexpr int kRows = 6;  ///< of a place
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   using Block = Eigen::Matrix<double, kRows, 1>;
   /// A row a coordinate of the place, a column a degree of freedom of one tree.

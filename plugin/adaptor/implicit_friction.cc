@@ -4,13 +4,10 @@
 #include <cmath>
 
 #include "adaptor/implicit_step.h"
+#include "adaptor/sizes.h"
 
 namespace volcontact::adaptor {
 namespace {
-
-constexpr int kRows = ContactSpace::kRows;
-
-std::size_t size(int i) { return static_cast<std::size_t>(i); }
 
 // The speed s at which friction of the damping c(s) leaves what would move at `free`:
 // s (1 + mobility c(s)) = free. Illinois' rule: c(s) s grows with s, or is constant.

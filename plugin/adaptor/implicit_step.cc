@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "adaptor/sizes.h"
+
 namespace volcontact::adaptor {
 namespace {
 
 using ConstVector = Eigen::Map<const Eigen::VectorXd>;
-constexpr int kRows = ContactSpace::kRows;
-
-std::size_t size(int count) { return static_cast<std::size_t>(count); }
 
 // What lies below this bound is left to the explicit force; in between it is shared.
 constexpr double kSoftNumber = 0.2 * kStiffNumber;

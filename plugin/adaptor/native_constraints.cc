@@ -4,12 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "adaptor/sizes.h"
+
 namespace volcontact::adaptor {
-namespace {
-
-std::size_t size(int count) { return static_cast<std::size_t>(count); }
-
-}  // namespace
 
 void NativeConstraints::read(const mjModel* m, mjData* d) noexcept {
   jacobian_.clear();

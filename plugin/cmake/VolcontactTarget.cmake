@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 
+option(VOLCONTACT_UNITY "Compile several files as one: headers take longer than what is in them" ON)
+
 # Warnings, visibility and language level of every target of ours; third-party targets keep theirs.
 function(volcontact_target name)
   target_compile_features(${name} PUBLIC cxx_std_20)
@@ -15,6 +17,7 @@ function(volcontact_target name)
     CXX_VISIBILITY_PRESET hidden
     VISIBILITY_INLINES_HIDDEN ON
     POSITION_INDEPENDENT_CODE ON
+    UNITY_BUILD ${VOLCONTACT_UNITY}
     COMPILE_WARNING_AS_ERROR ${VOLCONTACT_WARNINGS_AS_ERRORS})
 endfunction()
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::applied_ledger_test {
 namespace {
 
 class AppliedLedger : public ::testing::Test {
@@ -82,4 +82,4 @@ TEST_F(AppliedLedger, ReleaseBeforeAnyEvaluationDoesNothing) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::applied_ledger_test

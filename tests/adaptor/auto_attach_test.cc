@@ -6,7 +6,7 @@
 #include "adaptor/scene_registry.h"
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::auto_attach_test {
 namespace {
 
 using testing::DataPointer;
@@ -86,4 +86,4 @@ TEST_F(AutoAttach, OffAgainItIsInstalledOnlyWhereAModelIsAttached) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::auto_attach_test

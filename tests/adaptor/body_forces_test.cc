@@ -7,7 +7,7 @@
 
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::body_forces_test {
 namespace {
 
 // Two trees, one a branched chain with every joint type, and a static body.
@@ -98,4 +98,4 @@ TEST(DropNonFinite, ZeroesAndReports) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::body_forces_test

@@ -7,7 +7,7 @@
 
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::collision_claims_test {
 namespace {
 
 using testing::DataPointer;
@@ -116,4 +116,4 @@ TEST(CollisionClaims, MixedSceneComesToRest) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::collision_claims_test

@@ -6,7 +6,7 @@
 #include "adaptor/scene_registry.h"
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::composed_solids_test {
 namespace {
 
 using testing::DataPointer;
@@ -178,4 +178,4 @@ TEST(ComposedSolids, SizesAndPosesStayLive) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::composed_solids_test

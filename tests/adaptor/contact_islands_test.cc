@@ -8,7 +8,7 @@
 
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::contact_islands_test {
 namespace {
 
 using testing::ModelPointer;
@@ -102,4 +102,4 @@ TEST(ContactIslands, IsBuiltAnewEachTime) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::contact_islands_test

@@ -5,7 +5,7 @@
 
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::contact_list_test {
 namespace {
 
 using testing::DataPointer;
@@ -70,4 +70,4 @@ TEST_F(ContactList, ModelThatIsNotAttachedIsAnError) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::contact_list_test

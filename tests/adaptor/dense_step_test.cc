@@ -11,7 +11,7 @@
 #include "adaptor/support/models.h"
 #include "adaptor/support/servo_scene.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::dense_step_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -209,4 +209,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& run) { return std::string(run.param.name); });
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::dense_step_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::energy_account_test {
 namespace {
 
 // A simulation whose contacts take the power P(t) by sliding and store E(t) in bristles.
@@ -126,4 +126,4 @@ TEST(EnergyAccount, WhatABristleGivesBackIsDissipatedElsewhere) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::energy_account_test

@@ -7,7 +7,7 @@
 
 #if mjVERSION_HEADER >= 300
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::engine_plugin_test {
 namespace {
 
 using testing::DataPointer;
@@ -145,6 +145,6 @@ TEST_F(EnginePlugin, DrawsPatchesAndForcesWhereTheProgramWantsThem) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::engine_plugin_test
 
 #endif

@@ -9,7 +9,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::envelope_matrix_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -98,4 +98,4 @@ TEST(EnvelopeMatrix, AddsANarrowerOne) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::envelope_matrix_test

@@ -5,7 +5,7 @@
 #include "adaptor/scene_contact.h"
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::formulation_test {
 namespace {
 
 using testing::ModelPointer;
@@ -61,4 +61,4 @@ TEST(Formulation, SoftBodyTakesTheLargerShareOfTheCompliance) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::formulation_test

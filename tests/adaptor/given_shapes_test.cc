@@ -7,7 +7,7 @@
 #include "adaptor/scene_contact.h"
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::given_shapes_test {
 namespace {
 
 using testing::ModelPointer;
@@ -137,4 +137,4 @@ TEST(GivenShapes, ErrorsSayWhatWhereAndTheFix) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::given_shapes_test

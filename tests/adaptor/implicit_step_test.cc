@@ -11,7 +11,7 @@
 #include "adaptor/support/servo_scene.h"
 #include "core/support/random.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::implicit_step_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -270,4 +270,4 @@ TEST(ImplicitStep, RepeatedEvaluationsChangeNothing) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::implicit_step_test

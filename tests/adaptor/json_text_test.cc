@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::json_text_test {
 namespace {
 
 TEST(JsonText, NestsAndSeparates) {
@@ -41,4 +41,4 @@ TEST(JsonText, OneNumberIsNoArray) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::json_text_test

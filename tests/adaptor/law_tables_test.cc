@@ -8,7 +8,7 @@
 #include "adaptor/support/models.h"
 #include "volcontact/force/laws.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::law_tables_test {
 namespace {
 
 TEST(LawTables, FirstLawIsTheListsDefault) {
@@ -49,4 +49,4 @@ TEST(LawTables, UnknownLawNamesTheNearest) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::law_tables_test

@@ -8,7 +8,7 @@
 #include "adaptor/support/models.h"
 #include "volcontact/force/hunt_crossley.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::materials_test {
 namespace {
 
 double value(const PairLaws& laws, const std::string& field) {
@@ -165,4 +165,4 @@ TEST(Materials, StaticFrictionIsNeverBelowTheKineticOne) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::materials_test

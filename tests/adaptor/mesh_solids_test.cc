@@ -7,7 +7,7 @@
 #include "adaptor/solids_of_geoms.h"
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::mesh_solids_test {
 namespace {
 
 // An L of three unit cubes, 1 deep: its hull holds half a cube more.
@@ -120,4 +120,4 @@ TEST(MeshSolids, RestOnAFloorByTheirWeight) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::mesh_solids_test

@@ -5,7 +5,7 @@
 
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::model_content_test {
 namespace {
 
 using testing::ModelPointer;
@@ -70,4 +70,4 @@ TEST_F(ModelContentTest, UsersNumbersAreNotWatched) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::model_content_test

@@ -10,7 +10,7 @@
 
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::native_constraints_test {
 namespace {
 
 using testing::Attached;
@@ -106,4 +106,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& run) { return std::string(run.param.name); });
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::native_constraints_test

@@ -9,7 +9,7 @@
 
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::pair_list_test {
 namespace {
 
 using Pairs = std::set<std::pair<int, int>>;
@@ -187,4 +187,4 @@ TEST_F(CullTest, KeepsPosesThatAreNoNumbersForTheEngineToReport) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::pair_list_test

@@ -5,7 +5,7 @@
 
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::passive_callback_test {
 namespace {
 
 using testing::DataPointer;
@@ -111,4 +111,4 @@ TEST_F(PassiveCallback, ModelsCompileWhileItIsInstalled) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::passive_callback_test

@@ -9,7 +9,7 @@
 #include "adaptor/support/count_allocations.h"
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::scene_contact_test {
 namespace {
 
 using testing::Attached;
@@ -453,4 +453,4 @@ TEST(SceneContact, ReadingChangesNothing) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::scene_contact_test

@@ -5,7 +5,7 @@
 
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::scene_key_test {
 namespace {
 
 using testing::contains;
@@ -43,4 +43,4 @@ TEST(SceneKey, AMissingPartIsNamed) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::scene_key_test

@@ -5,7 +5,7 @@
 
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::scene_keys_test {
 namespace {
 
 // Two free boxes and a floor; the second box has two geoms.
@@ -256,4 +256,4 @@ TEST(SceneKeysError, TextIsNotRead) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::scene_keys_test

@@ -5,7 +5,7 @@
 
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::scene_registry_test {
 namespace {
 
 using testing::Attached;
@@ -152,4 +152,4 @@ TEST(LiveNumbers, TargetCannotChangeWhileAttached) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::scene_registry_test

@@ -9,7 +9,7 @@
 #include "adaptor/support/count_allocations.h"
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::scene_states_test {
 namespace {
 
 // Two boxes, one on the other, on a floor that is pushed sideways by gravity; bristles hold them.
@@ -153,4 +153,4 @@ TEST(SceneStates, ASceneWithoutMemoryKeepsNoRows) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::scene_states_test

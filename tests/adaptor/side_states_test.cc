@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::side_states_test {
 namespace {
 
 // Addresses stand for data; nothing is read there.
@@ -49,4 +49,4 @@ TEST(SideStates, ThreadsHaveDataOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::side_states_test

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::site_pool_test {
 namespace {
 
 constexpr SitePoolLayout kLayout{5, 3};
@@ -61,4 +61,4 @@ TEST(SitePool, NeedsNoNumbersWhereNothingIsKept) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::site_pool_test

@@ -5,7 +5,7 @@
 
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::solids_of_geoms_test {
 namespace {
 
 constexpr const char* kEveryType = R"(
@@ -88,4 +88,4 @@ TEST(SolidsOfGeoms, PoseMapsGeomToWorld) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::solids_of_geoms_test

@@ -8,7 +8,7 @@
 #include "adaptor/support/models.h"
 #include "core/support/random.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::stiff_contact_test {
 namespace {
 
 using testing::Attached;
@@ -205,4 +205,4 @@ TEST(StiffContact, RungeKuttaIsWarnedOfWhereContactIsStiff) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::stiff_contact_test

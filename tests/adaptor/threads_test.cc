@@ -9,7 +9,7 @@
 // Many threads step their own data of one model. ./run threads runs these under the thread
 // sanitizer.
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::threads_test {
 namespace {
 
 using testing::ModelPointer;
@@ -94,4 +94,4 @@ TEST(Threads, ScenesMayComeAndGoMeanwhile) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::threads_test

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::userdata_layout_test {
 namespace {
 
 // Integrates a constant rate as a law with one state would, through any order of evaluations.
@@ -184,4 +184,4 @@ TEST(UserdataLayout, OtherNumberOfStatesKeepsTheLedger) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::userdata_layout_test

@@ -6,7 +6,7 @@
 #include "adaptor/mujoco_compat.h"
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::volcontact_mujoco_test {
 namespace {
 
 using testing::ModelPointer;
@@ -281,4 +281,4 @@ TEST(Interface, ReadingAModelThatIsNotAttachedIsAnError) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::volcontact_mujoco_test

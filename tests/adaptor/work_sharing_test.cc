@@ -8,7 +8,7 @@
 
 #include <thread>
 
-namespace volcontact::adaptor {
+namespace volcontact::adaptor::work_sharing_test {
 namespace {
 
 TEST(WorkSharing, AloneAnEvaluationGetsTheThreadsItWants) {
@@ -52,4 +52,4 @@ TEST(WorkSharing, ForkedChildHasOneAndComesToAnEnd) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor
+}  // namespace volcontact::adaptor::work_sharing_test

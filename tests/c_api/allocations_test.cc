@@ -2,7 +2,7 @@
 #include "adaptor/support/count_allocations.h"
 #include "c_api/support.h"
 
-namespace volcontact::c_api::testing {
+namespace volcontact::c_api::testing::allocations_test {
 namespace {
 
 TEST(CAllocations, WarmEvaluationAllocatesNothing) {
@@ -33,4 +33,4 @@ TEST(CAllocations, WarmEvaluationAllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace volcontact::c_api::testing
+}  // namespace volcontact::c_api::testing::allocations_test

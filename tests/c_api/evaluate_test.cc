@@ -6,7 +6,7 @@
 #include "volcontact/force/laws.h"
 #include "volcontact/model/contact_model.h"
 
-namespace volcontact::c_api::testing {
+namespace volcontact::c_api::testing::evaluate_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -221,4 +221,4 @@ TEST(CInterference, IsTheOverlapAlone) {
 }
 
 }  // namespace
-}  // namespace volcontact::c_api::testing
+}  // namespace volcontact::c_api::testing::evaluate_test

@@ -3,7 +3,7 @@
 
 #include "c_api/support.h"
 
-namespace volcontact::c_api::testing {
+namespace volcontact::c_api::testing::guarded_test {
 namespace {
 
 TEST(CVersion, HeaderAndLibraryMustAgreeInMinor) {
@@ -37,4 +37,4 @@ TEST(CErrors, EachThreadHasItsOwnText) {
 }
 
 }  // namespace
-}  // namespace volcontact::c_api::testing
+}  // namespace volcontact::c_api::testing::guarded_test

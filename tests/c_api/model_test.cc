@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "c_api/support.h"
 
-namespace volcontact::c_api::testing {
+namespace volcontact::c_api::testing::model_test {
 namespace {
 
 std::string chosen(const Model& model, const char* name) {
@@ -129,4 +129,4 @@ TEST(CModel, StateSizeFollowsTheLaws) {
 }
 
 }  // namespace
-}  // namespace volcontact::c_api::testing
+}  // namespace volcontact::c_api::testing::model_test

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "c_api/support.h"
 
-namespace volcontact::c_api::testing {
+namespace volcontact::c_api::testing::solid_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -80,4 +80,4 @@ TEST(CSolid, ComposedSolidIsTheDifferenceOfItsVolumes) {
 }
 
 }  // namespace
-}  // namespace volcontact::c_api::testing
+}  // namespace volcontact::c_api::testing::solid_test

@@ -4,7 +4,7 @@
 
 #include "c_api/support.h"
 
-namespace volcontact::c_api::testing {
+namespace volcontact::c_api::testing::threads_test {
 namespace {
 
 // A leaning box that slides and turns on another; what it feels after `steps` steps.
@@ -49,4 +49,4 @@ TEST(CThreads, EightThreadsOnOneModelGiveTheBitsOfOne) {
 }
 
 }  // namespace
-}  // namespace volcontact::c_api::testing
+}  // namespace volcontact::c_api::testing::threads_test

@@ -80,4 +80,9 @@ inline Mat3 basis_with_z(const Vec3& n) {
   return r;
 }
 
+/// Corner i of the cube of half size 1, by the bits of i.
+inline Vec3 corner_signs(int i) {
+  return {i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0};
+}
+
 }  // namespace volcontact

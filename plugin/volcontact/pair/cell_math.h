@@ -12,11 +12,6 @@ inline constexpr int kFirstFace = 6;
 /// Share of |slope|; where a bent face rises less than that there is no use in following it.
 inline constexpr double kSteepEnough = 0.05;
 
-/// Corner i of the cube of half size 1, by the bits of i.
-inline Vec3 corner_signs(int i) {
-  return {i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0};
-}
-
 /// The cell's sides as the box graph numbers them: -z, +z, -y, +y, -x, +x.
 inline int cell_side(int axis, bool high) { return 2 * (2 - axis) + (high ? 1 : 0); }
 inline Vec3 cell_side_normal(int side) {

@@ -141,7 +141,7 @@ void CellTree::sample(int owner, int first) {
     if (!(std::abs(distance) < cell.half.norm())) continue;
     s_.sampled.push_back(i);
     for (int k = 0; k < 8; ++k) {
-      const Vec3 corner = cell.center + cell_math::corner_signs(k).cwiseProduct(cell.half);
+      const Vec3 corner = cell.center + corner_signs(k).cwiseProduct(cell.half);
       s_.sample_points.push_back(X_SW * corner);
     }
   }

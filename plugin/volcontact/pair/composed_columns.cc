@@ -11,8 +11,8 @@
 namespace volcontact {
 namespace {
 
-constexpr double kAcross = 1e-12;    // how far a plane across an axis may lean
-constexpr double kRestError = 1e-6;  // of V; as measured
+constexpr double kLeanAcross = 1e-12;        // how far a plane across an axis may lean
+constexpr double kComposedRestError = 1e-6;  // of V; as measured
 constexpr double kSameSeam = 1e-9;   // of the size of a body: a bore through it ends in its faces
 constexpr double kDeviations = 4.0;  // from its middle a region reaches no farther
 constexpr double kAlongAxis = 0.5;   // share of the area vector: a face is pressed, not the wall
@@ -190,7 +190,7 @@ class ComposedColumns {
     solid.planes.clear();
     for (const bool across : {true, false}) {
       for (const PlaneFace& plane : s_.faces.planes) {
-        if ((1.0 - std::abs(plane.normal.z()) < kAcross) != across) continue;
+        if ((1.0 - std::abs(plane.normal.z()) < kLeanAcross) != across) continue;
         solid.planes.push_back({plane.normal, plane.offset});
       }
       if (across) solid.planes_across = static_cast<int>(solid.planes.size());
@@ -230,7 +230,7 @@ class ComposedColumns {
       m.depth = m.volume / area;
       m.depth_moment = 0.5 * m.volume * m.depth;
     }
-    m.volume_error = sum.doubt + kRestError * m.volume;
+    m.volume_error = sum.doubt + kComposedRestError * m.volume;
     s_.sites.push_back({transformed(m, X_AQ), number});
   }
 
@@ -265,7 +265,7 @@ class ComposedColumns {
     const Bore& bore = s_.bores[k];
     for (std::size_t i = 0; i < k; ++i) {
       const Bore& other = s_.bores[i];
-      if (bore.is_cone() || other.is_cone() || bore.axis.cross(other.axis).norm() > kAcross ||
+      if (bore.is_cone() || other.is_cone() || bore.axis.cross(other.axis).norm() > kLeanAcross ||
           bore.from_axis(other.center).norm() < bore.radius + other.radius) {
         return false;
       }

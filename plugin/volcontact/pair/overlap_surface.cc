@@ -11,7 +11,7 @@ namespace {
 
 using Column = OverlapSurface::Column;
 
-constexpr int kMostSteps = 100;      // towards one end of a column
+constexpr int kMostWaySteps = 100;   // towards one end of a column
 constexpr int kHalvings = 7;         // of a grid step, to find the rim
 constexpr int kCoarse = 24;          // columns across, to find how far the site reaches
 constexpr double kReach = 3.2;       // standard deviations; a box has 1.7, a disc 2, a triangle 2.8
@@ -76,7 +76,7 @@ class Probe {
  private:
   std::optional<Vec3> end(const Vec3& start, const Vec3& direction) const {
     double way = 0.0;
-    for (int step = 0; step < kMostSteps && way <= 2.0 * frame_.half_height; ++step) {
+    for (int step = 0; step < kMostWaySteps && way <= 2.0 * frame_.half_height; ++step) {
       const Vec3 p = start + way * direction;
       const double gap = std::max(distance_to(a_, X_AW_ * p), distance_to(b_, X_BW_ * p));
       if (gap <= close_) return p;

@@ -203,10 +203,7 @@ OverlapWindow find_window(const SolidView& a, const SolidView& b, const Pose& X_
   CutPolytope& hull = hull_W;  // in H until the end
   hull.start(box_graph());
   const Vec3 half = start.half_sizes();
-  for (int i = 0; i < 8; ++i) {
-    hull.points()[i] =
-        half.cwiseProduct(Vec3(i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0));
-  }
+  for (int i = 0; i < 8; ++i) hull.points()[i] = half.cwiseProduct(corner_signs(i));
   window.apart = !cut_by_bounds(other, hull);
   if (!window.apart) shrink(solids, hull);
   window.apart |= hull.size() == 0;

@@ -10,10 +10,10 @@
 namespace volcontact {
 namespace {
 
-constexpr int kTurns = 32;           // half-planes through the axis
-constexpr int kMostSteps = 60;       // of any search
-constexpr double kNear = 1e-12;      // where a search ends, per length searched
-constexpr double kFirstReach = 2.0;  // spreads from the centroid to the rim, as a first guess
+constexpr int kTurns = 32;            // half-planes through the axis
+constexpr int kMostSearchSteps = 60;  // of any search
+constexpr double kNear = 1e-12;       // where a search ends, per length searched
+constexpr double kFirstReach = 2.0;   // spreads from the centroid to the rim, as a first guess
 
 class ColumnField {
  public:
@@ -88,8 +88,8 @@ class ColumnField {
       outside = rho, miss = overlap, known_miss = at.hits();
       return false;
     };
-    for (int step = 0; step < kMostSteps && look(outside); ++step) outside = 2.0 * inside;
-    for (int step = 0; step < kMostSteps && outside - inside > kNear * outside; ++step) {
+    for (int step = 0; step < kMostSearchSteps && look(outside); ++step) outside = 2.0 * inside;
+    for (int step = 0; step < kMostSearchSteps && outside - inside > kNear * outside; ++step) {
       // From inside a concave function lies above the chord: the chord's end is inside as well.
       double next = 0.5 * (inside + outside);
       const bool by_chord = known_miss && length > 0.0 && miss < 0.0 && step % 3 != 2;
@@ -120,7 +120,7 @@ class ColumnField {
     const double width = high - low;
     double at_low = lead(at.foot + low * t_), at_high = lead(at.foot + high * t_), last = low;
     int kept = 0;  // which end the step before left in place
-    for (int step = 0; step < kMostSteps; ++step) {
+    for (int step = 0; step < kMostSearchSteps; ++step) {
       const double s = (low * at_high - high * at_low) / (at_high - at_low);
       if (!(s > low && s < high)) break;
       const double at_s = lead(at.foot + s * t_);

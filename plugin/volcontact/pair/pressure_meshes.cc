@@ -11,10 +11,10 @@
 namespace volcontact {
 namespace {
 
-constexpr double kTolerance = 2e-4;    // of the force, over V: where the division ends
-constexpr int kMostDistances = 12000;  // of the division
-constexpr double kFinest = 0.5;        // of the patch's smaller width: what no triangle may hide
-constexpr int kMostSteps = 8;          // of a search along a column
+constexpr double kForceTolerance = 2e-4;  // of the force, over V: where the division ends
+constexpr int kMostDistances = 12000;     // of the division
+constexpr double kFinest = 0.5;           // of the patch's smaller width: what no triangle may hide
+constexpr int kMostColumnSteps = 8;       // of a search along a column
 constexpr double kNearEnd = 1e-3;
 
 bool a_carries(const Shape& a, const Shape& b, double share_of_a) {
@@ -142,7 +142,7 @@ class MeshField {
   void refine() {
     while (!leaves_.empty() && asked_ < kMostDistances) {
       const double most = leaves_.front().off;
-      if (most < kInfinity && all_off_ <= kTolerance * volume_) break;
+      if (most < kInfinity && all_off_ <= kForceTolerance * volume_) break;
       std::pop_heap(leaves_.begin(), leaves_.end(), less_off);
       const Leaf leaf = leaves_.back();
       leaves_.pop_back();
@@ -172,7 +172,7 @@ class MeshField {
     const double top = depth(x);
     if (!(top > 0.0)) return 0.0;
     double end = top, before = 0.0, at_before = top;
-    for (int step = 0; step < kMostSteps && end < reach_; ++step) {
+    for (int step = 0; step < kMostColumnSteps && end < reach_; ++step) {
       const double at_end = depth(x - end * t_);
       if (at_end <= kNearEnd * top) break;
       const double secant = at_end < at_before ? at_end * (end - before) / (at_before - at_end) : 0;

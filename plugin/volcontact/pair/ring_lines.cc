@@ -12,15 +12,15 @@
 namespace volcontact {
 namespace {
 
-constexpr double kAxial = 1e-2;       // of directions, and of R: a face that holds the axis
-constexpr double kLostFace = 1e-5;    // of the area: a face that the sums have missed
-constexpr double kWidestAngle = 1.6;  // of an undivided arc [rad]
-constexpr double kSameAngle = 1e-11;  // [rad]
-constexpr double kNearEnd = 3e-4;     // of a range: to which its ends are known at least
-constexpr double kOnAxis = 1e-8;      // of a plane from the axis, per radius
-constexpr double kEndError = 5.0;     // error by its estimate where an arc ends in nothing
-constexpr double kTarget = 1e-2;      // share of the tolerance asked of an arc: kinks may be hidden
-constexpr double kWhole = 0.999;      // share of a solid in the overlap, that is all of it
+constexpr double kAxial = 1e-2;         // of directions, and of R: a face that holds the axis
+constexpr double kLostFace = 1e-5;      // of the area: a face that the sums have missed
+constexpr double kWidestAngle = 1.6;    // of an undivided arc [rad]
+constexpr double kSameAngle = 1e-11;    // [rad]
+constexpr double kNearRangeEnd = 3e-4;  // of a range: to which its ends are known at least
+constexpr double kOnAxis = 1e-8;        // of a plane from the axis, per radius
+constexpr double kEndError = 5.0;       // error by its estimate where an arc ends in nothing
+constexpr double kTarget = 1e-2;  // share of the tolerance asked of an arc: kinks may be hidden
+constexpr double kWhole = 0.999;  // share of a solid in the overlap, that is all of it
 
 class RingRun {
  public:
@@ -92,7 +92,7 @@ class RingRun {
       range.low = s_.breaks[0];
       range.high = range.low + 2.0 * kPi;
     }
-    const double near_end = kNearEnd * (range.high - range.low);
+    const double near_end = kNearRangeEnd * (range.high - range.low);
     for (double angle : s_.breaks) {
       const double turned =
           angle - 2.0 * kPi * std::floor((angle - range.low + kSameAngle) / (2.0 * kPi));

@@ -12,13 +12,13 @@
 namespace volcontact {
 namespace {
 
-constexpr int kSamples = 11;        // of a range of circles, besides the ends
-constexpr int kTurnSamples = 32;    // of a whole turn
-constexpr int kMostTurn = 64;       // even steps of it
-constexpr int kMostDepth = 24;      // of divisions of a range
-constexpr int kMostCircles = 1000;  // besides samples: then the surface stays open
-constexpr int kMostEven = 32;       // steps over a range
-constexpr double kOneEvent = 3e-6;  // of a range of circles: events this near are one
+constexpr int kSamples = 11;            // of a range of circles, besides the ends
+constexpr int kTurnSamples = 32;        // of a whole turn
+constexpr int kMostTurn = 64;           // even steps of it
+constexpr int kMostDepth = 24;          // of divisions of a range
+constexpr int kMostMoreCircles = 1000;  // besides samples: then the surface stays open
+constexpr int kMostEven = 32;           // steps over a range
+constexpr double kOneEvent = 3e-6;      // of a range of circles: events this near are one
 constexpr double kOpenShare = 0.1;
 constexpr int kMostRetries = 6;  // when a slice shows a change that no sample has shown
 
@@ -248,7 +248,7 @@ class PatchSearch {
     // Where the surface looks at the place that the flux is about, the area alone shows an error.
     const double other = kOpenShare * lever_ * legendre_error(areas);
     if (std::max(error, other) > effort_.target * out_.volume_scale
-            ? depth < kMostDepth && spent_ < kMostCircles
+            ? depth < kMostDepth && spent_ < kMostMoreCircles
             : depth < (effort_.least_steps > kLanes ? 2 : 0)) {
       out_.slices.resize(slices);
       out_.arcs.resize(arcs);

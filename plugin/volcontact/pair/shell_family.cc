@@ -14,10 +14,6 @@ constexpr double kPole = 0.5 * kPi - 1e-9;  // as good as the pole: what is left
 constexpr double kAside = 0.3;              // of a ball's radius: the box is to one side
 constexpr double kFlatTurn = 1.4;  // half a range of angles within which a box is aside [rad]
 
-Vec3 corner(const Vec3& half, int i) {
-  return half.cwiseProduct(Vec3(i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0));
-}
-
 }  // namespace
 
 ShellFamily::ShellFamily(const ShellFace& face, const Vec3& half) : face_(face) {
@@ -54,11 +50,11 @@ void ShellFamily::set_plane(const Vec3& half) {
   low_ = kInfinity;
   high_ = -kInfinity;
   for (int i = 0; i < 8; ++i) {
-    const Vec3 p = corner(half, i);
+    const Vec3 p = half.cwiseProduct(corner_signs(i));
     const double height = axis_.dot(p) - face_.offset;
     for (int k = 0; k < 3; ++k) {
       if (i & (1 << k)) continue;
-      const Vec3 q = corner(half, i | (1 << k));
+      const Vec3 q = half.cwiseProduct(corner_signs(i | (1 << k)));
       const double other = axis_.dot(q) - face_.offset;
       if ((height > 0.0) == (other > 0.0)) continue;
       const double at = e_.dot(p + height / (height - other) * (q - p));
@@ -78,7 +74,7 @@ void ShellFamily::set_about_axis(const Vec3& axis, const Vec3& half) {
   low_ = kInfinity;
   high_ = -kInfinity;
   for (int i = 0; i < 8; ++i) {
-    const Vec3 p = corner(half, i) - origin_;
+    const Vec3 p = half.cwiseProduct(corner_signs(i)) - origin_;
     const double angle = std::atan2(f_.dot(p), e_.dot(p));
     low_ = std::min(low_, angle);
     high_ = std::max(high_, angle);
@@ -103,7 +99,7 @@ void ShellFamily::set_ball(const Vec3& half) {
   f_ = basis.col(1);
   double least = 1.0, most = -1.0;
   for (int i = 0; i < 8; ++i) {
-    const double height = axis_.dot(round.map * (corner(half, i) - origin_));
+    const double height = axis_.dot(round.map * (half.cwiseProduct(corner_signs(i)) - origin_));
     least = std::min(least, height);
     most = std::max(most, height);
   }

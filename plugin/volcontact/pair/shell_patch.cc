@@ -13,7 +13,7 @@ constexpr int kPlaces = 16;         // curves looked at first
 constexpr double kOffset = 0.4137;  // of a step: no symmetric pose has one on its axes
 constexpr int kMostCurves = 2000;   // of a face
 constexpr int kMostDepth = 6;       // of divisions of a stretch
-constexpr int kMostRounds = 12;     // of sweeps that find another change
+constexpr int kMostSweeps = 12;     // of sweeps that find another change
 constexpr int kStrictRounds = 3;
 constexpr double kSharp = 1e-10;            // of an event, per range
 constexpr double kBeside = 1e-9;            // how far from an event to look, per range
@@ -71,7 +71,7 @@ class FaceSweep {
       s_.samples.push_back({family_.high(), {}});
     }
     for (const double u : patch_.hints) look(u);
-    for (round_ = 0; round_ < kMostRounds; ++round_) {
+    for (round_ = 0; round_ < kMostSweeps; ++round_) {
       patch_.stretches.clear();
       surface_.clear();
       again_ = false;

@@ -16,10 +16,6 @@ Kind kind_of(const RoundFace& round) {
   return round.map.row(2).isZero(0.0) ? Kind::kTube : Kind::kBall;
 }
 
-Vec3 corner(const Vec3& half, int i) {
-  return half.cwiseProduct(Vec3(i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0));
-}
-
 enum class Where { kWithin, kBeyond, kThrough };
 
 // Where a box about the origin lies, of a torus: from the distance of its middle.
@@ -46,7 +42,7 @@ Where place_of(const ShellFace& face, const Vec3& half) {
     out = length > 0.0 ? Vec3(out / length) : Vec3::Zero();
     const bool cone = face.kind == Kind::kCone;
     for (int i = 0; i < 8; ++i) {
-      const Vec3 y = face.round.map * (corner(half, i) - face.round.center);
+      const Vec3 y = face.round.map * (half.cwiseProduct(corner_signs(i)) - face.round.center);
       const double level = cone ? y.z() : 1.0;
       const double across = face.kind == Kind::kBall ? y.norm() : std::hypot(y.x(), y.y());
       most = std::max(most, across - level);

@@ -9,7 +9,7 @@
 namespace volcontact {
 namespace {
 
-constexpr double kRestError = 1e-6;  // of V; as measured
+constexpr double kTubeRestError = 1e-6;  // of V; as measured
 
 class TorusColumns {
  public:
@@ -67,7 +67,7 @@ class TorusColumns {
     VolumeMetrics m = sum.moments.metrics();
     m.depth_moment = sum.depth_moment;
     m.depth = sum.depth;
-    m.volume_error = sum.doubt + kRestError * m.volume;
+    m.volume_error = sum.doubt + kTubeRestError * m.volume;
     out_.sites.push_back(transformed(m, X_AB_));
     out_.total = out_.total + out_.sites.back();
   }

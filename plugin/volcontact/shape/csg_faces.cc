@@ -143,8 +143,7 @@ PartHull::PartHull(const SimpleShape& shape, const Pose& X_SM) {
         polytope_.start(box_graph());
         const Vec3 half = box.half_sizes();
         for (int i = 0; i < 8; ++i) {
-          const Vec3 corner(i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0);
-          polytope_.points()[i] = X_SM * (box.center() + half.cwiseProduct(corner));
+          polytope_.points()[i] = X_SM * (box.center() + half.cwiseProduct(corner_signs(i)));
         }
         using S = std::decay_t<decltype(solid)>;
         if constexpr (std::is_same_v<S, ConvexPolytope>) {

@@ -37,8 +37,7 @@ void split_box(const Box& box, const Pose& X_SM, int axis, const Plane& plane, S
 ConvexPolytope as_polytope(const Box& box) {
   std::vector<Vec3> corners;
   for (int i = 0; i < 8; ++i) {
-    const Vec3 signs(i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0);
-    corners.push_back(box.half_sizes().cwiseProduct(signs));
+    corners.push_back(box.half_sizes().cwiseProduct(corner_signs(i)));
   }
   return ConvexPolytope(corners);
 }

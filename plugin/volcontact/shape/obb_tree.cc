@@ -33,9 +33,9 @@ struct Branch {
   int left = -1;  // the right one follows it; -1 = leaf
 };
 
-class Builder {
+class TreeBuilder {
  public:
-  explicit Builder(const MeshTopology& mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
+  explicit TreeBuilder(const MeshTopology& mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
     std::iota(order_.begin(), order_.end(), 0);
     for (const Triangle& t : mesh.triangles) {
       const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
@@ -287,6 +287,6 @@ class Builder {
 
 }  // namespace
 
-ObbTree make_obb_tree(const MeshTopology& topology) { return Builder(topology).build(); }
+ObbTree make_obb_tree(const MeshTopology& topology) { return TreeBuilder(topology).build(); }
 
 }  // namespace volcontact

@@ -39,9 +39,9 @@ std::vector<int> fan_of(int corner, int first, const Sides& sides) {
   return fan;
 }
 
-class Builder {
+class GraphBuilder {
  public:
-  Builder(const std::vector<Vec3>& corners, const std::vector<std::vector<int>>& loops)
+  GraphBuilder(const std::vector<Vec3>& corners, const std::vector<std::vector<int>>& loops)
       : sides_(sides_of(loops)) {
     std::map<int, int> first_end;
     for (const auto& [edge, side] : sides_) first_end.emplace(edge.first, edge.second);
@@ -99,15 +99,13 @@ class Builder {
 
 PolytopeGraph make_polytope_graph(const std::vector<Vec3>& corners,
                                   const std::vector<std::vector<int>>& loops) {
-  return Builder(corners, loops).graph();
+  return GraphBuilder(corners, loops).graph();
 }
 
 const PolytopeGraph& box_graph() {
   static const PolytopeGraph graph = [] {
     std::vector<Vec3> corners;
-    for (int i = 0; i < 8; ++i) {
-      corners.emplace_back(i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0);
-    }
+    for (int i = 0; i < 8; ++i) corners.push_back(corner_signs(i));
     return make_polytope_graph(
         corners,
         {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}});

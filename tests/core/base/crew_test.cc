@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace volcontact {
+namespace volcontact::crew_test {
 namespace {
 
 TEST(Crew, CallsEveryTaskOnce) {
@@ -91,4 +91,4 @@ TEST(Crew, NothingToDoIsNothingDone) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::crew_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace volcontact {
+namespace volcontact::disjoint_sets_test {
 namespace {
 
 TEST(DisjointSets, EveryNumberBeginsAlone) {
@@ -35,4 +35,4 @@ TEST(DisjointSets, TheLeastNumberIsTheRootWhateverTheOrder) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::disjoint_sets_test

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace volcontact {
+namespace volcontact::fields_test {
 namespace {
 
 // A component with one field of each kind.
@@ -81,4 +81,4 @@ TEST(Range, NeverInfiniteOrNotANumber) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::fields_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace volcontact {
+namespace volcontact::ordered_sum_test {
 namespace {
 
 // Terms of very different size and sign: any other order gives other bits.
@@ -67,4 +67,4 @@ TEST(OrderedSum, ScratchLeavesNoTrace) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::ordered_sum_test

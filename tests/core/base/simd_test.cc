@@ -8,7 +8,7 @@
 #define VOLCONTACT_SIMD_KERNEL "core/base/simd_test_kernel.inc"
 #include "volcontact/base/simd_paths.inc"
 
-namespace volcontact {
+namespace volcontact::simd_test {
 namespace {
 
 constexpr SimdPath kPaths[] = {SimdPath::kPortable, SimdPath::kAvx2, SimdPath::kAvx512};
@@ -80,4 +80,4 @@ TEST(Simd, EveryMachineRunsThePortablePath) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::simd_test

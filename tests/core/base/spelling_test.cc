@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace volcontact {
+namespace volcontact::spelling_test {
 namespace {
 
 const std::vector<std::string> kWords{"stiffness", "damping", "friction", "static_friction"};
@@ -32,4 +32,4 @@ TEST(Spelling, EndsAMessage) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::spelling_test

@@ -7,7 +7,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::types_test {
 namespace {
 
 constexpr double kRounding = 1e-14;  // of a few products of numbers of size 1
@@ -73,4 +73,4 @@ TEST(BasisWithZ, IsOrthonormalAndRightHandedForEveryDirection) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::types_test

@@ -10,7 +10,7 @@
 #include "core/support/reference_integral.h"
 #include "volcontact/pair/interference.h"
 
-namespace volcontact::test {
+namespace volcontact::test::acceptance_test {
 namespace {
 
 // Volume, centroid and inertia, relative; the area vector by A's area, along the normal n alone
@@ -205,4 +205,4 @@ TEST(Acceptance, TheOctreeBoundsAPegInABore) {
 }
 
 }  // namespace
-}  // namespace volcontact::test
+}  // namespace volcontact::test::acceptance_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace volcontact::test {
+namespace volcontact::test::characterisation_test {
 namespace {
 
 // The sanitizers make every pose a hundred times slower and look for other faults: fewer will do.
@@ -107,4 +107,4 @@ TEST(Spread, MedianAndWorst) {
 }
 
 }  // namespace
-}  // namespace volcontact::test
+}  // namespace volcontact::test::characterisation_test

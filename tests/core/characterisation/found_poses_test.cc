@@ -8,7 +8,7 @@
 #include "core/support/overlap_checks.h"
 #include "volcontact/pair/interference.h"
 
-namespace volcontact::test {
+namespace volcontact::test::found_poses_test {
 namespace {
 
 struct Found {
@@ -90,4 +90,4 @@ TEST(FoundPoses, ThinOverlapsAreWhereTheBodiesAre) {
 }
 
 }  // namespace
-}  // namespace volcontact::test
+}  // namespace volcontact::test::found_poses_test

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace volcontact::test {
+namespace volcontact::test::fuzz_test {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -81,4 +81,4 @@ TEST(Fuzz, PosesAreWrittenSoThatTheyCanBeReadBack) {
 }
 
 }  // namespace
-}  // namespace volcontact::test
+}  // namespace volcontact::test::fuzz_test

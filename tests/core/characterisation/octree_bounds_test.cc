@@ -8,7 +8,7 @@
 #include "core/support/random_solids.h"
 #include "volcontact/pair/octree.h"
 
-namespace volcontact::test {
+namespace volcontact::test::octree_bounds_test {
 namespace {
 
 constexpr int kLines = 2000;
@@ -84,4 +84,4 @@ TEST(LineLattice, KnowsTheVolumeOfABallInARoom) {
 }
 
 }  // namespace
-}  // namespace volcontact::test
+}  // namespace volcontact::test::octree_bounds_test

@@ -8,7 +8,7 @@
 #include "core/support/csg_solids.h"
 #include "core/support/evaluated.h"
 
-namespace volcontact::test {
+namespace volcontact::test::reference_integral_test {
 namespace {
 
 Reference integral(const Shape& a, const Shape& b, const Pose& X_AB, const Vec3& inside,
@@ -205,4 +205,4 @@ TEST(ContactPoses, ShallowPosesOverlapAndTheSurfaceNormalsAreOpposed) {
 }
 
 }  // namespace
-}  // namespace volcontact::test
+}  // namespace volcontact::test::reference_integral_test

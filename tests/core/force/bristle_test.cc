@@ -8,7 +8,7 @@
 #include <cmath>
 #include <functional>
 
-namespace volcontact {
+namespace volcontact::bristle_test {
 namespace {
 
 constexpr double kRounding = 1e-12;
@@ -307,4 +307,4 @@ TEST(Bristle, RefusesStaticBelowKineticFriction) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::bristle_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace volcontact {
+namespace volcontact::coupling_test {
 namespace {
 
 const Vec3 kNormal = Vec3(0.3, -0.4, std::sqrt(0.75));
@@ -146,4 +146,4 @@ TEST(GeneralizedSlip, IsZeroAtRestForEveryCoupling) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::coupling_test

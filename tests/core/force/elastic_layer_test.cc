@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace volcontact {
+namespace volcontact::elastic_layer_test {
 namespace {
 
 TEST(ElasticLayer, FreeLayerIsModulusOverThickness) {
@@ -47,4 +47,4 @@ TEST(ElasticLayer, EqualRestitutionsStay) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::elastic_layer_test

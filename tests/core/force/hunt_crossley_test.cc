@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-namespace volcontact {
+namespace volcontact::hunt_crossley_test {
 namespace {
 
 NormalOutput evaluate(const HuntCrossley& law, double volume, double speed) {
@@ -142,4 +142,4 @@ TEST(HuntCrossley, RejectsNegativeStiffnessByName) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::hunt_crossley_test

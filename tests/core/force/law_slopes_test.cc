@@ -11,7 +11,7 @@
 #include "volcontact/force/regularized_coulomb.h"
 #include "volcontact/force/volume_spring.h"
 
-namespace volcontact {
+namespace volcontact::law_slopes_test {
 namespace {
 
 constexpr double kDifference = 1e-6;  // of the forward differences below, whose laws are linear
@@ -166,4 +166,4 @@ TEST(FrictionSlope, OfALawThatDoesNotKnowItComesFromDifferences) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::law_slopes_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace volcontact {
+namespace volcontact::laws_test {
 namespace {
 
 std::string message_of(auto&& call) {
@@ -46,4 +46,4 @@ TEST(Laws, ValuesComeBackByName) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::laws_test

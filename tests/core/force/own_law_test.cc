@@ -5,7 +5,7 @@
 
 #include "volcontact/force/laws.h"
 
-namespace volcontact {
+namespace volcontact::own_law_test {
 namespace {
 
 // Drag that grows with the way: a law as a user writes it.
@@ -62,4 +62,4 @@ TEST(OwnLaw, NameThatIsTakenIsRefused) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::own_law_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace volcontact {
+namespace volcontact::regularized_coulomb_test {
 namespace {
 
 constexpr double kRounding = 1e-14;
@@ -74,4 +74,4 @@ TEST(RegularizedCoulomb, ChoosesTheCouplingByWord) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::regularized_coulomb_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace volcontact {
+namespace volcontact::restitution_test {
 namespace {
 
 // Nine values of A = a v_i with their e: docs/theory.md, "Restitution"; six digits.
@@ -38,4 +38,4 @@ TEST(Restitution, DampingNumberIsTheInverse) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::restitution_test

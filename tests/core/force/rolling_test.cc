@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace volcontact {
+namespace volcontact::rolling_test {
 namespace {
 
 // A slab of half sizes (0.3, 0.2, 0.01) pressed along z: int y^2 dV = V 0.04 / 3.
@@ -51,4 +51,4 @@ TEST(Rolling, IsZeroWithoutDampingOrVolume) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::rolling_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace volcontact {
+namespace volcontact::volume_spring_test {
 namespace {
 
 TEST(VolumeSpring, DoesNotKnowTheSpeed) {
@@ -23,4 +23,4 @@ TEST(VolumeSpring, RejectsZeroStiffness) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::volume_spring_test

@@ -9,7 +9,7 @@
 #include "core/support/random.h"
 #include "volcontact/shape/box.h"
 
-namespace volcontact {
+namespace volcontact::volume_metrics_test {
 namespace {
 
 using test::Random;
@@ -159,4 +159,4 @@ TEST(Status, HasAWordForEachAndIsOrderedByBadness) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::volume_metrics_test

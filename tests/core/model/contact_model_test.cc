@@ -8,7 +8,7 @@
 #include "core/support/meshes.h"
 #include "volcontact/force/laws.h"
 
-namespace volcontact {
+namespace volcontact::contact_model_test {
 namespace {
 
 constexpr double kRounding = 1e-12;
@@ -328,4 +328,4 @@ TEST(ContactModel, RefusesNoPairsNoLawAndAnEngineThatDoesNotServe) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::contact_model_test

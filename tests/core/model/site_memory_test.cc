@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace volcontact {
+namespace volcontact::site_memory_test {
 namespace {
 
 constexpr double kRounding = 1e-14;
@@ -197,4 +197,4 @@ TEST(SiteCarrier, PlaneThatTurnsTakesTheDeflectionAlong) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::site_memory_test

@@ -9,7 +9,7 @@
 #include "volcontact/force/laws.h"
 #include "volcontact/model/site_laws.h"
 
-namespace volcontact {
+namespace volcontact::site_tangent_test {
 namespace {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;  // torque or turn, then force or displacement
@@ -275,4 +275,4 @@ TEST(SiteLaws, TheLastQuestionIsWhatIsKept) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::site_tangent_test

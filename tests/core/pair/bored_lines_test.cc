@@ -8,7 +8,7 @@
 #include "volcontact/pair/gauss.h"
 #include "volcontact/pair/interference.h"
 
-namespace volcontact {
+namespace volcontact::bored_lines_test {
 namespace {
 
 using test::evaluated;
@@ -192,4 +192,4 @@ TEST(BoredLines, AFreePegTouchesNothing) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::bored_lines_test

@@ -5,7 +5,7 @@
 
 #include <numeric>
 
-namespace volcontact {
+namespace volcontact::cell_sites_test {
 namespace {
 
 constexpr double kRounding = 1e-9;  // of a volume
@@ -85,4 +85,4 @@ TEST(SortBySite, ThinRegionsStandForThemselves) {
 TEST(SortBySite, NothingHasNoSites) { EXPECT_TRUE(sorted({}).ends.empty()); }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::cell_sites_test

@@ -5,7 +5,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::circle_arcs_test {
 namespace {
 
 constexpr RingSize kRing{0.3, 0.1};
@@ -107,4 +107,4 @@ TEST(CircleArcs, MinimaAreWhereTheMiddleOfTheTubeIsNearest) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::circle_arcs_test

@@ -10,7 +10,7 @@
 #include "core/support/matchers.h"
 #include "core/support/random_shapes.h"
 
-namespace volcontact {
+namespace volcontact::clip_test {
 namespace {
 
 using test::polytope_of;
@@ -463,4 +463,4 @@ TEST(Clip, ScratchKeepsNoState) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::clip_test

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace volcontact {
+namespace volcontact::column_energy_test {
 namespace {
 
 using Point = ColumnEnergy::Point;
@@ -80,4 +80,4 @@ TEST(ColumnEnergy, AShortNoisyEdgeLosesNothing) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::column_energy_test

@@ -9,7 +9,7 @@
 #include "core/support/meshes.h"
 #include "core/support/random_shapes.h"
 
-namespace volcontact {
+namespace volcontact::columns_test {
 namespace {
 
 using test::box_soup;
@@ -411,4 +411,4 @@ TEST(Columns, AnyNumberOfThreadsMakesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::columns_test

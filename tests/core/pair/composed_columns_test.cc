@@ -14,7 +14,7 @@
 #include "core/support/overlapping.h"
 #include "core/support/random_shapes.h"
 
-namespace volcontact {
+namespace volcontact::composed_columns_test {
 namespace {
 
 using test::box_soup;
@@ -282,4 +282,4 @@ TEST(ComposedColumns, TheAreaVectorIsTheGradientOfTheVolume) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::composed_columns_test

@@ -3,21 +3,19 @@
 
 #include <gtest/gtest.h>
 
+#include "core/support/csg_solids.h"
 #include "core/support/evaluated.h"
 #include "core/support/random.h"
 #include "volcontact/pair/interference.h"
 
-namespace volcontact {
+namespace volcontact::composed_lines_test {
 namespace {
 
 using test::evaluated;
-using Operation = Csg::Operation;
 
 Csg box(double x, double y, double z, const Vec3& at) {
   return Csg(Box({.half_sizes = {x, y, z}}), {Mat3::Identity(), at});
 }
-Csg operator+(const Csg& a, const Csg& b) { return Csg(Operation::kUnion, a, b); }
-Csg operator-(const Csg& a, const Csg& b) { return Csg(Operation::kDifference, a, b); }
 
 TEST(ComposedLines, ATableHasFourSites) {
   Csg table = box(0.5, 0.4, 0.02, {0.0, 0.0, 0.5});
@@ -93,4 +91,4 @@ TEST(ComposedLines, StaysWithinTheCertifiedBoundsOfTheOctree) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::composed_lines_test

@@ -7,7 +7,7 @@
 #include "core/support/gradient.h"
 #include "volcontact/pair/interference.h"
 
-namespace volcontact {
+namespace volcontact::cone_bores_test {
 namespace {
 
 using test::evaluated;
@@ -187,4 +187,4 @@ TEST(ConeBores, ACupWithAPointIsServedByTheSurface) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::cone_bores_test

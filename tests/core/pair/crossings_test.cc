@@ -8,7 +8,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::crossings_test {
 namespace {
 
 // A product of sines of half the angles from given roots, with its slope.
@@ -66,4 +66,4 @@ TEST(Crossings, FindsADipBetweenTwoPlaces) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::crossings_test

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace volcontact {
+namespace volcontact::engine_test {
 namespace {
 
 TEST(Engine, WordsAndEnginesAreEachOthersInverse) {
@@ -30,4 +30,4 @@ TEST(Engine, AnUnknownWordIsAnErrorThatTeaches) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::engine_test

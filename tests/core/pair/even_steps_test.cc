@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace volcontact {
+namespace volcontact::even_steps_test {
 namespace {
 
 // The area of a half disc, whose height is a root at both ends: exact, as sin^2 is a wave of
@@ -29,4 +29,4 @@ TEST(EvenSteps, ErrorIsFeltWhereStepsAreTooFew) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::even_steps_test

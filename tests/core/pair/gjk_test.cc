@@ -6,7 +6,7 @@
 #include "core/support/random_shapes.h"
 #include "volcontact/shape/shapes.h"
 
-namespace volcontact {
+namespace volcontact::gjk_test {
 namespace {
 
 // Signed distance of a point to a posed shape, negative inside.
@@ -104,4 +104,4 @@ TEST(BallGap, ABallIsPartedExactlyWhereItIsFartherThanItsRadius) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::gjk_test

@@ -29,7 +29,7 @@ thread_local long allocations = 0;
 [[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 #endif
 
-namespace volcontact {
+namespace volcontact::interference_test {
 namespace {
 
 using test::evaluated;
@@ -264,4 +264,4 @@ TEST(Interference, TheValueHasNoHistory) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::interference_test

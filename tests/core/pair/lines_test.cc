@@ -14,7 +14,7 @@
 #include "volcontact/pair/closed_form/sphere_sphere.h"
 #include "volcontact/pair/octree.h"
 
-namespace volcontact {
+namespace volcontact::lines_test {
 namespace {
 
 // Bodies of a few tenths of a metre; the first is unbounded, those of plane faces come last.
@@ -316,4 +316,4 @@ TEST(Lines, HalfAConeLiesBelowTheFaceThatHoldsItsAxis) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::lines_test

@@ -7,7 +7,7 @@
 #include "core/support/random.h"
 #include "volcontact/pair/octree.h"
 
-namespace volcontact {
+namespace volcontact::octree_cone_test {
 namespace {
 
 constexpr double kTolerances[] = {1e-1, 1e-2, 1e-3};
@@ -160,4 +160,4 @@ TEST(OctreeCone, HolesMeetTheToleranceWithinAStep) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::octree_cone_test

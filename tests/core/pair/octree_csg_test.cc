@@ -9,7 +9,7 @@
 #include "volcontact/pair/octree.h"
 #include "volcontact/shape/csg_metrics.h"
 
-namespace volcontact {
+namespace volcontact::octree_csg_test {
 namespace {
 
 using namespace testing;  // the solids
@@ -130,4 +130,4 @@ TEST(OctreeCsg, WallsThatAreNearlyParallelNeedFewCells) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::octree_csg_test

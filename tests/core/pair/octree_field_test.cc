@@ -10,7 +10,7 @@
 #include "core/support/random.h"
 #include "volcontact/pair/interference.h"
 
-namespace volcontact {
+namespace volcontact::octree_field_test {
 namespace {
 
 struct Ball {
@@ -195,4 +195,4 @@ TEST(OctreeField, NoNumberIsAStatus) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::octree_field_test

@@ -11,7 +11,7 @@
 #include "volcontact/model/contact_model.h"
 #include "volcontact/pair/interference.h"
 
-namespace volcontact {
+namespace volcontact::octree_sites_test {
 namespace {
 
 Csg block(const Vec3& half, const Vec3& center) {
@@ -225,4 +225,4 @@ TEST(OctreeSites, WrenchIsContinuousThroughMergeAndSplit) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::octree_sites_test

@@ -8,7 +8,7 @@
 
 #include "volcontact/pair/interference.h"
 
-namespace volcontact {
+namespace volcontact::octree_test {
 namespace {
 
 Pose random_pose(std::mt19937& random, double reach) {
@@ -246,4 +246,4 @@ TEST(Octree, AnswersDegenerateInputWithAStatus) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::octree_test

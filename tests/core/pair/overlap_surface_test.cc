@@ -9,7 +9,7 @@
 #include "core/support/meshes.h"
 #include "volcontact/pair/interference.h"
 
-namespace volcontact {
+namespace volcontact::overlap_surface_test {
 namespace {
 
 using testing::at;
@@ -125,4 +125,4 @@ TEST(OverlapSurface, IsEmptyWhereNothingTouches) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::overlap_surface_test

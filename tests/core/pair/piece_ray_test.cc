@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace volcontact {
+namespace volcontact::piece_ray_test {
 namespace {
 
 constexpr double kNudge = 1e-9;
@@ -79,4 +79,4 @@ TEST(FirstExit, FindsTheRootThatCounts) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::piece_ray_test

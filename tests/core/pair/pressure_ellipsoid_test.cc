@@ -7,7 +7,7 @@
 #include "core/support/meshes.h"
 #include "volcontact/pair/pressure_columns.h"
 
-namespace volcontact {
+namespace volcontact::pressure_ellipsoid_test {
 namespace {
 
 using test::field_sum;
@@ -106,4 +106,4 @@ TEST(PressureEllipsoid, InsideOfAMeshItHasAllItsEnergyAndNoForce) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::pressure_ellipsoid_test

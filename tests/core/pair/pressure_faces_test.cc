@@ -7,7 +7,7 @@
 #include "core/support/meshes.h"
 #include "core/support/random_shapes.h"
 
-namespace volcontact {
+namespace volcontact::pressure_faces_test {
 namespace {
 
 using test::field_sum;
@@ -90,4 +90,4 @@ TEST(PressureFaces, SitesShareTheSum) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::pressure_faces_test

@@ -7,7 +7,7 @@
 #include "core/support/meshes.h"
 #include "volcontact/pair/interference.h"
 
-namespace volcontact {
+namespace volcontact::pressure_field_test {
 namespace {
 
 using test::Random;
@@ -218,4 +218,4 @@ TEST(PressureField, SaysWhyItDoesNotTakeAPair) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::pressure_field_test

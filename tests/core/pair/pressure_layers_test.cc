@@ -8,7 +8,7 @@
 #include "core/support/meshes.h"
 #include "core/support/random_shapes.h"
 
-namespace volcontact {
+namespace volcontact::pressure_layers_test {
 namespace {
 
 using test::Random;
@@ -237,4 +237,4 @@ TEST(PressureLayers, RodThatLiesDeepInsideIsPushedOut) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::pressure_layers_test

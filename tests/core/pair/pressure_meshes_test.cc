@@ -7,7 +7,7 @@
 #include "core/support/field_loops.h"
 #include "core/support/meshes.h"
 
-namespace volcontact {
+namespace volcontact::pressure_meshes_test {
 namespace {
 
 using test::field_sum;
@@ -95,4 +95,4 @@ TEST(PressureMeshes, ComposedSolidWithoutLayersCarries) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::pressure_meshes_test

@@ -8,7 +8,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::ring_breaks_test {
 namespace {
 
 constexpr double kMajor = 0.3, kMinor = 0.1;
@@ -68,4 +68,4 @@ TEST(RingBreaks, TheRimOfATubeIsFollowed) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::ring_breaks_test

@@ -8,7 +8,7 @@
 #include "core/support/matchers.h"
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::ring_composed_test {
 namespace {
 
 using test::evaluated;
@@ -97,4 +97,4 @@ TEST(RingComposed, OctreeBoundsHoldTheVolume) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::ring_composed_test

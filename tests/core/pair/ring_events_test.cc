@@ -5,7 +5,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::ring_events_test {
 namespace {
 
 constexpr RingSize kRing{0.3, 0.1};
@@ -61,4 +61,4 @@ TEST(RingEvents, CountsDifferOnTheirTwoSides) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::ring_events_test

@@ -5,7 +5,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::ring_flux_test {
 namespace {
 
 constexpr RingSize kRing{0.3, 0.1};
@@ -63,4 +63,4 @@ TEST(RingFlux, IntegralFromTheOriginIsExactForTheFifthDegree) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::ring_flux_test

@@ -8,7 +8,7 @@
 #include "core/support/matchers.h"
 #include "core/support/random_shapes.h"
 
-namespace volcontact {
+namespace volcontact::ring_lines_test {
 namespace {
 
 using test::evaluated;
@@ -229,4 +229,4 @@ TEST(RingLines, EveryPathHasTheSameBits) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::ring_lines_test

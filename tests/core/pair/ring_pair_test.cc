@@ -8,7 +8,7 @@
 #include "core/support/matchers.h"
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::ring_pair_test {
 namespace {
 
 using test::evaluated;
@@ -229,4 +229,4 @@ TEST(RingPair, RingsOfNoThicknessOverlapInNothing) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::ring_pair_test

@@ -5,7 +5,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::ring_patch_test {
 namespace {
 
 constexpr RingSize kRing{0.3, 0.1};
@@ -80,4 +80,4 @@ TEST(RingPatch, EventsBoundEveryStrand) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::ring_patch_test

@@ -5,7 +5,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::ring_sites_test {
 namespace {
 
 constexpr double kMajor = 0.3, kMinor = 0.1;
@@ -81,4 +81,4 @@ TEST(RingSites, ABarAcrossIsTwoRanges) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::ring_sites_test

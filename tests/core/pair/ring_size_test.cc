@@ -5,7 +5,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::ring_size_test {
 namespace {
 
 constexpr RingSize kRing{0.3, 0.1};
@@ -37,4 +37,4 @@ TEST(RingSize, TouchIsWhatTwoBallsHaveInCommon) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::ring_size_test

@@ -11,7 +11,7 @@
 #include "core/support/meshes.h"
 #include "core/support/overlapping.h"
 
-namespace volcontact {
+namespace volcontact::round_columns_test {
 namespace {
 
 using test::box_soup;
@@ -297,4 +297,4 @@ TEST(RoundColumns, EveryInstructionSetMakesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::round_columns_test

@@ -6,7 +6,7 @@
 #include "core/support/random_shapes.h"
 #include "volcontact/pair/clip.h"
 
-namespace volcontact {
+namespace volcontact::separation_test {
 namespace {
 
 using test::Random;
@@ -71,4 +71,4 @@ TEST(BoxesApart, EdgesDecideWhereNoFaceDoes) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::separation_test

@@ -7,7 +7,7 @@
 #include "core/support/random.h"
 #include "volcontact/shape/csg_lines.h"
 
-namespace volcontact {
+namespace volcontact::shell_curve_test {
 namespace {
 
 using namespace testing;
@@ -106,4 +106,4 @@ TEST(ShellCurve, AFaceBetweenTwoMembersIsNoSurface) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::shell_curve_test

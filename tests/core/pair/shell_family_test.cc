@@ -5,7 +5,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::shell_family_test {
 namespace {
 
 std::vector<Shape> solids() {
@@ -83,4 +83,4 @@ TEST(ShellFamily, TheRangeHoldsTheBox) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::shell_family_test

@@ -5,7 +5,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::shell_patch_test {
 namespace {
 
 const Shape kAll = Box({.half_sizes = {9.0, 9.0, 9.0}});
@@ -52,4 +52,4 @@ TEST(ShellPatch, FluxesAreTheMomentsOfTheSolid) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::shell_patch_test

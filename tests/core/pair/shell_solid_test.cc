@@ -7,7 +7,7 @@
 #include "core/support/meshes.h"
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::shell_solid_test {
 namespace {
 
 using namespace testing;
@@ -70,4 +70,4 @@ TEST(ShellSolids, RefusesWhatHasNoFaces) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::shell_solid_test

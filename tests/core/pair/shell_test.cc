@@ -7,7 +7,7 @@
 #include "core/support/evaluated.h"
 #include "core/support/gradient.h"
 
-namespace volcontact {
+namespace volcontact::shell_test {
 namespace {
 
 using namespace testing;
@@ -210,4 +210,4 @@ TEST(Shell, StaysWithinTheCertifiedBoundsOfTheOctree) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::shell_test

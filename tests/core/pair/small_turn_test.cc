@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace volcontact {
+namespace volcontact::small_turn_test {
 namespace {
 
 TEST(SmallTurn, SeriesAreExactToRounding) {
@@ -22,4 +22,4 @@ TEST(SmallTurn, AnyAngleIsTaken) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::small_turn_test

@@ -12,7 +12,7 @@
 #include "core/support/meshes.h"
 #include "core/support/overlapping.h"
 
-namespace volcontact {
+namespace volcontact::torus_columns_test {
 namespace {
 
 using test::box_soup;
@@ -150,4 +150,4 @@ TEST(TorusColumns, TheOtherOrderIsTheMirrorImage) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::torus_columns_test

@@ -7,7 +7,7 @@
 
 #include "core/support/convex_solid_checks.h"
 
-namespace volcontact {
+namespace volcontact::box_test {
 namespace {
 
 const Vec3 kHalf(0.5, 0.3, 0.8);
@@ -57,4 +57,4 @@ TEST(Box, RejectsNegativeHalfSize) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::box_test

@@ -7,7 +7,7 @@
 
 #include "core/support/convex_solid_checks.h"
 
-namespace volcontact {
+namespace volcontact::capsule_test {
 namespace {
 
 constexpr double kRadius = 0.3, kHalfLength = 0.5;
@@ -83,4 +83,4 @@ TEST(Capsule, RejectsNegativeSizes) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::capsule_test

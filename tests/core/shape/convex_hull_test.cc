@@ -8,7 +8,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::convex_hull_test {
 namespace {
 
 using test::Random;
@@ -104,4 +104,4 @@ TEST(ConvexHull, RejectsWhatHasNoVolume) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::convex_hull_test

@@ -11,7 +11,7 @@
 #include "core/support/random.h"
 #include "volcontact/shape/box.h"
 
-namespace volcontact {
+namespace volcontact::convex_polytope_test {
 namespace {
 
 using test::Random;
@@ -187,4 +187,4 @@ TEST(ConvexPolytope, ErrorsNameCountAndReason) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::convex_polytope_test

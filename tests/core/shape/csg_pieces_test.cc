@@ -8,7 +8,7 @@
 #include "core/support/csg_solids.h"
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::csg_pieces_test {
 namespace {
 
 using namespace testing;  // the solids
@@ -108,4 +108,4 @@ TEST(CsgPieces, AConeEndsWhereItEnds) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::csg_pieces_test

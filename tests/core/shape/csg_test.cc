@@ -11,7 +11,7 @@
 #include "core/support/csg_solids.h"
 #include "volcontact/shape/csg_metrics.h"
 
-namespace volcontact {
+namespace volcontact::csg_test {
 namespace {
 
 using namespace testing;  // the solids
@@ -225,4 +225,4 @@ TEST(Csg, TooManyMembersAreRefused) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::csg_test

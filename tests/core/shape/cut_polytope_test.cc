@@ -8,7 +8,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::cut_polytope_test {
 namespace {
 
 using test::Random;
@@ -152,4 +152,4 @@ TEST(CutPolytope, KnowsTheFaceAcrossAnEdge) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::cut_polytope_test

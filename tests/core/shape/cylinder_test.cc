@@ -7,7 +7,7 @@
 
 #include "core/support/convex_solid_checks.h"
 
-namespace volcontact {
+namespace volcontact::cylinder_test {
 namespace {
 
 constexpr double kRadius = 0.4, kHalfLength = 0.7;
@@ -80,4 +80,4 @@ TEST(Cylinder, RejectsNegativeSizes) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::cylinder_test

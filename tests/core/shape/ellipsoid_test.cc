@@ -6,7 +6,7 @@
 #include "core/support/random.h"
 #include "volcontact/shape/sphere.h"
 
-namespace volcontact {
+namespace volcontact::ellipsoid_test {
 namespace {
 
 using test::Random;
@@ -127,4 +127,4 @@ TEST(Ellipsoid, RejectsNegativeSemiAxes) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::ellipsoid_test

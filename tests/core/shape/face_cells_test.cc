@@ -5,7 +5,7 @@
 
 #include "core/support/random_shapes.h"
 
-namespace volcontact {
+namespace volcontact::face_cells_test {
 namespace {
 
 using test::Random;
@@ -48,4 +48,4 @@ TEST(FaceCells, OfABoxArePyramidsAndRoofs) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::face_cells_test

@@ -7,7 +7,7 @@
 
 #include "volcontact/shape/cylinder.h"
 
-namespace volcontact {
+namespace volcontact::frustum_test {
 namespace {
 
 const Frustum kFrusta[] = {
@@ -147,4 +147,4 @@ TEST(Frustum, WithEqualRadiiIsTheCylinder) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::frustum_test

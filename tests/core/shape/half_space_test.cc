@@ -5,7 +5,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::half_space_test {
 namespace {
 
 using test::Random;
@@ -54,4 +54,4 @@ TEST(HalfSpace, LevelRayIsAllOrNothing) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::half_space_test

@@ -9,7 +9,7 @@
 #include "core/support/meshes.h"
 #include "volcontact/shape/box.h"
 
-namespace volcontact {
+namespace volcontact::mesh_test {
 namespace {
 
 using test::mesh_of;
@@ -65,4 +65,4 @@ TEST(Mesh, RefusesASurfaceThatBoundsNothing) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::mesh_test

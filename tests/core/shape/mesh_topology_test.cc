@@ -7,7 +7,7 @@
 
 #include "core/support/meshes.h"
 
-namespace volcontact {
+namespace volcontact::mesh_topology_test {
 namespace {
 
 using test::box_soup;
@@ -117,4 +117,4 @@ TEST(MeshTopology, RefusesWhatIsNoMesh) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::mesh_topology_test

@@ -5,7 +5,7 @@
 
 #include "core/support/meshes.h"
 
-namespace volcontact {
+namespace volcontact::obb_tree_test {
 namespace {
 
 MeshTopology topology_of(const test::Soup& soup) {
@@ -71,4 +71,4 @@ TEST(ObbTree, KnowsTheNeighborsOfItsSlots) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::obb_tree_test

@@ -6,7 +6,7 @@
 #include "core/support/csg_solids.h"
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::parallel_solid_test {
 namespace {
 
 using test::Random;
@@ -114,4 +114,4 @@ TEST(ParallelSolid, OthersHaveNone) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::parallel_solid_test

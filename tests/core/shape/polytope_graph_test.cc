@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace volcontact {
+namespace volcontact::polytope_graph_test {
 namespace {
 
 // Corners of the face that lies left of a half-edge, without the repetitions of split corners.
@@ -56,4 +56,4 @@ TEST(PolytopeGraph, SplitsEveryCornerOfAnOctahedron) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::polytope_graph_test

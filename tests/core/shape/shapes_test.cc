@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace volcontact {
+namespace volcontact::shapes_test {
 namespace {
 
 std::string message_of(const std::function<void()>& action) {
@@ -60,4 +60,4 @@ TEST(Shapes, PolytopeIsNotMadeFromNumbers) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::shapes_test

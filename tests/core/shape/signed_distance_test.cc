@@ -7,7 +7,7 @@
 
 #include "volcontact/shape/shapes.h"
 
-namespace volcontact {
+namespace volcontact::signed_distance_test {
 namespace {
 
 // As a user would write it.
@@ -58,4 +58,4 @@ TEST(SignedDistance, CannotBeComposed) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::signed_distance_test

@@ -7,7 +7,7 @@
 
 #include "core/support/convex_solid_checks.h"
 
-namespace volcontact {
+namespace volcontact::sphere_test {
 namespace {
 
 constexpr double kRadius = 0.7;
@@ -52,4 +52,4 @@ TEST(Sphere, RejectsNegativeRadius) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::sphere_test

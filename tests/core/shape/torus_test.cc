@@ -5,7 +5,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact {
+namespace volcontact::torus_test {
 namespace {
 
 using test::Random;
@@ -133,4 +133,4 @@ TEST(Torus, RefusesATubeThatReachesOverTheAxis) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::torus_test

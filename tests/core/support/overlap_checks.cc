@@ -7,7 +7,7 @@
 namespace volcontact::test {
 namespace {
 
-constexpr double kLeast = 1e-9;  // of the smaller body: a volume that is as good as none
+constexpr double kNone = 1e-9;   // of the smaller body: a volume that is as good as none
 constexpr double kLoose = 0.05;  // by which engines that are not exact may be off in one pose
 constexpr double kTight = 1e-9;  // and those that are
 
@@ -46,14 +46,14 @@ const char* fault_of(const Interference& answer, const Example& a, const Example
   if (m.volume < 0.0 || m.volume_error < 0.0) return "negative";
   if (m.volume > (1.0 + kTight) * body + m.volume_error) return "larger than a body";
   const double least = ball_inside(a, b, X_AB, inside);
-  if (least > kLeast * body && m.volume < (1.0 - kLoose) * least - m.volume_error) {
+  if (least > kNone * body && m.volume < (1.0 - kLoose) * least - m.volume_error) {
     return "smaller than a ball inside of both";
   }
   if (!m.touching()) return answer.sites.empty() ? nullptr : "sites of nothing";
   double sum = 0.0;
   for (const VolumeMetrics& site : answer.sites) sum += site.volume;
   if (std::abs(sum - m.volume) > kTight * m.volume) return "sites that do not add up";
-  if (m.volume <= kLeast * body) return nullptr;
+  if (m.volume <= kNone * body) return nullptr;
   const double slack = 1e-6 * std::min(a.size, b.size);
   if (!holds(a, m.centroid, slack) || !holds(b, X_AB.inverse() * m.centroid, slack)) {
     return "centroid outside";
@@ -72,8 +72,8 @@ const char* disagreement_of(const VolumeMetrics& in_A, const VolumeMetrics& in_B
   const double errors = in_A.volume_error + in_B.volume_error;
   // Half-spaces meet bodies kilometres from their origin, where the inverse of the pose rounds.
   const double rounding = 1e-15 * X_AB.translation.norm() * std::max(in_A.area, in_A.counter_area);
-  const double allowed = exact ? kTight * volume + 1e-3 * kLeast * smaller_body + rounding
-                               : kLoose * volume + errors + kLeast * smaller_body;
+  const double allowed = exact ? kTight * volume + 1e-3 * kNone * smaller_body + rounding
+                               : kLoose * volume + errors + kNone * smaller_body;
   if (!(std::abs(in_B.volume - volume) <= allowed)) return "another volume in the other order";
   if (!smooth || volume <= 1e-6 * smaller_body || !in_B.touching()) return nullptr;
   const double area = std::max(in_A.area, in_A.counter_area);

@@ -70,8 +70,7 @@ Vec3 point_off_faces(const ConvexView& solid, const Pose& X_QB, const Pieces& tr
   Farthest farthest(triangles, square_to_triangle);
   farthest.look(Vec3::Zero());
   for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 way(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0);
-    farthest.look(0.5 * solid.support(X_QB, way));
+    farthest.look(0.5 * solid.support(X_QB, corner_signs(corner)));
   }
   for (int side = 0; side < 6; ++side) {
     const Vec3 way = (side & 1 ? 1.0 : -1.0) * Vec3::Unit(side / 2);

@@ -9,9 +9,9 @@ namespace {
 
 using Piece = RoundPieces::Triangle;
 
-constexpr double kLeastSlope = 1e-6;   // of a plane that lines meet
-constexpr double kSag = 0.3;           // of the rim's image over its chord; more is divided
-constexpr double kSliverShare = 0.01;  // between image and chords, of twice the triangle's area
+constexpr double kLeastSlope = 1e-6;      // of a plane that lines meet
+constexpr double kSag = 0.3;              // of the rim's image over its chord; more is divided
+constexpr double kRimSliverShare = 0.01;  // between image and chords, of twice the triangle's area
 constexpr int kMostDivisions = 5, kMostHalvings = 4;
 
 // The image of a rim: the lines from x end on the plane face where level(x) < 0, convex.
@@ -50,7 +50,7 @@ class RimImage {
     const double chord = (q - p).norm(), sag = (onto_rim(p, q, normal) - 0.5 * (p + q)).norm();
     if (sag > kSag * chord && divisions < kMostDivisions) return divide(t, divisions, parts);
     int halvings = 0;
-    for (double sliver = sag * chord; sliver > kSliverShare * normal.norm(); sliver *= 0.25) {
+    for (double sliver = sag * chord; sliver > kRimSliverShare * normal.norm(); sliver *= 0.25) {
       if (halvings++ == kMostHalvings) break;
     }
     // Fans from the corner alone and from the middle of the side across.

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace volcontact {
+namespace volcontact::circular_segment_test {
 namespace {
 
 TEST(CircularSegment, EqualsItsColumns) {
@@ -53,4 +53,4 @@ TEST(CircularSegment, OfHeightTwoIsTheDisc) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::circular_segment_test

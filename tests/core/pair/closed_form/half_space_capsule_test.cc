@@ -5,7 +5,7 @@
 #include "core/support/section_oracle.h"
 #include "volcontact/pair/closed_form/half_space_sphere.h"
 
-namespace volcontact {
+namespace volcontact::half_space_capsule_test {
 namespace {
 
 using test::immersed_by;
@@ -133,4 +133,4 @@ TEST(HalfSpaceCapsule, ApartAndThinAreNothing) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::half_space_capsule_test

@@ -7,7 +7,7 @@
 #include "core/support/matchers.h"
 #include "volcontact/pair/closed_form/half_space_sphere.h"
 
-namespace volcontact {
+namespace volcontact::half_space_ellipsoid_test {
 namespace {
 
 using test::Random;
@@ -211,4 +211,4 @@ TEST(HalfSpaceEllipsoid, InItsOwnFrameIsTheMirrorImage) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::half_space_ellipsoid_test

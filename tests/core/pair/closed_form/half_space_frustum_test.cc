@@ -4,7 +4,7 @@
 #include "core/support/half_space_checks.h"
 #include "core/support/section_oracle.h"
 
-namespace volcontact {
+namespace volcontact::half_space_frustum_test {
 namespace {
 
 using test::immersed_by;
@@ -208,4 +208,4 @@ TEST(HalfSpaceFrustum, ApartAndFlatAreNothing) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::half_space_frustum_test

@@ -7,7 +7,7 @@
 #include "core/support/gradient.h"
 #include "core/support/matchers.h"
 
-namespace volcontact {
+namespace volcontact::half_space_sphere_test {
 namespace {
 
 using test::Random;
@@ -130,4 +130,4 @@ TEST(HalfSpaceSphere, InItsOwnFrameIsTheMirrorImage) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::half_space_sphere_test

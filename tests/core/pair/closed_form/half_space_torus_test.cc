@@ -4,7 +4,7 @@
 #include "core/support/half_space_checks.h"
 #include "core/support/section_oracle.h"
 
-namespace volcontact {
+namespace volcontact::half_space_torus_test {
 namespace {
 
 using test::immersed_by;
@@ -141,4 +141,4 @@ TEST(HalfSpaceTorus, ApartAndThinAreNothing) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::half_space_torus_test

@@ -7,7 +7,7 @@
 #include "core/support/gradient.h"
 #include "core/support/matchers.h"
 
-namespace volcontact {
+namespace volcontact::sphere_sphere_test {
 namespace {
 
 using test::Random;
@@ -176,4 +176,4 @@ TEST(SphereSphere, TouchingAndZeroRadiusAreNothing) {
 }
 
 }  // namespace
-}  // namespace volcontact
+}  // namespace volcontact::sphere_sphere_test
