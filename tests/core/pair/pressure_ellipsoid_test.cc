@@ -16,7 +16,6 @@ using test::FieldSum;
 constexpr double kExact = 1e-8;
 
 const Shape kTable = test::mesh_of(test::box_soup({0.5, 0.5, 0.1}, 2));
-const Shape kFine = test::mesh_of(test::box_soup({0.5, 0.5, 0.1}, 25));
 const Shape kBlock = test::mesh_of(test::box_soup({0.1, 0.08, 0.06}, 3));
 const Ellipsoid kSolid({.semi_axes = {0.1, 0.07, 0.05}});
 const Shape kEgg = kSolid;
@@ -26,13 +25,14 @@ const Pose kCorner{test::turn({1.0, 0.3, -0.4}, 0.9), Vec3(0.09, 0.07, 0.08)};
 TEST(PressureEllipsoid, BallOnAFace) {
   // int over the cap of the depth below the ball's surface: dU/dh = pi (R h^2 - 2 h^3 / 3).
   constexpr double kRadius = 0.09;
+  const Shape fine = test::mesh_of(test::box_soup({0.5, 0.5, 0.1}, 25));
   for (const double h : {1e-4, 0.01, 0.08}) {
     // The depth has a cone at the ball's middle, from which the face is not far at last.
     const double tolerance = h < 0.05 ? 1e-7 : 1e-5;
     const Pose X{Mat3::Identity(), Vec3(0.03, -0.02, 0.1 + kRadius - h)};
     const double force = kPi * (kRadius * h * h - 2.0 / 3.0 * h * h * h);
     const double energy = kPi * (kRadius * h * h * h / 3.0 - h * h * h * h / 6.0);
-    for (const Shape& table : {kTable, kFine}) {
+    for (const Shape& table : {kTable, fine}) {
       const FieldSum sum = field_sum(table, kBall, X);
       EXPECT_NEAR(sum.field.force.z(), -force, tolerance * force) << h;
       EXPECT_NEAR(sum.field.energy, energy, tolerance * energy) << h;
