@@ -6,13 +6,8 @@
 namespace volcontact::test::characterisation_test {
 namespace {
 
-// The sanitizers make every pose a hundred times slower and look for other faults: fewer will do.
-#if defined(__SANITIZE_ADDRESS__)
-constexpr Effort kEffort{.poses = 1, .gradient_poses = 0, .motion_steps = 0, .octree_poses = 0};
-#else
 constexpr Effort kEffort{
     .poses = 3, .gradient_poses = 1, .motion_steps = 5, .octree_poses = 1, .slow_octree_poses = 0};
-#endif
 
 /// What an engine promises, relative: docs/theory.md, "Engines". tests/benchmarks/characterise
 /// measures it over more poses.

@@ -6,6 +6,7 @@
 #include "core/support/csg_solids.h"
 #include "core/support/evaluated.h"
 #include "core/support/random.h"
+#include "core/support/sanitized.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact::composed_lines_test {
@@ -64,11 +65,7 @@ TEST(ComposedLines, StaysWithinTheCertifiedBoundsOfTheOctree) {
       Box({.half_sizes = {0.2, 0.05, 0.1}}), Capsule({.radius = 0.08, .half_length = 0.2})};
   test::Random random(51);
   int by_lines = 0, touching = 0;
-#if defined(__SANITIZE_ADDRESS__)
-  constexpr int kPoses = 1;
-#else
-  constexpr int kPoses = 6;
-#endif
+  constexpr int kPoses = test::cases(6, 1);
   for (const Csg& solid : solids) {
     ASSERT_TRUE(solid.is_carved());
     for (const Shape& other : others) {

@@ -10,6 +10,7 @@
 #include "core/support/gradient.h"
 #include "core/support/matchers.h"
 #include "core/support/random_shapes.h"
+#include "core/support/sanitized.h"
 #include "volcontact/pair/closed_form/half_space_ellipsoid.h"
 #include "volcontact/pair/closed_form/sphere_sphere.h"
 #include "volcontact/pair/octree.h"
@@ -131,12 +132,7 @@ TEST(Lines, AnUprightCylinderIsADisc) {
   }
 }
 
-// The sanitizers make every pose many times slower and look for other faults: fewer will do.
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kPoses = 2;
-#else
-constexpr int kPoses = 20;
-#endif
+constexpr int kPoses = test::cases(20, 2);
 
 TEST(Lines, StaysWithinTheCertifiedBoundsOfTheOctree) {
   const std::vector<Shape> all = solids();

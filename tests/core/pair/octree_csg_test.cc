@@ -3,11 +3,13 @@
 // that knows neither cells nor pieces.
 #include <gtest/gtest.h>
 
-#include "core/support/csg_solids.h"
 #include "core/support/random.h"
+#include "core/support/sanitized.h"
 #include "volcontact/pair/interference.h"
 #include "volcontact/pair/octree.h"
 #include "volcontact/shape/csg_metrics.h"
+
+#include "core/support/csg_solids.h"
 
 namespace volcontact::octree_csg_test {
 namespace {
@@ -21,16 +23,10 @@ Interference octree(const Csg& a, const Csg& b, double tolerance = 1e-2) {
   return out;
 }
 
-// The sanitizers make every cell many times slower and look for other faults: fewer will do.
-#if defined(__SANITIZE_ADDRESS__)
-constexpr std::size_t kEvery = 8;
-#else
-constexpr std::size_t kEvery = 1;
-#endif
-
 TEST(OctreeCsg, BoundsHoldTheVolumeOfEveryKindOfSolid) {
   const Csg rod = tube(.06, .15, turned({1, .4, .2}, .8, {.1, .05, .08}));
   const std::vector<NamedSolid> kinds = kinds_of_solids();
+  constexpr int kEvery = test::cases(1, 16);
   int touching = 0;
   for (std::size_t i = 0; i < kinds.size(); i += kEvery) {
     const NamedSolid& named = kinds[i];
@@ -40,7 +36,7 @@ TEST(OctreeCsg, BoundsHoldTheVolumeOfEveryKindOfSolid) {
         << named.name;
     touching += exact > 0.0;
   }
-  EXPECT_GT(touching, 20 / static_cast<int>(kEvery));
+  EXPECT_GT(touching, 20 / kEvery);
 }
 
 // A cell longer than the bore is wide: its columns leave the solid and enter it again.

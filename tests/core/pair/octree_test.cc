@@ -6,6 +6,7 @@
 #include <cstring>
 #include <random>
 
+#include "core/support/sanitized.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact::octree_test {
@@ -97,12 +98,7 @@ Interference octree(const Shape& a, const Shape& b, const Pose& X_AB, double tol
   return out;
 }
 
-// The sanitizers make every pose a hundred times slower and look for other faults: fewer will do.
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kPosesPerPair = 2;
-#else
-constexpr int kPosesPerPair = 29;
-#endif
+constexpr int kPosesPerPair = test::cases(29, 2);
 
 TEST(Octree, MeetsTheToleranceAndItsBoundsHoldTheTruthOn1000Poses) {
   constexpr double kTolerance = 1e-2;

@@ -7,6 +7,7 @@
 
 #include "core/support/csg_solids.h"
 #include "core/support/random.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::csg_pieces_test {
 namespace {
@@ -70,11 +71,7 @@ int wrong_points(const Csg& solid, const PieceList& list, int points, Random& ra
 }
 
 TEST(CsgPieces, AreTheSolidWhateverItIsComposedOf) {
-#if defined(__SANITIZE_ADDRESS__)
-  constexpr int kSolids = 100;  // slow there, and the sanitizers look for other faults
-#else
-  constexpr int kSolids = 1500;
-#endif
+  constexpr int kSolids = test::cases(1500, 100);
   int written = 0;
   for (int seed = 0; seed < kSolids; ++seed) {
     Random random(seed);
