@@ -4,6 +4,9 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>
 
+#include <cmath>
+#include <limits>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -153,6 +156,26 @@ Rows rows_from(const nb::object& array, const char* message) {
   return rows;
 }
 
+// From numbers as they were given: a cast to int would make 0.5 and 2^32 a silent 0.
+std::vector<Triangle> triangles_from(const nb::object& given) {
+  const auto faces =
+      rows_from<Vertices>(given, "mesh: faces must be an array of whole numbers, shape (m, 3)");
+  constexpr double kMost = std::numeric_limits<int>::max();
+  std::vector<Triangle> triangles;
+  for (Eigen::Index i = 0; i < faces.rows(); ++i) {
+    for (const double index : faces.row(i)) {
+      if (index == std::floor(index) && std::abs(index) <= kMost) continue;
+      std::ostringstream message;
+      message << "mesh: triangle " << i << " names vertex " << index
+              << "; indices are whole numbers from 0 on";
+      throw std::invalid_argument(message.str());
+    }
+    triangles.push_back({static_cast<int>(faces(i, 0)), static_cast<int>(faces(i, 1)),
+                         static_cast<int>(faces(i, 2))});
+  }
+  return triangles;
+}
+
 void bind_mesh(nb::module_& m) {
   nb::class_<Mesh> type(
       m, "Mesh", R"(Solid 'mesh': the inside of a closed oriented triangle mesh, in its own frame.
@@ -165,15 +188,9 @@ overlap each other count twice.)");
       [](Mesh* self, const nb::object& given_vertices, const nb::object& given_faces) {
         const auto vertices = rows_from<Vertices>(
             given_vertices, "mesh: vertices must be an array of numbers, shape (n, 3)");
-        const auto faces = rows_from<Triangles>(
-            given_faces, "mesh: faces must be an array of whole numbers, shape (m, 3)");
         std::vector<Vec3> points;
-        std::vector<Triangle> triangles;
         for (Eigen::Index i = 0; i < vertices.rows(); ++i) points.push_back(vertices.row(i));
-        for (Eigen::Index i = 0; i < faces.rows(); ++i) {
-          triangles.push_back({faces(i, 0), faces(i, 1), faces(i, 2)});
-        }
-        new (self) Mesh(points, triangles);
+        new (self) Mesh(points, triangles_from(given_faces));
       },
       nb::arg("vertices"), nb::arg("faces"),
       nb::sig("def __init__(self, vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, "

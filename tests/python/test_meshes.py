@@ -135,6 +135,16 @@ def test_mesh_takes_arrays_derived_from_those_of_numpy() -> None:
         vc.Mesh(box.vertices[:, :2], box.faces)
 
 
+@pytest.mark.parametrize("index", [0.5, np.nan, np.inf, 2.0**32, -(2.0**31)])
+def test_indices_are_whole_numbers(index: float) -> None:
+    vertices, faces = arrays(SOLIDS["box"])
+    given = faces.astype(float)
+    assert np.array_equal(vc.Mesh(vertices, given).faces, vc.Mesh(vertices, faces).faces)
+    given[3, 1] = index
+    with pytest.raises(ValueError, match=r"triangle 3 names vertex .*whole numbers from 0 on"):
+        vc.Mesh(vertices, given)
+
+
 def test_surface_that_bounds_no_solid_is_refused() -> None:
     vertices, faces = arrays(SOLIDS["box"])
     with pytest.raises(ValueError, match=r"mesh: 3 boundary edges, the first at \("):
