@@ -15,9 +15,7 @@ template <typename Outside, typename Visit>
 void visit_triangles_near(const Mesh& mesh, const Pose& X_CM, std::vector<int>& stack,
                           Outside&& outside, Visit&& visit) {
   const ObbTree& tree = mesh.tree();
-  const auto at = [](const double (&x)[3][kLanes], int lane) {
-    return Vec3(x[0][lane], x[1][lane], x[2][lane]);
-  };
+  const auto at = [](const auto& x, int lane) { return Vec3(x[0][lane], x[1][lane], x[2][lane]); };
   stack.assign(1, 0);
   while (!stack.empty()) {
     const int child = stack.back();

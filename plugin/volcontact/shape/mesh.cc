@@ -154,6 +154,8 @@ Mesh::Nearest Mesh::nearest(const Vec3& p) const {
         squared[lane] += beyond * beyond;
       }
     }
+    // The axes of the boxes are floats: not quite at right angles.
+    for (double& s : squared) s *= 1.0 - ObbTree::kRounding;
     const int first = size;
     for (int lane = 0; lane < node.count; ++lane) {
       if (squared[lane] < best) stack[size++] = {squared[lane], node.child[lane]};

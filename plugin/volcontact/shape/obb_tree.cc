@@ -11,12 +11,13 @@
 namespace volcontact {
 namespace {
 
-constexpr double kPadding = 1e-13;  // of the size of the mesh
-constexpr double kFlat = 0.005;     // thickness of a flat box by its length
-constexpr double kOther = 0.9;      // volume to be left, by that of a cut across the longest side
-constexpr int kSamples = 256;       // triangles by which ways to part many are compared
-constexpr int kLeastGap = 4;        // between normals on both sides of an edge, in eighths
-constexpr double kSaved = 0.8;      // volume to be left by a cut that was worth it
+constexpr double kPadding = 1e-13;    // of the size of the mesh
+constexpr double kBoxPadding = 5e-7;  // of the size of the mesh: boxes are kept in floats
+constexpr double kFlat = 0.005;       // thickness of a flat box by its length
+constexpr double kOther = 0.9;        // volume to be left, by that of a cut across the longest side
+constexpr int kSamples = 256;         // triangles by which ways to part many are compared
+constexpr int kLeastGap = 4;          // between normals on both sides of an edge, in eighths
+constexpr double kSaved = 0.8;        // volume to be left by a cut that was worth it
 
 struct Obb {
   Vec3 center = Vec3::Zero();
@@ -44,7 +45,8 @@ class TreeBuilder {
     }
     Vec3 low = mesh.vertices[0], high = mesh.vertices[0];
     for (const Vec3& v : mesh.vertices) low = low.cwiseMin(v), high = high.cwiseMax(v);
-    padding_ = kPadding * (low.cwiseAbs().cwiseMax(high.cwiseAbs())).sum();
+    tree_.size = low.cwiseAbs().cwiseMax(high.cwiseAbs()).sum();
+    padding_ = kPadding * tree_.size;
   }
 
   ObbTree build() {
@@ -246,9 +248,9 @@ class TreeBuilder {
         const int from = k == ObbTree::kFlatAxis ? thinnest
                          : k == thinnest         ? ObbTree::kFlatAxis
                                                  : k;
-        node.center[k][lane] = box.center[k];
-        node.half[k][lane] = box.half[from];
-        for (int j = 0; j < 3; ++j) node.axis[k][j][lane] = box.axes(from, j);
+        node.center[k][lane] = static_cast<float>(box.center[k]);
+        node.half[k][lane] = static_cast<float>(box.half[from] + kBoxPadding * tree_.size);
+        for (int j = 0; j < 3; ++j) node.axis[k][j][lane] = static_cast<float>(box.axes(from, j));
       }
       node.child[lane] = -1;
     }

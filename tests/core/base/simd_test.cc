@@ -51,6 +51,40 @@ TEST(Simd, OperationsAreThoseOfDoublesOnEveryPath) {
   }
 }
 
+TEST(Simd, FloatsAreThoseOfEveryPath) {
+  const float a[kLanes] = {1.0f, -2.0f, 3.5f, 1e30f, 0.1f, -0.0f, 7.0f, std::nanf("")};
+  const float b[kLanes] = {3.0f, 5.0f, -3.5f, 1e10f, 0.3f, 2.0f, 7.0f, 1.0f};
+  const auto mask = [&](auto&& holds) {
+    unsigned bits = 0;
+    for (int i = 0; i < kLanes; ++i) bits |= (holds(a[i], b[i]) ? 1u : 0u) << i;
+    return static_cast<float>(bits);
+  };
+  for (SimdPath path : kPaths) {
+    if (!can_run(path)) continue;
+    float r[kLanes];
+    const auto run = [&](int operation) {
+      return VOLCONTACT_SIMD_CALL(path, operate, operation, a, b, r);
+    };
+    const auto are = [&](int operation, auto&& expected) {
+      run(operation);
+      for (int i = 0; i + 1 < kLanes; ++i) EXPECT_EQ(r[i], expected(a[i], b[i])) << operation;
+      EXPECT_TRUE(std::isnan(r[kLanes - 1]));
+    };
+    are(portable::kAdd, [](float x, float y) { return x + y; });
+    are(portable::kSubtract, [](float x, float y) { return x - y; });
+    are(portable::kMultiply, [](float x, float y) { return x * y; });
+    are(portable::kSize, [](float x, float) { return std::abs(x); });
+    EXPECT_EQ(run(portable::kSmaller), mask([](float x, float y) { return x < y; }));
+    EXPECT_EQ(run(portable::kLarger), mask([](float x, float y) { return x > y; }));
+    EXPECT_EQ(run(portable::kNotSmaller), mask([](float x, float y) { return x >= y; }));
+    EXPECT_EQ(run(portable::kNotLarger), mask([](float x, float y) { return x <= y; }));
+    EXPECT_EQ(run(portable::kEither), mask([](float x, float y) { return x < y || x > y; }));
+    double wide[kLanes];
+    VOLCONTACT_SIMD_CALL(path, widen, a, wide);
+    for (int i = 0; i + 1 < kLanes; ++i) EXPECT_EQ(wide[i], static_cast<double>(a[i]));
+  }
+}
+
 TEST(Simd, TheSumHasItsStatedOrderOnEveryPath) {
   // In another order other small terms are lost.
   const double a[kLanes] = {1e16, 1.0, -1e16, 3.0, 1.0, 1e-3, 1.0, 7.0};

@@ -5,15 +5,14 @@
 #include <cmath>
 #include <utility>
 
+#include "volcontact/pair/columns/leaf_cache.h"
+
 namespace volcontact {
 namespace {
 
 // A triangle whose projection is smaller than this fraction of its size squared stands upright and
 // bounds no column.
 constexpr double kLeastArea = 1e-13;
-
-// By so much, in sizes of the side squared, rounding may misplace a point beside it.
-constexpr double kSideSlack = 1e-12;
 
 // A triangle in C, its corners counterclockwise seen from above.
 struct ColumnFace {
@@ -26,6 +25,11 @@ struct ColumnFace {
 struct Line {
   double a, b, c;
   double operator()(double x, double y) const { return a * x + b * y + c; }
+  double highest(const ColumnFace& face) const {
+    const double v0 = (*this)(face.x[0], face.y[0]), v1 = (*this)(face.x[1], face.y[1]),
+                 v2 = (*this)(face.x[2], face.y[2]);
+    return std::max(v0, std::max(v1, v2));
+  }
 };
 Line line_of(const ColumnFace& face, int e) {
   const int next = e == 2 ? 0 : e + 1;
@@ -133,15 +137,13 @@ bool cut_by_height(const ColumnFace& f, const ColumnFace& g, Polygon (&polygon)[
   return polygon[current].count >= 3;
 }
 
-Polygon outline_of(const ColumnFace& f) {
-  Polygon polygon;
+void take_outline(const ColumnFace& f, Polygon& polygon) {
   polygon.count = 3;
   for (int i = 0; i < 3; ++i) {
     polygon.x[i] = f.x[i];
     polygon.y[i] = f.y[i];
     polygon.label[i] = half_edge(f, i);
   }
-  return polygon;
 }
 
 void add_cell(const ColumnFace& f, int slot_f, const ColumnFace& g, int slot_g,
@@ -156,12 +158,10 @@ void add_cell(const ColumnFace& f, int slot_f, const ColumnFace& g, int slot_g,
     cuts[e] = std::min(v0, std::min(v1, v2)) < 0.0;
   }
   for (int e = 0; e < 3; ++e) {
-    const Line line = line_of(f, e);
-    const double v0 = line(g.x[0], g.y[0]), v1 = line(g.x[1], g.y[1]), v2 = line(g.x[2], g.y[2]);
-    if (!(std::max(v0, std::max(v1, v2)) > 0.0)) return;
+    if (!(line_of(f, e).highest(g) > 0.0)) return;
   }
   Polygon polygon[2];
-  polygon[0] = outline_of(f);
+  take_outline(f, polygon[0]);
   int current = 0;
   for (int e = 0; e < 3; ++e) {
     if (!cuts[e]) continue;
@@ -193,7 +193,7 @@ void add_cell_below(const ColumnFace& f, int slot_f, std::vector<ColumnCell>& ce
     return;
   }
   Polygon polygon[2];
-  polygon[0] = outline_of(f);
+  take_outline(f, polygon[0]);
   int current = 0;
   if (!cut_by_height(f, ground, polygon, current)) return;
   finish(polygon[current], f, slot_f, ground, -1, cells);

@@ -14,6 +14,8 @@ namespace volcontact {
 /// A face of A below a face of B in the column frame C, whose columns run along z: the part of
 /// their common projection where B's face is the higher one. docs/theory.md, "Columns".
 struct ColumnCell {
+  ColumnCell() {}  // its arrays are filled as far as they are used
+
   int f, g;            ///< slots of A's and B's trees; g is -1 for a half-space
   signed char sign_f;  ///< of the z component of f's outward normal
   signed char sign_g;

@@ -35,6 +35,7 @@ ObbTree make_unit_cube() {
 void make_box_tree(const Vec3& half_sizes, ObbTree& tree) {
   static const ObbTree cube = make_unit_cube();
   tree = cube;
+  tree.size = half_sizes.sum();
   for (ObbTree::Leaf& leaf : tree.leaves) {
     for (auto& corner : leaf.corner) {
       for (int k = 0; k < 3; ++k) {
@@ -49,9 +50,9 @@ void make_box_tree(const Vec3& half_sizes, ObbTree& tree) {
         for (int k = 0; k < 3; ++k) half[k] += std::abs(node.axis[j][k][lane]) * node.half[j][lane];
       }
       for (int k = 0; k < 3; ++k) {
-        node.center[k][lane] *= half_sizes[k];
-        node.half[k][lane] = half[k] * half_sizes[k];
-        for (int j = 0; j < 3; ++j) node.axis[j][k][lane] = k == j ? 1.0 : 0.0;
+        node.center[k][lane] *= static_cast<float>(half_sizes[k]);
+        node.half[k][lane] = static_cast<float>(half[k] * half_sizes[k]);
+        for (int j = 0; j < 3; ++j) node.axis[j][k][lane] = k == j ? 1.0f : 0.0f;
       }
     }
   }
