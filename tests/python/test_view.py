@@ -240,15 +240,14 @@ import numpy as np
 from PIL import ImageGrab
 from volcontact.view import Stage, window
 
-def is_blue(picture):
-    red, green, blue = np.asarray(picture.convert("RGB")).astype(int).reshape(-1, 3).T
-    return ((blue > red + 40) & (blue > green + 30)).sum() > 1000
+sys.path.insert(0, sys.argv[3])
+from test_view import BLUE, like
 
 def grab():  # until the contact is seen: the first picture takes a busy machine a while
     for _ in range(80):
         time.sleep(1.0)
-        picture = ImageGrab.grab(xdisplay="")
-        if is_blue(picture):
+        picture = ImageGrab.grab(xdisplay="").convert("RGB")
+        if like(np.asarray(picture), BLUE) > 1000:
             picture.save(sys.argv[2])
             break
     os._exit(0)
@@ -267,8 +266,9 @@ def test_window_shows_patches_and_forces(tmp_path):
     path.unlink(missing_ok=True)
     environment = {k: v for k, v in os.environ.items() if k not in ("MUJOCO_GL", "DISPLAY")}
     display = ["xvfb-run", "-a", "-s", "-screen 0 1200x900x24"]
+    files = [tmp_path / "scene.xml", path, Path(__file__).parent]
     subprocess.run(
-        [*display, sys.executable, "-c", WINDOW, str(tmp_path / "scene.xml"), str(path)],
+        [*display, sys.executable, "-c", WINDOW, *map(str, files)],
         check=True,
         env={**environment, "LIBGL_ALWAYS_SOFTWARE": "1"},
         cwd=tmp_path,
