@@ -139,21 +139,8 @@ class Columns {
     const Mat3& R_BC = X_BC.rotation;
     const Pose X_CB = X_BC.inverse();
     const Pose X_CA = X_CB * X_BA_;
-    ColumnWindow curve{Vec3::Constant(kInfinity), Vec3::Constant(-kInfinity)};
-    for (int k = patch.first; k < patch.last; ++k) {
-      const TriangleContact& contact = contacts[scratch_.patches.order[k]];
-      // A touch knows a box in B's frame only.
-      for (int corner = 0; corner < (contact.proper ? 2 : 8); ++corner) {
-        Vec3 p = corner == 0 ? contact.p : contact.q;
-        if (!contact.proper) {
-          for (int i = 0; i < 3; ++i) p[i] = (corner >> i & 1) ? contact.q[i] : contact.p[i];
-        }
-        const Vec3 p_C = X_CB * p;
-        curve.low = curve.low.cwiseMin(p_C);
-        curve.high = curve.high.cwiseMax(p_C);
-      }
-    }
-    const Vec3 size = curve.high - curve.low;
+    const Aabb curve = bounds_of(contacts, scratch_.patches, patch, X_CB);
+    const Vec3 size = curve.max - curve.min;
     const double margin = rounding_ + 1e-9 * size.maxCoeff();
     const double least = std::min(size.x(), size.y()), most = std::max(size.x(), size.y());
     const double doubt = kFlux * patch.flux.length * patch.flux.length;
@@ -165,9 +152,8 @@ class Columns {
     // B's surface in the cells then tells as A's does whether they are whole.
     for (const auto& [bulge, level] :
          {Attempt{0.5 * least, true}, {most, true}, {0.1 * least, false}}) {
-      ColumnWindow window = curve;
-      window.low -= Vec3(margin, margin, bulge + margin);
-      window.high += Vec3(margin, margin, bulge + margin);
+      const Vec3 around(margin, margin, bulge + margin);
+      const ColumnWindow window{curve.min - around, curve.max + around};
       if (level && (meets_level(*a_.tree, X_CA, window, window.low.z(), scratch_.cells) ||
                     meets_level(*b_->tree, X_CB, window, window.high.z(), scratch_.cells))) {
         continue;

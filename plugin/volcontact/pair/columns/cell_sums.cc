@@ -42,8 +42,10 @@ class Summation {
   // The columns of a cell between its two faces, or from height 0 to one of them.
   void add_columns(const ColumnCell& cell, bool from_f, bool to_g) {
     const double weight = -cell.sign_f * cell.sign_g;
+    const bool whole = from_f && to_g;
     double part_delta[kLanes], part_middle[kLanes];
-    const double *delta = cell.delta, *middle = cell.middle;
+    const double* delta = whole ? cell.delta : part_delta;
+    const double* middle = whole ? cell.middle : part_middle;
     for (int i = 0; i < cell.count; ++i) {
       const double half = 0.5 * cell.delta[i];
       const double low = from_f ? cell.middle[i] - half : 0.0;
@@ -53,7 +55,6 @@ class Summation {
       part_delta[i] = high - low;
       part_middle[i] = 0.5 * (low + high);
     }
-    if (!(from_f && to_g)) delta = part_delta, middle = part_middle;
     if (triangles_.count + kLanes > ColumnTriangles::kMost) flush();
     for (int i = 1; i + 1 < cell.count; ++i) {
       const double area = 0.5 * ((cell.x[i] - cell.x[0]) * (cell.y[i + 1] - cell.y[0]) -

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "volcontact/base/disjoint_sets.h"
+#include "volcontact/base/fields.h"
 
 namespace volcontact {
 namespace {
@@ -141,6 +142,30 @@ bool find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& sc
         flux_of(contacts, scratch.order.data() + patch.first, scratch.order.data() + patch.last);
   }
   return true;
+}
+
+Aabb bounds_of(const std::vector<TriangleContact>& contacts, const PatchScratch& scratch,
+               const ContactPatch& patch, const Pose& X_CB) noexcept {
+  Aabb bounds{Vec3::Constant(kInfinity), Vec3::Constant(-kInfinity)};
+  const auto add = [&](const Vec3& p_B) {
+    const Vec3 p_C = X_CB * p_B;
+    bounds.min = bounds.min.cwiseMin(p_C);
+    bounds.max = bounds.max.cwiseMax(p_C);
+  };
+  for (int k = patch.first; k < patch.last; ++k) {
+    const TriangleContact& contact = contacts[scratch.order[k]];
+    const Vec3 &p = contact.p, &q = contact.q;
+    if (contact.proper) {
+      add(p);
+      add(q);
+      continue;
+    }
+    for (int corner = 0; corner < 8; ++corner) {  // a touch knows a box in B's frame only
+      add(Vec3((corner & 1) ? q.x() : p.x(), (corner & 2) ? q.y() : p.y(),
+               (corner & 4) ? q.z() : p.z()));
+    }
+  }
+  return bounds;
 }
 
 Mat3 columns_along(const std::vector<TriangleContact>& contacts, const PatchScratch& scratch,

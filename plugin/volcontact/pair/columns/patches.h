@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "volcontact/pair/columns/crossing.h"
+#include "volcontact/shape/solid.h"
 
 namespace volcontact {
 
@@ -41,6 +42,10 @@ struct PatchScratch {
 /// Joins contacts whose segments meet to patches, and patches whose bounds come nearer than their
 /// smaller width. False when there are too many for that to be quick, as where surfaces coincide.
 bool find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& scratch) noexcept;
+
+/// Bounds in a frame C of the curve of a patch.
+Aabb bounds_of(const std::vector<TriangleContact>& contacts, const PatchScratch& scratch,
+               const ContactPatch& patch, const Pose& X_CB) noexcept;
 
 /// Axes of the columns through a patch, in B's frame: z towards A, x along the patch, so that a
 /// window around it is no wider than it must be.
