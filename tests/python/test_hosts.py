@@ -127,8 +127,8 @@ def test_library_in_a_plugin_folder_needs_no_variable(host, tmp_path):
 TAKEN = "the contact of model 'rubber ball' is volumetric"
 
 
-def run_under_display(command, folder, awaited, **variables):
-    """Runs a program with windows until it has written what is awaited, and 3 s longer."""
+def run_until_taken(command, folder, **variables):
+    """Runs a program with windows until it says that volcontact took the scene, and 3 s longer."""
     environment = {**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1", "MUJOCO_GL": "glfw", **variables}
     said = folder / "said.txt"
     with said.open("w") as errors:
@@ -140,7 +140,7 @@ def run_under_display(command, folder, awaited, **variables):
             start_new_session=True,
         )
     end = time.monotonic() + 80.0  # all is drawn by the processor, which may be busy
-    while awaited not in said.read_text() and ran.poll() is None and time.monotonic() < end:
+    while TAKEN not in said.read_text() and ran.poll() is None and time.monotonic() < end:
         time.sleep(0.2)
     with contextlib.suppress(subprocess.TimeoutExpired):
         ran.wait(timeout=3.0)
@@ -149,7 +149,7 @@ def run_under_display(command, folder, awaited, **variables):
         os.killpg(ran.pid, signal.SIGTERM)
         ran.wait(timeout=30.0)
     assert alive, f"it ended by itself: {said.read_text()}"
-    assert awaited in said.read_text()
+    assert TAKEN in said.read_text()
     assert not (folder / "MUJOCO_LOG.TXT").exists()
 
 
@@ -164,7 +164,7 @@ def test_simulate_of_the_wheel_takes_the_scene(tmp_path):
     variables = {"VOLCONTACT_AUTO": "1"}
     if int(mujoco.__version__.split(".")[0]) < 4:  # no entry point `mujoco.plugins`
         variables["LD_PRELOAD"] = str(ADAPTOR)
-    run_under_display(command, tmp_path, TAKEN, **variables)
+    run_until_taken(command, tmp_path, **variables)
 
 
 # Debian's, of package libmujoco-samples. Its library is the one that the wheel of 2.2.2 has too.
@@ -178,4 +178,4 @@ SIMULATE = shutil.which("mujoco-simulate")
 def test_simulate_of_debian_takes_the_scene(tmp_path):
     (tmp_path / "scene.xml").write_text(with_room(SCENE))
     variables = {"LD_PRELOAD": str(ADAPTOR), "VOLCONTACT_AUTO": "1"}
-    run_under_display([SIMULATE, "scene.xml"], tmp_path, TAKEN, **variables)
+    run_until_taken([SIMULATE, "scene.xml"], tmp_path, **variables)
