@@ -81,6 +81,7 @@ SECTIONS = {
         "docs/performance",
         "docs/assembly",
         "docs/third_party",
+        "docs/campaign",
     ],
     "Inside": [
         "docs/theory",

@@ -31,11 +31,15 @@ WRONG = "no_such_word"
 OPTIONS = {
     "tolerance": "relative error asked of the volume",
     "threads": "0 decides by work; never changes a result",
+    "exit_speed": "fastest parting of bodies from an overlap that no motion has paid for [m/s]: "
+    "[theory.md](theory.md#no-energy-from-nothing)",
     "engine": "one [engine](theory.md#engines) for all pairs that it serves",
     "target": "where the forces are written: [plugin.md](plugin.md#applied-forces)",
     "pairs": "all that MuJoCo would let collide and those listed, or the listed ones alone",
     "mesh": "what stands for a mesh: its triangles, its convex hull, or the hull where the "
     "triangles bound no solid",
+    "disabled": "whether a model that turns contact or constraints off by a `<flag>` has no "
+    "contact, or volumetric contact all the same",
     "implicit": "steps implicit in the contact forces where they are stiff, always, or never: "
     "[theory.md](theory.md#implicit-step)",
     "formulation": "force along the area vector, or the gradient of an energy: "

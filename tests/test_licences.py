@@ -90,5 +90,5 @@ def test_the_program_does():
 def test_the_package_is_declared_apache():
     text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     assert 'license = "Apache-2.0"' in text
-    assert 'wheel.packages = ["python/volcontact"]' in text
+    assert 'wheel.packages = ["python/volcontact", "python/volcontact_start"]' in text
     assert 'sdist.exclude = ["plugin/cgal"]' in text

@@ -35,14 +35,14 @@ void refuse(const mjModel* m, const std::string& why) noexcept {
     refused = {m, m->nnames, m->nuserdata, 0};
   }
   ++refused.times;
-  write_warning(("volcontact: contact stays native: " + why).c_str());
+  write_warning("volcontact: contact stays native: " + why);
 }
 
 void attach(mjModel* m, Wish wish) noexcept {
   std::string problem;
   try {
     for (const std::string& warning : attach_scene(m, {}, Attacher::kItself)) {
-      write_warning(("volcontact: " + warning).c_str());
+      write_warning("volcontact: " + warning);
     }
     if (wish == Wish::kByKeys) {  // the program has no word for it, so it is said here
       std::fprintf(stderr, "volcontact: the contact of model '%s' is volumetric\n", m->names);
@@ -73,7 +73,7 @@ const SceneContact* contact_by_itself(const mjModel* m, Wish wish) noexcept {
   if (contact->options().pairs == PairRule::kListed) return contact;
   if (m->opt.disableflags & mjDSBL_CONTACT) return contact;
   // Attached while MuJoCo compiled it, which wrote the flags of the file again afterwards.
-  model->opt.disableflags |= mjDSBL_CONTACT;
+  model->opt.disableflags |= mjDSBL_CONTACT | kAttachedMark;
   return nullptr;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -35,6 +36,13 @@ inline EnergyAccount accounted_whole(const EnergyAccount& before, double elapsed
   };
   out.dissipated.normal -= of_volumes(now) - of_volumes(before);
   return out;
+}
+
+/// What is dissipated since the start at least, `elapsed` seconds after `before`, when `elastic` is
+/// stored now [J].
+inline double least_dissipated(const EnergyAccount& before, double elapsed, double elastic) {
+  const double since = elapsed * (before.taken.sum() + before.stored) - (elastic - before.elastic);
+  return before.dissipated.sum() + std::min(0.0, since);
 }
 
 /// Completes `now`, whose `dissipated` is there, by the `work` done since `before` [J].

@@ -12,6 +12,7 @@
 
 #include "adaptor/auto_attach.h"
 #include "adaptor/largest_state.h"
+#include "adaptor/look_ahead.h"
 #include "adaptor/passive_callback.h"
 #include "adaptor/scene_drawing.h"
 #include "adaptor/scene_registry.h"
@@ -48,6 +49,7 @@ void reset(const mjModel* m, mjtNum* state, void* /*data*/, int instance) {
 }
 
 void compute(const mjModel* m, mjData* d, int /*instance*/, int /*capability*/) {
+  if (is_looking_ahead()) return;
   if (const SceneContact* contact = contact_in_plugin(m)) contact->step(m, d, thread_scratch());
 }
 

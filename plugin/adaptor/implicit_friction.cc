@@ -107,21 +107,49 @@ void ImplicitStep::set_damper(Site& site, double normal_force, const Vec3& along
   site.rub = slope.damping;
 }
 
+// The share that friction can hold of what it was solved to hold at a site.
+double ImplicitStep::held_share(std::size_t i) const noexcept {
+  const Site& site = this->site(i);
+  if (!site.laws.has_friction()) return 1.0;
+  const double* f = &force_[i * size(kRows)];
+  const Vec3 slip = slip_of(site, velocity_, i);
+  const Vec3 along = site.tangent.axes.leftCols<2>() * slip.head<2>();
+  const FrictionSlope slope =
+      site.laws.friction_slope(normal_force(i), along, velocity_[i * size(kRows) + 5]);
+  const double size_of_it = std::hypot(f[3], f[4], slope.lever > 0.0 ? f[5] / slope.lever : 0.0);
+  return size_of_it > slope.strength ? slope.strength / size_of_it : 1.0;
+}
+
 // Shortens what friction was solved to hold to what it can hold.
 void ImplicitStep::bound_friction() noexcept {
   for (std::size_t i = 0; i < island_.size(); ++i) {
-    const Site& site = this->site(i);
-    if (!site.laws.has_friction()) continue;
+    const double share = held_share(i);
+    if (share == 1.0) continue;
     double* f = &force_[i * size(kRows)];
-    const double normal_force = this->normal_force(i);
-    const Vec3 slip = slip_of(site, velocity_, i);
-    const Vec3 along = site.tangent.axes.leftCols<2>() * slip.head<2>();
-    const FrictionSlope slope =
-        site.laws.friction_slope(normal_force, along, velocity_[i * size(kRows) + 5]);
-    const double size_of_it = std::hypot(f[3], f[4], slope.lever > 0.0 ? f[5] / slope.lever : 0.0);
-    if (!(size_of_it > slope.strength)) continue;
-    const double share = slope.strength / size_of_it;
     for (int k = 3; k < kRows; ++k) f[k] *= share;
+  }
+}
+
+// Makes dampers of what friction cannot hold, so weak that it can, and solves again.
+void ImplicitStep::damp_friction(double step) noexcept {
+  constexpr int kPasses = 3;
+  constexpr double kSlight = 0.99;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    bool changed = false;
+    for (std::size_t i = 0; i < island_.size(); ++i) {
+      const double share = held_share(i);
+      if (share > kSlight) continue;
+      Site& site = this->site(i);
+      const double speed = slip_of(site, velocity_, i).norm();
+      const double* f = &force_[i * size(kRows) + 3];
+      const double lever = site.tangent.friction.lever;
+      const double bears = std::hypot(f[0], f[1], lever > 0.0 ? f[2] / lever : 0.0);
+      site.held.setZero();
+      site.rub = speed > 0.0 ? share * bears / speed : 0.0;
+      changed = true;
+    }
+    if (!changed) return;
+    solve_active(true, step);
   }
 }
 

@@ -31,6 +31,7 @@ double settling(double speed, double fall) {
 
 void ImplicitStep::clear() noexcept {
   sites_.clear();
+  limits_.clear();
   places_.clear();
 }
 
@@ -39,6 +40,7 @@ void ImplicitStep::add(const ContactModel& model, ContactReport& report, std::si
   const SiteLaws laws(model, report, site);
   sites_.push_back({laws, &model, &report, site, laws.tangent()});
   sites_.back().is_stiff = is_stiff;
+  sites_.back().pair = limits_.size() - 1;
   places_.push_back(
       {body_a, body_b, report.sites[site].metrics.centroid, sites_.back().tangent.axes});
 }
@@ -106,6 +108,7 @@ void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& fa
     const double weight = force > 0.0 ? point.constant / force : 1.0 / count;
     const double depth = k > 0.0 ? point.constant * count / k : 0.0;
     const double fall = std::max(std::abs(point.motion.dot(falling)), resting);
+    point.full = point.constant;
     point.slope =
         step * share * (1.0 + settling(depth / step, fall)) * k / count + damping * weight;
   }
@@ -207,7 +210,6 @@ ByChannel ImplicitStep::taken(const Site& site, std::size_t i) const noexcept {
 // The reports get the forces, the power they take from the motion, and what friction keeps under
 // the normal force that acts.
 void ImplicitStep::write_results() noexcept {
-  space_.move(force_, velocity_);
   for (std::size_t i = 0; i < island_.size(); ++i) {
     Site& site = this->site(i);
     SiteReport& report = site.report->sites[site.index];
@@ -259,10 +261,9 @@ bool ImplicitStep::is_settled() const noexcept {
   return (now - before).lpNorm<Eigen::Infinity>() <= kChange * now.lpNorm<Eigen::Infinity>();
 }
 
-void ImplicitStep::solve_island(ImplicitParts parts, double step, double resting) noexcept {
+// Normal forces and friction, under the shares of now; leaves the motion that they make.
+void ImplicitStep::solve_contacts(FrictionBound bound, double step) noexcept {
   constexpr int kFrictionPasses = 3;
-  space_.build_mobility();
-  make_points(parts, step, resting);
   solve_active(false, step);
   for (std::size_t i = 0; i < island_.size(); ++i) {
     site(i).rub = 0.0;
@@ -276,7 +277,112 @@ void ImplicitStep::solve_island(ImplicitParts parts, double step, double resting
     solve_active(true, step);
     if (is_settled()) break;
   }
-  if (rubs) bound_friction();
+  if (rubs && bound == FrictionBound::kCut) bound_friction();
+  if (rubs && bound == FrictionBound::kDamped) damp_friction(step);
+  space_.move(force_, velocity_);
+}
+
+void ImplicitStep::solve_island(ImplicitParts parts, double step, double resting) noexcept {
+  space_.build_mobility();
+  make_points(parts, step, resting);
+  set_shares();
+  solve_contacts(FrictionBound::kCut, step);
+  limit_work(step, resting);
+}
+
+// The pairs that have sites in the island; these stand together.
+template <typename Use>
+void ImplicitStep::for_each_pair(Use use) noexcept {
+  const WorkLimit* last = nullptr;
+  for (const int i : island_) {
+    WorkLimit& limit = limits_[sites_[size(i)].pair];
+    if (&limit != last) use(limit);
+    last = &limit;
+  }
+}
+
+void ImplicitStep::set_shares() noexcept {
+  for (std::size_t i = 0; i < island_.size(); ++i) {
+    Site& site = this->site(i);
+    const double share = limits_[site.pair].share;
+    for (Point& point : site.points) point.constant = share * point.full;
+  }
+}
+
+// The work that the contacts do over the step, by pair.
+void ImplicitStep::add_up_work(double step, double resting) noexcept {
+  constexpr double kRounding = 1e-9;
+  for_each_pair([](WorkLimit& limit) {
+    limit.normal_work = limit.friction_work = limit.slack = limit.exit = limit.from_free = 0.0;
+  });
+  double from_free = 0.0, allowed = 0.0;
+  for (std::size_t i = 0; i < island_.size(); ++i) {
+    const Eigen::Index first = static_cast<Eigen::Index>(i) * kRows;
+    const ContactSpace::Block impulse = step * ConstVector(&force_[i * size(kRows)], kRows);
+    const ContactSpace::Block end = ConstVector(&velocity_[i * size(kRows)], kRows);
+    const ContactSpace::Block begin = space_.velocity().segment<kRows>(first);
+    const ContactSpace::Block free = space_.free_velocity().segment<kRows>(first);
+    const ContactSpace::Block mean = 0.5 * (begin + end), mean_of_free = 0.5 * (free + end);
+    WorkLimit& limit = limits_[site(i).pair];
+    limit.normal_work += impulse.head<3>().dot(mean.head<3>());
+    limit.friction_work += impulse.tail<3>().dot(mean.tail<3>());
+    limit.from_free += impulse.head<3>().dot(mean_of_free.head<3>());
+    limit.slack += 0.5 * impulse[0] * resting +
+                   kRounding * impulse.cwiseAbs().dot(begin.cwiseAbs() + end.cwiseAbs());
+    if (impulse[0] > 0.0) limit.exit = std::max(limit.exit, end[0]);
+    from_free += impulse.dot(mean_of_free);
+  }
+  // Where other forces turn velocities round, the energy is that of the free motion and what the
+  // contacts of the island add to it; at rest they take it all.
+  for_each_pair([&](const WorkLimit& limit) { allowed += limit.allowed() + limit.rubbed; });
+  if (from_free <= allowed) return;
+  for_each_pair(
+      [](WorkLimit& limit) { limit.normal_work = std::max(limit.normal_work, limit.from_free); });
+}
+
+// Elastic forces that would do more work on the bodies than these put in act with a share of
+// theirs. With none the contacts damp, whatever the poses: docs/theory.md, "No energy from
+// nothing".
+void ImplicitStep::limit_work(double step, double resting) noexcept {
+  constexpr int kSearches = 8;
+  enum { kSearch, kLowest, kNone, kAllNone } last = kSearch;
+  for_each_pair([](WorkLimit& limit) { limit.start(); });
+  for (int round = 0; last != kAllNone; ++round) {
+    add_up_work(step, resting);
+    bool changed = false, kept = true;
+    for_each_pair([&](const WorkLimit& limit) { kept = kept && limit.is_kept(); });
+    if (round < kSearches) {
+      for_each_pair([&](WorkLimit& limit) { changed = limit.search() || changed; });
+      if (!changed) return;
+    } else {
+      if (kept) return;
+      last = last == kSearch ? kLowest : last == kLowest ? kNone : kAllNone;
+      for_each_pair([&](WorkLimit& limit) {
+        if (last == kAllNone || (last == kNone && !limit.is_kept())) limit.share = 0.0;
+        if (last == kLowest && !limit.is_kept())
+          limit.share = limit.low < limit.share ? limit.low : 0.0;
+      });
+    }
+    set_shares();
+    solve_contacts(FrictionBound::kDamped, step);
+  }
+  add_up_work(step, resting);
+  share_deficit();
+}
+
+// Where pairs did more than they hold, friction or other pairs of the island have paid for it:
+// these have put in the less.
+void ImplicitStep::share_deficit() noexcept {
+  double deficit = 0.0, put_in = 0.0;
+  for_each_pair([&](const WorkLimit& limit) {
+    deficit += std::max(0.0, limit.work() - limit.allowed());
+    put_in += std::max(0.0, -limit.work());
+  });
+  if (!(deficit > 0.0 && put_in > 0.0)) return;
+  const double left = std::max(0.0, 1.0 - deficit / put_in);
+  for_each_pair([left](WorkLimit& limit) {
+    if (limit.work() < 0.0) limit.normal_work *= left;
+  });
 }
 
 // Solves again until MuJoCo's own constraints bear what was taken for granted.
@@ -288,6 +394,10 @@ void ImplicitStep::solve_with_constraints(const mjModel* m, mjData* d, ImplicitP
   const bool is_stiff = std::any_of(island_.begin(), island_.end(),
                                     [this](int i) { return sites_[size(i)].is_stiff; });
   constraints_.select(m, d, islands_, island);
+  for_each_pair([is_stiff](WorkLimit& limit) {
+    limit.share = 1.0;
+    limit.is_solved = is_stiff;
+  });
   for (int round = 0; round < kRounds; ++round) {
     space_.build(m, d, damping_, places_, islands_, island, constraints_, known);
     force_.resize(size(space_.rows()));

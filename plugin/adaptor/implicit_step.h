@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "adaptor/contact_equations.h"
+#include "adaptor/work_limit.h"
 #include "volcontact/model/site_laws.h"
 
 namespace volcontact::adaptor {
@@ -16,9 +17,9 @@ enum class ImplicitParts : int {
   kAll = 1,
 };
 
-/// An explicit step holds a spring up to h^2 k/m = 4, and keeps its energy where this is small:
-/// `auto` makes implicit what lies above this bound.
-inline constexpr double kStiffNumber = 0.05;
+/// An explicit step holds a damper up to h c/m = 2, and reverses the motion from 1 on: `auto` makes
+/// implicit what lies above this bound.
+inline constexpr double kStiffDamper = 0.5;
 
 /// Pairs whose patch, were it as large as the smaller solid, stays below this are always left to
 /// the explicit force.
@@ -42,12 +43,21 @@ class ImplicitStep {
  public:
   void clear() noexcept;
 
-  /// A site that takes part. The report keeps its inputs. `is_stiff`: an explicit step could not
+  /// The sites that follow are of another pair of geoms, whose work is limited.
+  void begin_pair(const WorkLimit& limit) noexcept { limits_.push_back(limit); }
+
+  /// A site of the last pair. The report keeps its inputs. `is_stiff`: an explicit step could not
   /// hold it.
   void add(const ContactModel& model, ContactReport& report, std::size_t site, int body_a,
            int body_b, bool is_stiff) noexcept;
 
   bool empty() const noexcept { return sites_.empty(); }
+
+  /// Of the pair that began as number i: whether its forces were solved, and the work they do over
+  /// the step.
+  bool is_pair_solved(std::size_t i) const noexcept { return limits_[i].is_solved; }
+  double work(std::size_t i) const noexcept { return limits_[i].work(); }
+  double friction_work(std::size_t i) const noexcept { return limits_[i].friction_work; }
 
   /// Solves, with the known forces of contact_space.h, and puts the results into the reports: the
   /// forces, and as `taken` the power that the contact takes from the motion over the step.
@@ -64,6 +74,7 @@ class ImplicitStep {
   struct Point {
     Vec3 motion = Vec3::Zero();  // of the point along n, by the normal coordinates: (1, y, -x)
     double constant = 0.0;       // f = constant - slope * speed
+    double full = 0.0;           // the constant without a limit
     double slope = 0.0;
     bool pushes = true;
   };
@@ -76,6 +87,7 @@ class ImplicitStep {
     std::array<Point, 4> points{};
     int point_count = 0;
     Mat3 rolls = Mat3::Zero();  // L of L L', the damping of turns where the points have none
+    std::size_t pair = 0;
     bool is_stiff = false;
     bool is_solved = false;
     ContactSpace::Block force = ContactSpace::Block::Zero();
@@ -89,11 +101,22 @@ class ImplicitStep {
     double rub = 0.0;
     double free_speed = 0.0;  // slip at the end of the step without friction
   };
+  // How friction is brought within what it can hold: cut after the solution, which is quick, or
+  // solved again as a damper, which can only dissipate.
+  enum class FrictionBound { kCut, kDamped };
+
   Site& site(std::size_t i) noexcept { return sites_[static_cast<std::size_t>(island_[i])]; }
   const Site& site(std::size_t i) const noexcept {
     return sites_[static_cast<std::size_t>(island_[i])];
   }
   void solve_island(ImplicitParts parts, double step, double resting) noexcept;
+  void solve_contacts(FrictionBound bound, double step) noexcept;
+  void limit_work(double step, double resting) noexcept;
+  void add_up_work(double step, double resting) noexcept;
+  void set_shares() noexcept;
+  void share_deficit() noexcept;
+  template <typename Use>
+  void for_each_pair(Use use) noexcept;
   void solve_with_constraints(const mjModel* m, mjData* d, ImplicitParts parts, int island,
                               const double* known) noexcept;
   void take_explicit() noexcept;
@@ -108,6 +131,8 @@ class ImplicitStep {
   void set_damper(Site& site, double normal_force, const Vec3& along, double spin,
                   double speed) const noexcept;
   void bound_friction() noexcept;
+  void damp_friction(double step) noexcept;
+  double held_share(std::size_t i) const noexcept;
   bool is_settled() const noexcept;
   void write_results() noexcept;
   ByChannel taken(const Site& site, std::size_t i) const noexcept;
@@ -116,6 +141,7 @@ class ImplicitStep {
   Vec3 slip_of(const Site& site, const std::vector<double>& u, std::size_t i) const noexcept;
 
   std::vector<Site> sites_;
+  std::vector<WorkLimit> limits_;  // by pair
   std::vector<ContactPlace> places_;
   ContactIslands islands_;
   NativeConstraints constraints_;

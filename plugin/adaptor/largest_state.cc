@@ -4,6 +4,7 @@
 #include "adaptor/law_tables.h"
 #include "adaptor/site_pool.h"
 #include "adaptor/userdata_layout.h"
+#include "adaptor/work_limit.h"
 #include "volcontact/force/laws.h"
 #include "volcontact/model/contact_model.h"
 
@@ -32,9 +33,10 @@ int largest_state(const mjModel* m) {
   const auto geoms = static_cast<std::size_t>(m->ngeom);
   const int rows = rows_for(geoms * geoms, geoms);
   const int channels = std::max(static_cast<int>(m->nv), 6 * static_cast<int>(m->nbody));
-  return UserdataLayout{SitePoolLayout{rows, largest_row()}.size(), channels, rows,
-                        static_cast<int>(m->nv)}
-      .size();
+  const int states = SitePoolLayout{rows, largest_row()}.size() +
+                     SitePoolLayout{rows, PairEnergy::kNumbers}.size();
+  const auto nv = static_cast<int>(m->nv);
+  return UserdataLayout{states, channels, rows, nv, static_cast<int>(m->nq) + nv}.size();
 }
 
 }  // namespace volcontact::adaptor

@@ -47,7 +47,8 @@ std::string source_of(const Side& side, const FieldRow& field) {
     return side.material->key + "/" + kFriction;
   }
   const bool native = field.name == kFriction || field.name == kStaticFriction;
-  return native ? "friction of geom " + side.name : "default";
+  if (!native) return "default";
+  return "friction of " + (side.friction_giver.empty() ? "geom " + side.name : side.friction_giver);
 }
 
 // The word for `choice`: the pair's, else the one word the two materials name; empty when nobody
@@ -199,10 +200,16 @@ PairLaws combine(const Side& a, const Side& b, const KeyedValues* pair) {
   const ChoiceValues friction_choices = law_choices(friction, a, b, pair);
   out.choices = friction_choices;
   out.choices.insert(normal_choices.begin(), normal_choices.end());
-  out.laws.normal = make_normal(normal.name, normal_values, normal_choices);
-  out.laws.friction = make_friction(friction.name, friction_values, friction_choices);
+  try {
+    out.laws.normal = make_normal(normal.name, normal_values, normal_choices);
+    out.laws.friction = make_friction(friction.name, friction_values, friction_choices);
+  } catch (const std::invalid_argument& error) {  // each is in range, and the two together are not
+    throw std::invalid_argument("geoms '" + a.name + "' and '" + b.name + "', of " +
+                                material_text(a) + " and " + material_text(b) +
+                                (pair ? " with " + pair->key : "") + ": " + error.what());
+  }
   out.laws.rolling = choose(kRolling, a, b, pair) != kOff;
-  out.laws.share_of_a = stiffnesses.b / (stiffnesses.a + stiffnesses.b);
+  out.laws.share_of_a = share_of_first(stiffnesses.a, stiffnesses.b);
   warn_unused(pair, normal, friction, out);
   warn_unused(a.material, normal, friction, out);
   if (b.material != a.material) warn_unused(b.material, normal, friction, out);

@@ -19,8 +19,9 @@ struct KeyedValues {
 /// One side of a pair: what its geom is made of.
 struct Side {
   std::string name;                       ///< of the geom
-  double native_friction = 0.0;           ///< the geom's own sliding friction in MuJoCo [-]
+  double native_friction = 0.0;           ///< its sliding friction in MuJoCo [-]
   const KeyedValues* material = nullptr;  ///< null: the default material
+  std::string friction_giver = {};        ///< "<pair> 'p'" where not the geom gives it
 };
 
 /// The number a pair uses and where it comes from.

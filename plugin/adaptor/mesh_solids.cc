@@ -30,7 +30,9 @@ Shape mesh_solid(const mjModel* m, int geom, MeshForm form) {
   std::vector<Triangle> triangles;
   const int* face = m->mesh_face + 3 * m->mesh_faceadr[mesh];
   for (int i = 0; i < m->mesh_facenum[mesh]; ++i, face += 3) {
-    triangles.push_back({face[0], face[1], face[2]});
+    // Files have faces without area; MuJoCo hands them on.
+    const bool folded = face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
+    if (!folded) triangles.push_back({face[0], face[1], face[2]});
   }
   try {
     return make_solid(vertices, triangles, form);

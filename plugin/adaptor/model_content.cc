@@ -38,6 +38,7 @@ void visit_values(const mjModel* m, const std::vector<NumericSpan>& numerics,
   }
   bytes_of(m->geom_size, 3 * geoms, visit);
   bytes_of(m->geom_friction, 3 * geoms, visit);
+  bytes_of(m->pair_friction, 5 * static_cast<std::size_t>(m->npair), visit);
   bytes_of(m->geom_type, geoms, visit);
   bytes_of(m->geom_dataid, geoms, visit);
   bytes_of(m->hfield_data, static_cast<std::size_t>(m->nhfielddata), visit);

@@ -170,13 +170,26 @@ inline bool has_flexes([[maybe_unused]] const mjModel* m) {
 #endif
 }
 
+/// The text with "?" for what steers a terminal: names of a file may have it.
+inline std::string printable(std::string text) {
+  bool leads = false;  // the byte before begins a character between U+0080 and U+00BF
+  for (char& letter : text) {
+    const auto byte = static_cast<unsigned char>(letter);
+    const bool steers = byte < 0x20 || byte == 0x7f || (leads && byte >= 0x80 && byte < 0xa0);
+    leads = byte == 0xc2;
+    if (steers && letter != '\n' && letter != '\t') letter = '?';
+  }
+  return text;
+}
+
 /// Writes a MuJoCo warning; its function became printf-like on the way.
 template <typename Warn = decltype(&mju_warning)>
-void write_warning(const char* text, Warn warn = &mju_warning) {
+void write_warning(const std::string& text, Warn warn = &mju_warning) {
+  const std::string seen = printable(text);
   if constexpr (std::is_same_v<Warn, void (*)(const char*)>) {
-    warn(text);
+    warn(seen.c_str());
   } else {
-    warn("%s", text);
+    warn("%s", seen.c_str());
   }
 }
 

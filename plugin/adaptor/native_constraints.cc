@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "adaptor/look_ahead.h"
 #include "adaptor/sizes.h"
 
 namespace volcontact::adaptor {
@@ -13,7 +14,7 @@ void NativeConstraints::read(const mjModel* m, mjData* d) noexcept {
   row_begin_.assign(1, 0);
   joined_.clear();
   const int count = static_cast<int>(d->nefc);
-  if (count == 0) return;
+  if (count == 0 || !complete_constraints(m, d)) return;
   mj_referenceConstraint(m, d);
   for (int i = 0; i < count; ++i) {
     for_row_of_constraint(m, d, i, [&](int dof, double value) {

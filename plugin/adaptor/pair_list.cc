@@ -20,20 +20,21 @@ bool are_parent_and_child(const mjModel* m, int weld_a, int weld_b) {
   return parent(weld_a) == weld_b || parent(weld_b) == weld_a;
 }
 
-std::set<std::pair<int, int>> explicit_pairs(const mjModel* m) {
-  std::set<std::pair<int, int>> pairs;
+std::map<std::pair<int, int>, int> explicit_pairs(const mjModel* m) {
+  std::map<std::pair<int, int>, int> pairs;
   if (!collides_by_pairs(m)) return pairs;
   for (int i = 0; i < m->npair; ++i) {
-    pairs.insert(std::minmax(m->pair_geom1[i], m->pair_geom2[i]));
+    pairs.emplace(std::minmax(m->pair_geom1[i], m->pair_geom2[i]), i);
   }
   return pairs;
 }
 
 class PairRules {
  public:
-  PairRules(const mjModel* m, const SceneKeys& keys)
+  PairRules(const mjModel* m, const SceneKeys& keys, bool listed_only)
       : m_(m),
         keys_(keys),
+        listed_only_(listed_only),
         explicit_(explicit_pairs(m)),
         excluded_(m->exclude_signature, m->exclude_signature + m->nexclude) {}
 
@@ -41,19 +42,21 @@ class PairRules {
   bool admit(GeomPair& pair) const {
     const int a = pair.a, b = pair.b;
     if (!keys_.is_solid(a) || !keys_.is_solid(b)) return false;
+    const auto native = explicit_.find({a, b});
+    if (native != explicit_.end()) pair.native = native->second;
     const auto listed = keys_.pair_of_geoms.find({a, b});
     if (listed != keys_.pair_of_geoms.end()) {
       pair.listed = listed->second;
       pair.origin = PairOrigin::kListed;
       return true;
     }
-    if (keys_.options.pairs == PairRule::kListed) return false;
+    if (listed_only_) return false;
     if (m_->geom_type[a] == mjGEOM_PLANE && m_->geom_type[b] == mjGEOM_PLANE) return false;
     const int body_a = m_->geom_bodyid[a], body_b = m_->geom_bodyid[b];
     const int weld_a = m_->body_weldid[body_a], weld_b = m_->body_weldid[body_b];
     if (weld_a == weld_b) return false;
     pair.origin = PairOrigin::kExplicit;
-    if (explicit_.count({a, b})) return true;
+    if (pair.native >= 0) return true;
     pair.origin = PairOrigin::kMasks;
     return collides_by_masks(m_) && masks_match(m_, a, b) &&
            !are_parent_and_child(m_, weld_a, weld_b) &&
@@ -63,7 +66,8 @@ class PairRules {
  private:
   const mjModel* m_;
   const SceneKeys& keys_;
-  std::set<std::pair<int, int>> explicit_;
+  bool listed_only_;
+  std::map<std::pair<int, int>, int> explicit_;
   std::set<int> excluded_;
 };
 
@@ -104,8 +108,9 @@ bool reaches_plane(const mjData* d, int plane, const Shape& solid, const Pose& X
 
 }  // namespace
 
-std::vector<GeomPair> pairs_that_can_touch(const mjModel* m, const SceneKeys& keys) {
-  const PairRules rules(m, keys);
+std::vector<GeomPair> pairs_that_can_touch(const mjModel* m, const SceneKeys& keys,
+                                           bool listed_only) {
+  const PairRules rules(m, keys, listed_only || keys.options.pairs == PairRule::kListed);
   std::vector<GeomPair> pairs;
   for (int a = 0; a < m->ngeom; ++a) {
     for (int b = a + 1; b < m->ngeom; ++b) {

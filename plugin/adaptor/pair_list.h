@@ -24,12 +24,15 @@ struct GeomPair {
   int b;
   PairOrigin origin;
   int listed = -1;  ///< index into SceneKeys::pairs, -1 when no volcontact/pair names the two
+  int native = -1;  ///< number of a <pair> of the model that names the two, -1 where none does
 };
 
 /// The pairs that can touch, in ascending order of (a, b): MuJoCo's own rules (bit masks; not
 /// within one rigid body; not parent and child; not excluded; explicit pairs whatever the masks
 /// say) and the scene's listed pairs, or the latter alone.
-std::vector<GeomPair> pairs_that_can_touch(const mjModel* m, const SceneKeys& keys);
+/// `listed_only`: no others than those listed for volcontact.
+std::vector<GeomPair> pairs_that_can_touch(const mjModel* m, const SceneKeys& keys,
+                                           bool listed_only = false);
 
 /// Leaves out, step by step, the pairs whose bounds are apart. Const once made.
 class Cull {

@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "adaptor/auto_attach.h"
+#include "adaptor/look_ahead.h"
 #include "adaptor/scene_registry.h"
 #include "adaptor/volcontact_mujoco.h"
 
@@ -34,6 +35,7 @@ void install_callback() {
   previous = mjcb_passive;
   may_be_called_back = was_covered.load();
   is_inside = false;
+  stop_looking_ahead();
   mjcb_passive = volcontact_passive;
 }
 
@@ -58,6 +60,7 @@ extern "C" void volcontact_passive(const mjModel* m, mjData* d) {
   using namespace volcontact::adaptor;
   if (is_inside && may_be_called_back) return;
   call_previous(m, d);
+  if (is_looking_ahead()) return;
   const SceneContact* contact =
       attaches_by_itself() ? contact_by_itself(m, Wish::kByKeys) : contact_of(m);
   // The engine plugin steps its own scenes.

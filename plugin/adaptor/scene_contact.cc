@@ -10,6 +10,7 @@
 
 #include "adaptor/applied_ledger.h"
 #include "adaptor/energy_account.h"
+#include "adaptor/moved_clock.h"
 #include "adaptor/work_sharing.h"
 
 namespace volcontact::adaptor {
@@ -60,7 +61,7 @@ bool any(const std::vector<char>& flags, std::size_t count) {
 bool has_evaluation(const UserdataBlock& block, const mjData* d, bool is_beside) {
   if (!block.is_ours() || block.count() == 0) return false;
   const double elapsed = d->time - block.slot(0).time();
-  return !is_beside || (elapsed >= 0.0 && elapsed <= 1.5 * block.slot(0).step());
+  return !is_beside || (elapsed >= 0.0 && elapsed <= kLongestGap * block.slot(0).step());
 }
 
 }  // namespace
@@ -69,7 +70,9 @@ UserdataLayout SceneContact::layout(const mjModel* m) const {
   const int channels = keys_.options.target == Target::kApplied ? static_cast<int>(m->nv)
                        : keys_.options.target == Target::kXfrc  ? 6 * static_cast<int>(m->nbody)
                                                                 : 0;
-  return {sites_.size(), channels, solved_rows_, static_cast<int>(m->nv)};
+  const auto dofs = static_cast<int>(m->nv);
+  return {sites_.size() + energies_.size(), channels, solved_rows_, dofs,
+          static_cast<int>(m->nq) + dofs};
 }
 
 UserdataBlock SceneContact::block(const mjModel* m, const mjData* d) const {
@@ -223,18 +226,36 @@ void SceneContact::step(const mjModel* m, mjData* d, Scratch& scratch) const noe
   if (!has_room(m)) return;
   const UserdataBlock our = block(m, d);
   our.claim();
+  // Nobody tells a block beside mjData of a reset; to it a time that goes back is one.
+  if (!is_beside()) follow_clock(m, d, our, scratch.way);
   const AccountKeeper account(our, d->time, m->opt.timestep, m->opt.integrator == mjINT_RK4);
   const double* committed = account.continues() ? our.slot(1).states() : nullptr;
   const bool may_be_implicit = this->may_be_implicit(m);
   evaluate(m, d, {committed, account.elapsed(), may_be_implicit}, scratch);
   EnergyAccount now;
-  now.implicit = may_be_implicit && find_stiff_sites(m, scratch);
   our.set_solved(0);
-  if (now.implicit) {
-    solve_implicit(m, d, scratch);
+  if (may_be_implicit) {
+    now.unpaid = read_energies(committed, account.elapsed(), scratch);
+    scratch.dissipated = 0.0;
+    if (committed) {
+      double elastic = -now.unpaid;
+      for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+        elastic += scratch.reports[k].elastic_energy;
+      }
+      scratch.dissipated = least_dissipated(our.slot(1).energy(), account.elapsed(), elastic);
+    }
+    now.implicit = find_stiff_sites(m, d, scratch);
+    if (now.implicit) solve_implicit(m, d, scratch);
+    const bool limited = limit_explicit(m, scratch);
+    if (now.implicit || limited) keep_solved(our, scratch);
+  }
+  if (m->opt.integrator == mjINT_RK4 && options().implicit == Implicit::kAuto &&
+      bound_runge_kutta(m, scratch)) {
     keep_solved(our, scratch);
   }
-  if (!keep_sites(our.slot(0).states(), scratch)) our.forgotten() += 1.0;
+  bool kept = keep_sites(our.slot(0).states(), scratch);
+  if (may_be_implicit) kept = keep_energies(our.slot(0).states(), scratch) && kept;
+  if (!kept) our.forgotten() += 1.0;
 
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const ContactReport& report = scratch.reports[k];
@@ -245,8 +266,10 @@ void SceneContact::step(const mjModel* m, mjData* d, Scratch& scratch) const noe
     now.slide_energy += report.bristle_energy.slide;
     now.spin_energy += report.bristle_energy.spin;
   }
+  now.elastic -= now.unpaid;
   write_forces(m, d, scratch);
   now.force_power = power_of(our.slot(0).forces(), d->qvel, m->nv);
+  keep_motion(m, d, our);
   account.write(now, account.continues() ? power_of(our.slot(1).forces(), d->qvel, m->nv) : 0.0);
 }
 

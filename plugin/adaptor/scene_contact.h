@@ -18,6 +18,10 @@
 
 namespace volcontact::adaptor {
 
+/// Set in mjModel.opt.disableflags, where MuJoCo has no flag, while the model is attached; so its
+/// copies are known from a second load of the same file.
+inline constexpr int kAttachedMark = 1 << 30;
+
 /// The contact model of one pair of geoms. Body A is the frame of geom a, body B that of geom b.
 struct PairContact {
   GeomPair geoms;
@@ -28,6 +32,7 @@ struct PairContact {
   double largest_rate;
   double bristle_rate;          ///< the same of its bristles against sliding [1/s^2]
   double bristle_damping_rate;  ///< and of their damping [1/s]
+  bool is_jointed = false;      ///< whether one of the bodies hangs on joints
 };
 
 /// Volumetric contact of one scene. Const once made: what lasts from step to step is in
@@ -45,7 +50,10 @@ class SceneContact {
     std::vector<ContactModel::Workspace> workspaces;  ///< one per OpenMP thread
     BodyForces forces;
     ImplicitStep implicit;
-    std::vector<double> user_qfrc, user_xfrc, known;
+    double dissipated = 0.0;           ///< by the contacts up to the evaluation before [J]
+    std::vector<PairEnergy> energies;  ///< of the pairs in `near`
+    std::vector<double> user_qfrc, user_xfrc, known, row;
+    std::vector<double> way;  ///< of the dofs since the evaluation before
   };
 
   /// Reads the scene. Throws std::invalid_argument with a message for the author of the scene.
@@ -143,16 +151,21 @@ class SceneContact {
   void evaluate_one(const mjModel* m, const mjData* d, const Before& before, int k,
                     ContactModel::Workspace& workspace, Scratch& scratch) const noexcept;
   bool may_be_implicit(const mjModel* m) const noexcept;
-  bool is_stiff(const mjModel* m, const PairContact& pair, const ContactReport& report,
-                std::size_t site) const noexcept;
-  bool find_stiff_sites(const mjModel* m, Scratch& scratch) const noexcept;
+  bool is_stiff(const mjModel* m, mjData* d, const PairContact& pair, const ContactReport& report,
+                std::size_t site, Scratch& scratch) const noexcept;
+  bool find_stiff_sites(const mjModel* m, mjData* d, Scratch& scratch) const noexcept;
   void solve_implicit(const mjModel* m, mjData* d, Scratch& scratch) const noexcept;
   void keep_solved(const UserdataBlock& our, const Scratch& scratch) const noexcept;
   void recall_solved(const UserdataBlock& our, Scratch& scratch) const noexcept;
+  double read_energies(const double* committed, double elapsed, Scratch& scratch) const noexcept;
+  bool limit_explicit(const mjModel* m, Scratch& scratch) const noexcept;
+  bool bound_runge_kutta(const mjModel* m, Scratch& scratch) const noexcept;
+  bool keep_energies(double* states, const Scratch& scratch) const noexcept;
   bool keep_sites(double* states, const Scratch& scratch) const noexcept;
   void write_forces(const mjModel* m, mjData* d, Scratch& scratch) const noexcept;
 
   SceneKeys keys_;
+  std::string no_contact_;  // the flag of the model that says so; else empty
   std::vector<GeomPair> geom_pairs_;
   std::map<int, Shape> meshes_;  // by number
   std::vector<Shape> solids_;    // by geom; of geoms without a pair a placeholder
@@ -160,6 +173,7 @@ class SceneContact {
   Cull cull_;
   SitePoolLayout sites_;
   int solved_rows_ = 0;
+  SitePoolLayout energies_;  // of the pairs; behind the sites
   std::shared_ptr<SideStates> beside_;
   PluginRoom plugin_;
   std::vector<std::string> warnings_, alerts_;

@@ -30,7 +30,9 @@ void write_options(const SceneOptions& options, JsonText& json) {
   json.member("mesh", kMeshFormWords[static_cast<int>(options.mesh)]);
   json.member("formulation", kFormulationWords[static_cast<int>(options.formulation)]);
   json.member("implicit", kImplicitWords[static_cast<int>(options.implicit)]);
+  json.member("disabled", kDisabledWords[static_cast<int>(options.disabled)]);
   json.member("threads", options.threads);
+  json.member("exit_speed", options.exit_speed);
   json.end_object();
 }
 

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <string_view>
 
 #include "adaptor/applied_ledger.h"
 #include "adaptor/scene_contact.h"
 #include "adaptor/scene_key.h"
+#include "adaptor/solids_of_geoms.h"
 #include "volcontact/base/check.h"
 
 namespace volcontact::adaptor {
@@ -27,6 +29,21 @@ void total_up(ContactReport& report) {
   }
 }
 
+// A share of all that acts at a site.
+void take_share(double share, SiteReport& site) {
+  site.normal_force *= share;
+  site.force_on_A *= share;
+  site.torque_on_A *= share;
+  for (ByChannel* power : {&site.power, &site.taken}) {
+    for (double* x : {&power->normal, &power->roll, &power->slide, &power->spin}) *x *= share;
+  }
+}
+
+// Change of speed by gravity in a step [m/s].
+double fall_of(const mjModel* m) {
+  return m->opt.timestep * Eigen::Map<const Vec3>(m->opt.gravity).norm();
+}
+
 // Inverse of the mass that two bodies have against displacements, and against turns, as MuJoCo
 // knows it at the first pose.
 struct InverseMass {
@@ -37,6 +54,39 @@ InverseMass inverse_mass(const mjModel* m, const GeomPair& geoms) {
   const int a = m->geom_bodyid[geoms.a], b = m->geom_bodyid[geoms.b];
   return {m->body_invweight0[2 * a] + m->body_invweight0[2 * b],
           m->body_invweight0[2 * a + 1] + m->body_invweight0[2 * b + 1]};
+}
+
+// Whether the body of a geom moves, and not as a free body alone.
+bool is_jointed(const mjModel* m, int geom) {
+  const int body = m->body_weldid[m->geom_bodyid[geom]];
+  if (body == 0) return false;
+  const int root = m->body_rootid[body], first = m->body_dofadr[body];
+  if (body != root || m->jnt_type[m->body_jntadr[body]] != mjJNT_FREE) return true;
+  const int next = first + m->body_dofnum[body];  // the degrees of freedom of a tree stand together
+  return next < m->nv && m->body_rootid[m->dof_bodyid[next]] == root;
+}
+
+// How much an impulse along the normal at a point changes the speed there of one body against the
+// other, at the present pose [1/kg].
+double mobility_along(const mjModel* m, mjData* d, const GeomPair& geoms, const Vec3& point,
+                      const Vec3& normal, std::vector<double>& row) noexcept {
+  const auto nv = static_cast<std::size_t>(m->nv);
+  row.assign(2 * nv, 0.0);
+  for (const int geom : {geoms.a, geoms.b}) {
+    const double sign = geom == geoms.a ? 1.0 : -1.0;
+    int body = m->geom_bodyid[geom];
+    while (body > 0 && m->body_dofnum[body] == 0) body = m->body_parentid[body];
+    if (body == 0) continue;
+    const Vec3 offset = point - vec3_at(d->subtree_com, m->body_rootid[body]);
+    int dof = m->body_dofadr[body] + m->body_dofnum[body] - 1;
+    for (; dof >= 0; dof = m->dof_parentid[dof]) {
+      const Vec3 angular = vec3_at(d->cdof, 2 * dof);
+      const Vec3 way = vec3_at(d->cdof, 2 * dof + 1) + angular.cross(offset);
+      row[static_cast<std::size_t>(dof)] += sign * normal.dot(way);
+    }
+  }
+  mj_solveM(m, d, row.data() + nv, row.data(), 1);
+  return std::inner_product(row.begin(), row.begin() + m->nv, row.begin() + m->nv, 0.0);
 }
 
 // Of a field of the laws; another where they have none of this name, as one of the user's own may.
@@ -51,6 +101,7 @@ double number_of(const PairLaws& laws, std::string_view name, double otherwise) 
 // which take the velocity first, hold h^2 k/m + 2 h c/m = 4.
 constexpr double kEulerSpring = 4.0, kEulerDamper = 2.0;
 constexpr double kRungeKuttaSpring = 8.0, kRungeKuttaDamper = 2.785;
+constexpr double kSafeRungeKuttaSpring = 2.0;
 
 // The mass at the patch is that of a solid ball: 1/m and 5/2 of it for the arm.
 constexpr double kBall = 3.5;
@@ -116,6 +167,7 @@ void SceneContact::set_rates(const mjModel* m, PairContact& pair) const {
                                largest_face(solids_[static_cast<std::size_t>(pair.geoms.b)]));
   const double along = inverse_mass(m, pair.geoms).along, sliding = kBall * along;
   const PairLaws& laws = pair.laws;
+  pair.is_jointed = is_jointed(m, pair.geoms.a) || is_jointed(m, pair.geoms.b);
   pair.largest_rate = number_of(laws, "stiffness", HUGE_VAL) * face * along;
   pair.bristle_rate = number_of(laws, "bristle_stiffness", 0.0) * sliding;
   pair.bristle_damping_rate =
@@ -164,7 +216,8 @@ void SceneContact::check_integrator(const mjModel* m) {
     warn_once("geoms '" + label(m, mjOBJ_GEOM, pair.geoms.a) + "' and '" +
               label(m, mjOBJ_GEOM, pair.geoms.b) +
               "' may touch too stiffly for integrator=\"RK4\" at this time step, which no "
-              "implicit contact helps: use Euler, implicit or implicitfast");
+              "implicit contact helps; there they are pushed no more than what stops them within "
+              "a step: use Euler, implicit or implicitfast");
     return;
   }
 }
@@ -175,8 +228,9 @@ bool SceneContact::may_be_implicit(const mjModel* m) const noexcept {
 
 // Whether an explicit step could not hold the site: by its friction, or by h^2 k/m of its patch
 // against displacements and turns, with the mass that MuJoCo knows of each body at its first pose.
-bool SceneContact::is_stiff(const mjModel* m, const PairContact& pair, const ContactReport& report,
-                            std::size_t site) const noexcept {
+bool SceneContact::is_stiff(const mjModel* m, mjData* d, const PairContact& pair,
+                            const ContactReport& report, std::size_t site,
+                            Scratch& scratch) const noexcept {
   if (options().implicit == Implicit::kAlways) return true;
   const double h = m->opt.timestep;
   const InverseMass inverse = inverse_mass(m, pair.geoms);
@@ -184,21 +238,34 @@ bool SceneContact::is_stiff(const mjModel* m, const PairContact& pair, const Con
     if (shakes_bristles(pair, h)) return true;
     if (friction->states().empty() && reverses_slip(report.sites[site], inverse, h)) return true;
   }
-  if (h * h * pair.largest_rate < kPossibleNumber) return false;
   const VolumeMetrics& metrics = report.sites[site].metrics;
-  const double k_v = report.inputs[site].normal_out.elastic / metrics.volume;
+  const SiteInputs& inputs = report.inputs[site];
   const double spread = 0.5 * metrics.inertia.trace() / metrics.volume;
-  const double stiffness = k_v * metrics.area_vector.norm();
-  return h * h * stiffness * (inverse.along + spread * inverse.about) > kStiffNumber;
+  const double mobility = inverse.along + spread * inverse.about;
+  // Volume times k_v a: the damper, also where it is cut off because the bodies part.
+  const double damper = h * inputs.normal_out.rolling_damping * metrics.volume;
+  const double spring =
+      h * h * inputs.normal_out.elastic / metrics.volume * metrics.area_vector.norm();
+  if (damper * mobility > kStiffDamper) return true;
+  const bool possible = h * h * pair.largest_rate >= kPossibleNumber;
+  if (possible && spring * mobility > kStiffNumber) return true;
+  // What hangs on joints may give way more easily than its masses say.
+  constexpr double kMuchMore = 1e3;
+  const double number =
+      std::max(damper * mobility / kStiffDamper, spring * mobility / kStiffNumber);
+  if (!pair.is_jointed || number * kMuchMore < 1.0) return false;
+  const SiteReport& at = report.sites[site];
+  const double along = mobility_along(m, d, pair.geoms, metrics.centroid, at.normal, scratch.row);
+  return damper * along > kStiffDamper || spring * along > kStiffNumber;
 }
 
-bool SceneContact::find_stiff_sites(const mjModel* m, Scratch& scratch) const noexcept {
+bool SceneContact::find_stiff_sites(const mjModel* m, mjData* d, Scratch& scratch) const noexcept {
   scratch.stiff.clear();
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
     const ContactReport& report = scratch.reports[k];
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
-      scratch.stiff.push_back(is_stiff(m, pair, report, i) ? 1 : 0);
+      scratch.stiff.push_back(is_stiff(m, d, pair, report, i, scratch) ? 1 : 0);
     }
   }
   return std::find(scratch.stiff.begin(), scratch.stiff.end(), 1) != scratch.stiff.end();
@@ -207,10 +274,13 @@ bool SceneContact::find_stiff_sites(const mjModel* m, Scratch& scratch) const no
 void SceneContact::solve_implicit(const mjModel* m, mjData* d, Scratch& scratch) const noexcept {
   ImplicitStep& implicit = scratch.implicit;
   implicit.clear();
+  const double fall = fall_of(m);
   std::size_t site = 0;
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
     ContactReport& report = scratch.reports[k];
+    implicit.begin_pair(WorkLimit::of(scratch.energies[k], scratch.dissipated, options().exit_speed)
+                            .for_bodies(inverse_mass(m, pair.geoms).along, fall));
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
       const bool is_stiff = scratch.stiff[site++] != 0;
       if (report.sites[i].normal.isZero(0.0)) continue;
@@ -234,6 +304,106 @@ void SceneContact::solve_implicit(const mjModel* m, mjData* d, Scratch& scratch)
       m, d, options().implicit == Implicit::kAlways ? ImplicitParts::kAll : ImplicitParts::kStiff,
       scratch.known.data());
   for (const int pair : scratch.order) total_up(scratch.reports[static_cast<std::size_t>(pair)]);
+  for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
+    if (implicit.is_pair_solved(k))
+      scratch.energies[k].solve(implicit.work(k), implicit.friction_work(k));
+  }
+}
+
+// What the pairs hold of the energy of the bodies, after the step that ends here. Returns the
+// elastic energy that nobody paid [J].
+double SceneContact::read_energies(const double* committed, double elapsed,
+                                   Scratch& scratch) const noexcept {
+  const std::size_t count = scratch.cull.near.size();
+  scratch.energies.assign(count, PairEnergy());
+  double unpaid = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const ContactReport& report = scratch.reports[k];
+    if (!report.touching()) continue;
+    PairEnergy& energy = scratch.energies[k];
+    PairEnergy::Now now;
+    for (const SiteReport& site : report.sites) now.add(site);
+    if (!committed) {
+      energy.found = now.elastic;
+    } else {
+      const SitePool<const double> pool(committed + sites_.size(), energies_);
+      const SiteMemory row = pool.rows_of(scratch.cull.near[k], elapsed);
+      if (row.count > 0) energy = PairEnergy::from(row.rows);
+      energy.take_in(elapsed, now);
+    }
+    unpaid += now.elastic - energy.stored - energy.found;
+  }
+  return unpaid;
+}
+
+// The same bound for pairs whose forces are explicit. Returns whether some are less than their laws
+// say.
+bool SceneContact::limit_explicit(const mjModel* m, Scratch& scratch) const noexcept {
+  const double h = m->opt.timestep;
+  const double fall = fall_of(m);
+  bool limited = false;
+  for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
+    PairEnergy& energy = scratch.energies[k];
+    ContactReport& report = scratch.reports[k];
+    if (energy.is_solved || !report.touching()) continue;
+    PairEnergy::Now now;
+    for (const SiteReport& site : report.sites) now.add(site);
+    const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
+    const double along = inverse_mass(m, pair.geoms).along;
+    const auto share_with = [&](double overdraft) {
+      WorkLimit limit = WorkLimit::of(energy, scratch.dissipated, options().exit_speed, overdraft);
+      return explicit_share(limit.for_bodies(along, fall), now.force, -now.approach(), along, fall,
+                            h);
+    };
+    double share = share_with(PairEnergy::kOverdraft);
+    const double number = h * h * now.stiffness * along;
+    if (share < 1.0 && number <= kStiffNumber) share = share_with(number);
+    energy.rubbed = now.bristle;
+    energy.force = share * now.force;
+    energy.power = share * now.power;
+    if (share == 1.0) continue;
+    limited = true;
+    for (SiteReport& site : report.sites) take_share(share, site);
+    total_up(report);
+  }
+  return limited;
+}
+
+// Runge-Kutta's stages are explicit. A pair that is too stiff for them pushes no more than what
+// stops the bodies within a step, and parts them slowly. Returns whether some do.
+bool SceneContact::bound_runge_kutta(const mjModel* m, Scratch& scratch) const noexcept {
+  const double h = m->opt.timestep;
+  const double fall = fall_of(m);
+  bool bounded = false;
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    ContactReport& report = scratch.reports[k];
+    if (!report.touching()) continue;
+    PairEnergy::Now now;
+    for (const SiteReport& site : report.sites) now.add(site);
+    const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
+    const double along = inverse_mass(m, pair.geoms).along;
+    if (h * h * now.stiffness * along <= kSafeRungeKuttaSpring) continue;
+    const double depth = now.force / now.stiffness;
+    const double exit = std::min(options().exit_speed, depth / h);
+    const double most = (std::max(0.0, now.approach() + exit) + fall) / (h * along);
+    if (now.force <= most) continue;
+    bounded = true;
+    for (SiteReport& site : report.sites) take_share(most / now.force, site);
+    total_up(report);
+  }
+  return bounded;
+}
+
+bool SceneContact::keep_energies(double* states, const Scratch& scratch) const noexcept {
+  const SitePool<double> pool(states + sites_.size(), energies_);
+  pool.clear();
+  for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
+    if (!scratch.reports[k].touching()) continue;
+    double row[PairEnergy::kNumbers];
+    scratch.energies[k].write(row);
+    if (!pool.push(scratch.cull.near[k], row, PairEnergy::kNumbers)) return false;
+  }
+  return true;
 }
 
 // The forces of a solved step cannot be had from positions and velocities alone.

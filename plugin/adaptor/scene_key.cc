@@ -23,7 +23,7 @@ std::vector<std::string> split(std::string_view text) {
 
 std::string SceneKey::stem(std::size_t count) const {
   std::string out = prefix + std::string(kRoot);
-  for (std::size_t i = 0; i < count; ++i) out += (i ? "/" : "") + parts[i];
+  for (std::size_t i = 0; i < std::min(count, parts.size()); ++i) out += (i ? "/" : "") + parts[i];
   return out;
 }
 
@@ -54,9 +54,10 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 void unknown_part(SceneKey key, std::size_t part, const std::vector<std::string>& words) {
+  const bool has_name = part <= key.parts.size();  // else it ends before what the words follow
   const std::string stem = key.stem(part) + (part ? "/" : "");
-  std::string message =
-      key.text + ": unknown key; after '" + stem + "' comes one of " + joined(words);
+  std::string message = key.text + ": unknown key; after '" + stem + "' comes " +
+                        (has_name ? "" : "a name, then '/' and ") + "one of " + joined(words);
   const std::string nearest =
       part < key.parts.size() ? nearest_spelling(key.parts[part], words) : "";
   if (!nearest.empty()) {

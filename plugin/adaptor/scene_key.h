@@ -20,7 +20,7 @@ struct SceneKey {
   std::string prefix;
   std::vector<std::string> parts;
 
-  /// "c1_volcontact/" and the first `count` parts.
+  /// "c1_volcontact/" and the first `count` parts, or all where there are fewer.
   std::string stem(std::size_t count) const;
 };
 
@@ -35,7 +35,7 @@ std::string number_text(double number);
 std::string joined(const std::vector<std::string>& words);
 
 /// Throws std::invalid_argument: the key has none of `words` as its part number `part`. Names the
-/// nearest valid spelling.
+/// nearest valid spelling. The key may end before that part.
 [[noreturn]] void unknown_part(SceneKey key, std::size_t part,
                                const std::vector<std::string>& words);
 

@@ -16,6 +16,7 @@ const std::map<std::string, std::vector<std::string>>& option_choices() {
     made["target"] = {std::begin(kTargetWords), std::end(kTargetWords)};
     made["pairs"] = {std::begin(kPairRuleWords), std::end(kPairRuleWords)};
     made["implicit"] = {std::begin(kImplicitWords), std::end(kImplicitWords)};
+    made["disabled"] = {std::begin(kDisabledWords), std::end(kDisabledWords)};
     made["mesh"] = {std::begin(kMeshFormWords), std::end(kMeshFormWords)};
     made["formulation"] = {std::begin(kFormulationWords), std::end(kFormulationWords)};
     return made;
@@ -83,11 +84,13 @@ SceneOptions OptionReader::finish() const {
   SceneOptions options;
   options.tolerance = numbers.tolerance;
   options.threads = static_cast<int>(numbers.threads);
+  options.exit_speed = numbers.exit_speed;
   const auto engine = given_.find("engine");
   if (engine != given_.end()) options.engine = engine_from(engine->second.word);
   set_choice("target", kTargetWords, options.target);
   set_choice("pairs", kPairRuleWords, options.pairs);
   set_choice("implicit", kImplicitWords, options.implicit);
+  set_choice("disabled", kDisabledWords, options.disabled);
   set_choice("mesh", kMeshFormWords, options.mesh);
   set_choice("formulation", kFormulationWords, options.formulation);
   return options;

@@ -43,12 +43,20 @@ enum class Implicit : int {
 };
 inline constexpr const char* kImplicitWords[] = {"auto", "on", "off"};
 
+/// What a model means that turns off its contacts or constraints by a flag.
+enum class Disabled : int {
+  kRespect = 0,  ///< that it has no contact, unless it asks for volumetric contact by itself
+  kIgnore = 1,   ///< that it has no native contact
+};
+inline constexpr const char* kDisabledWords[] = {"respect", "ignore"};
+
 /// The options that are numbers.
 struct OptionNumbers {
   static constexpr const char* kName = "volcontact/option";
   struct Params {
     double tolerance = 1e-3;
     double threads = 0.0;
+    double exit_speed = 0.1;
   };
   static constexpr std::array kFields{
       Field<Params>{"tolerance", "-", &Params::tolerance,
@@ -56,18 +64,22 @@ struct OptionNumbers {
                     "relative error asked of the volume"},
       Field<Params>{"threads", "-", &Params::threads,
                     Range{0.0, 1024.0, false, false, "a whole number from 0 to 1024"},
-                    "0 decides by work"}};
+                    "0 decides by work"},
+      Field<Params>{"exit_speed", "m/s", &Params::exit_speed, kNonNegative,
+                    "fastest parting of bodies from an overlap that no motion has paid for"}};
 };
 
 struct SceneOptions {
   double tolerance = 1e-3;
   int threads = 0;
+  double exit_speed = 0.1;  ///< [m/s]
   Engine engine = Engine::kAuto;
   Target target = Target::kApplied;
   PairRule pairs = PairRule::kNative;
   MeshForm mesh = MeshForm::kExact;
   Implicit implicit = Implicit::kAuto;
   Formulation formulation = Formulation::kGonthier;
+  Disabled disabled = Disabled::kRespect;
 };
 
 /// Reads `volcontact/option/...`, key by key. Options of the program come before those of the

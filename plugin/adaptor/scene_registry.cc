@@ -28,10 +28,6 @@ struct Variant {
 };
 using VariantPointer = std::shared_ptr<const Variant>;
 
-// Set in the flags of an attached model, where MuJoCo has no flag, so that its copies are known
-// from a second load of the same file.
-constexpr int kAttachedMark = 1 << 30;
-
 // Simulations of a batch may have numbers of their own, in turn: keep a good many.
 constexpr std::size_t kVariantsKept = 64;
 
@@ -211,7 +207,7 @@ const SceneContact* contact_of(const mjModel* m) noexcept {
     const Variant* variant = find_variant(m);
     if (!variant) return nullptr;
     if (!variant->error.empty() && !variant->reported.exchange(true)) {
-      write_warning(("volcontact goes on with the last valid numbers: " + variant->error).c_str());
+      write_warning("volcontact goes on with the last valid numbers: " + variant->error);
     }
     return variant->contact.get();
   } catch (...) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "adaptor/largest_state.h"
+#include "adaptor/native_pairs.h"
 #include "adaptor/scene_contact.h"
 #include "adaptor/scene_key.h"
 #include "adaptor/solids_of_geoms.h"
@@ -39,9 +40,20 @@ std::vector<Shape> solids_of(const mjModel* m, const SceneKeys& keys,
   return solids;
 }
 
-std::vector<GeomPair> pairs_of(const mjModel* m, const SceneKeys& keys) {
+std::vector<GeomPair> pairs_of(const mjModel* m, const SceneKeys& keys, bool listed_only) {
   require(m->ngeom > 0, "the model has no geoms: there is nothing that could touch");
-  return pairs_that_can_touch(m, keys);
+  return pairs_that_can_touch(m, keys, listed_only);
+}
+
+// The flag with which the author of the model turned contact off; empty where it is on, or where
+// the model asks for volumetric contact by keys or by our plugin. In an attached model the flag of
+// contacts is ours.
+std::string flag_without_contact(const mjModel* m, const SceneKeys& keys) {
+  if (keys.options.disabled == Disabled::kIgnore || has_scene_keys(m)) return {};
+  if (plugin_room(m).size > 0) return {};
+  if (m->opt.disableflags & mjDSBL_CONSTRAINT) return "constraint=\"disable\"";
+  const bool is_ours = (m->opt.disableflags & kAttachedMark) != 0;
+  return (m->opt.disableflags & mjDSBL_CONTACT) && !is_ours ? "contact=\"disable\"" : "";
 }
 
 int rows_of(const std::vector<GeomPair>& pairs) {
@@ -64,14 +76,20 @@ std::string skipped_warning(const mjModel* m) {
 SceneContact::SceneContact(const mjModel* m, const std::vector<GivenKey>& given,
                            const SceneContact* before)
     : keys_(read_scene_keys(m, given)),
-      geom_pairs_(pairs_of(m, keys_)),
+      no_contact_(before != nullptr ? before->no_contact_ : flag_without_contact(m, keys_)),
+      geom_pairs_(pairs_of(m, keys_, !no_contact_.empty())),
       meshes_(before != nullptr && before->options().mesh == options().mesh
                   ? before->meshes_
                   : std::map<int, Shape>()),
       solids_(solids_of(m, keys_, geom_pairs_, meshes_)),
       cull_(geom_pairs_, solids_) {
   warn_about_model(m);
-  if (geom_pairs_.empty()) {
+  if (!no_contact_.empty()) {
+    warn_once(
+        "the model has <flag " + no_contact_ +
+        "/>, so there is no contact; volcontact/option/disabled/ignore makes it volumetric all the "
+        "same");
+  } else if (geom_pairs_.empty()) {
     warn_once("no two geoms can touch: check contype, conaffinity and volcontact/option/pairs");
   }
   warn_about_meshes(m);
@@ -81,6 +99,7 @@ SceneContact::SceneContact(const mjModel* m, const std::vector<GivenKey>& given,
   warn_about_friction(m);
   if (sites_.row_size > 0) sites_.rows = rows_of(geom_pairs_);
   if (options().implicit != Implicit::kNever) solved_rows_ = rows_of(geom_pairs_);
+  energies_ = {solved_rows_, PairEnergy::kNumbers};
 }
 
 void SceneContact::find_room(const mjModel* m, const SceneContact* before) {
@@ -143,11 +162,21 @@ void SceneContact::alert(const std::string& warning) {
 }
 
 void SceneContact::add_pair(const mjModel* m, const GeomPair& geoms) {
+  const int native = geoms.native;
   const auto side = [&](int geom) {
     const int material = keys_.material_of_geom[static_cast<std::size_t>(geom)];
-    return Side{label(m, mjOBJ_GEOM, geom), m->geom_friction[3 * geom],
-                material < 0 ? nullptr : &keys_.materials[static_cast<std::size_t>(material)]};
+    return Side{label(m, mjOBJ_GEOM, geom),
+                native < 0 ? m->geom_friction[3 * geom] : m->pair_friction[5 * native],
+                material < 0 ? nullptr : &keys_.materials[static_cast<std::size_t>(material)],
+                native < 0 ? "" : native_pair_label(m, native)};
   };
+  const std::vector<std::string> unused =
+      native < 0 ? std::vector<std::string>() : native_pair_fields_unused(m, native);
+  if (!unused.empty()) {
+    warn_once(native_pair_label(m, native) + ": " + joined(unused) +
+              (unused.size() == 1 ? " has" : " have") +
+              " no meaning under volumetric contact; of a <pair> its sliding friction counts");
+  }
   const KeyedValues* listed =
       geoms.listed < 0 ? nullptr : &keys_.pairs[static_cast<std::size_t>(geoms.listed)].keyed;
   PairLaws laws = combine(side(geoms.a), side(geoms.b), listed);

@@ -11,7 +11,7 @@
 //
 // Our block is the end of userdata; what comes before it belongs to the user:
 //
-//   [ user's numbers | solved | slots: kSlots x slot_size | ledger | header: kHeader ]
+//   [ user's numbers | motion | solved | slots: kSlots x slot_size | ledger | header: kHeader ]
 //
 // Ledger and header keep their place when the number of law states changes. All zero, as mjData is
 // made and reset, means "never evaluated".
@@ -20,31 +20,35 @@ namespace volcontact::adaptor {
 
 /// Sizes of the block, in numbers.
 struct UserdataLayout {
-  static constexpr int kVersion = 4;
+  static constexpr int kVersion = 5;
   static constexpr int kHeader = 9;
   /// A Runge-Kutta step and the one before it, which a step that is redone needs.
   static constexpr int kSlots = 5;
   /// Time, step, stage, elastic energy, dissipated x4, power x4, taken x4, bristle energy x2,
   /// power into the elastic energy, whether the step is implicit, work, numerical, power of the
-  /// forces x2. Behind it the generalized forces and the law states.
-  static constexpr int kSlotHead = 24;
+  /// forces x2, elastic energy that nobody paid. Behind it the generalized forces, the law states
+  /// and the energies of the pairs.
+  static constexpr int kSlotHead = 25;
   /// Of a site that an implicit step solved: normal force, force, torque.
   static constexpr int kSolvedRow = 7;
 
-  int states = 0;       ///< numbers in which the sites of all pairs are kept
+  int states = 0;       ///< numbers in which sites and energies of all pairs are kept
   int channels = 0;     ///< forces in the ledger: nv for applied, 6 nbody for xfrc, 0 for passive
   int solved_rows = 0;  ///< sites whose solved forces are kept, of the newest evaluation
   int dofs = 0;         ///< nv: generalized forces in a slot
+  int motion = 0;       ///< nq + nv: positions and velocities of the newest evaluation
 
   int slot_size() const { return kSlotHead + dofs + states; }
   int ledger_size() const { return 2 * channels; }
   int solved_size() const { return solved_rows > 0 ? 1 + kSolvedRow * solved_rows : 0; }
-  int size() const { return solved_size() + kSlots * slot_size() + ledger_size() + kHeader; }
+  int size() const {
+    return motion + solved_size() + kSlots * slot_size() + ledger_size() + kHeader;
+  }
 };
 
 /// Energies of one evaluation.
 struct EnergyAccount {
-  double elastic = 0.0;       ///< of the contacts, with that of the bristles [J]
+  double elastic = 0.0;       ///< stored in the contacts, with that of the bristles [J]
   ByChannel dissipated;       ///< since the start [J]
   ByChannel power;            ///< dissipated at the evaluation [W]
   ByChannel taken;            ///< dissipated, or put into bristles, at the evaluation [W]
@@ -60,6 +64,7 @@ struct EnergyAccount {
   double force_power = 0.0;   ///< of what was written, at the evaluation [W]
   double last_power = 0.0;  ///< the same of the last stage of the Runge-Kutta step that ends here,
                             ///< which the evaluation replaces [W]
+  double unpaid = 0.0;      ///< what the laws hold besides `elastic`, which no motion put in [J]
 };
 
 /// What an evaluation was for the integrator.
@@ -83,8 +88,8 @@ class Slot {
   void set_stage(Stage stage) const { p_[2] = static_cast<int>(stage); }
 
   EnergyAccount energy() const {
-    return {p_[3],  channels(4),   channels(8), channels(12), p_[16], p_[17],
-            p_[18], p_[19] != 0.0, p_[20],      p_[21],       p_[22], p_[23]};
+    return {p_[3],         channels(4), channels(8), channels(12), p_[16], p_[17], p_[18],
+            p_[19] != 0.0, p_[20],      p_[21],      p_[22],       p_[23], p_[24]};
   }
   void set_energy(const EnergyAccount& e) const {
     p_[3] = e.elastic;
@@ -99,6 +104,7 @@ class Slot {
     p_[21] = e.numerical;
     p_[22] = e.force_power;
     p_[23] = e.last_power;
+    p_[24] = e.unpaid;
   }
 
  private:
@@ -175,6 +181,9 @@ class UserdataBlock {
     return solved_block() + 1 + static_cast<std::ptrdiff_t>(i) * UserdataLayout::kSolvedRow;
   }
 
+  /// Positions, then velocities, of the newest evaluation.
+  double* motion() const { return solved_block() - layout_.motion; }
+
   /// Evaluations in which a force was no number and was left out.
   double& dropped() const { return header_[7]; }
 
@@ -194,18 +203,21 @@ class UserdataBlock {
   double* header_;
 };
 
+/// The longest time from one evaluation to the next, in steps.
+inline constexpr double kLongestGap = 1.5;
+
 /// Opens the slot of an evaluation at `time` [s] and returns how many seconds after its predecessor
 /// it lies; afterwards slot(0) is the evaluation's own and slot(1) its predecessor, if count() > 1.
 ///
 /// Evaluations at or after `time` are forgotten: MuJoCo has gone back to redo them (Runge-Kutta
 /// stages, finite differences, repeated mj_forward). After a jump in time of more than a step and a
-/// half all are forgotten: somebody has set another state.
+/// half all are forgotten: somebody has set another state (see moved_clock.h where they have not).
 inline double open_slot(const UserdataBlock& block, double time, double step) {
   while (block.count() > 0 && block.slot(0).time() >= time) block.drop_newest();
   double elapsed = 0.0;
   if (block.count() > 0) {
     elapsed = time - block.slot(0).time();
-    if (!(elapsed <= 1.5 * std::max(step, block.slot(0).step()))) {
+    if (!(elapsed <= kLongestGap * std::max(step, block.slot(0).step()))) {
       block.set_count(0);
       elapsed = 0.0;
     }

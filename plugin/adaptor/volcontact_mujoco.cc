@@ -6,6 +6,8 @@
 #include <exception>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "adaptor/auto_attach.h"
 #include "adaptor/contact_list.h"
@@ -152,6 +154,20 @@ volcontact_surface_size copy_surface(const OverlapSurface& surface, double* colu
 using namespace volcontact::adaptor;
 
 extern "C" {
+
+int volcontact_record_size(const char* name) {
+  const std::pair<std::string_view, std::size_t> sizes[] = {
+      {"volcontact_site", sizeof(volcontact_site)},
+      {"volcontact_contact", sizeof(volcontact_contact)},
+      {"volcontact_surface_size", sizeof(volcontact_surface_size)},
+      {"volcontact_energy", sizeof(volcontact_energy)},
+      {"volcontact_key", sizeof(volcontact_key)},
+  };
+  for (const auto& [record, size] : sizes) {
+    if (name && record == name) return static_cast<int>(size);
+  }
+  return 0;
+}
 
 int volcontact_mujoco_version(void) { return mjVERSION_HEADER; }
 
@@ -304,6 +320,7 @@ int volcontact_get_energy(const mjModel* m, const mjData* d, volcontact_energy* 
     copy_channels(account.power, energy->power);
     energy->work = account.work;
     energy->numerical = account.numerical;
+    energy->unpaid = account.unpaid;
     energy->dropped = contact->dropped(m, d);
     energy->forgotten = contact->forgotten(m, d);
     return 0;

@@ -37,7 +37,7 @@ typedef struct volcontact_site_ {
   double centroid[3];     // of the volume [m]
   double normal[3];       // on a, from b to a
   double area;            // of the patch projected along the normal [m^2]
-  double depth;           // extent of the volume along the normal [m]
+  double depth;           // longest column along the normal [m]
   double force[3];        // total force on a [N]
   double torque[3];       // on a, about the centroid [N m]
   double normal_force;    // [N]
@@ -77,10 +77,15 @@ typedef struct volcontact_energy_ {
   double forgotten;      // evaluations with more contact sites than userdata keeps
   double work;           // done by the contact forces on the scene since the start [J]
   double numerical;      // -work - dissipated - change of elastic: made by the finite step [J]
+  double unpaid;         // what the laws hold besides `elastic`, which no motion put in [J]
 } volcontact_energy;
 
 // mjVERSION_HEADER of the MuJoCo this library was compiled for.
 VOLCONTACT_API int volcontact_mujoco_version(void);
+
+// How long a struct of this file was when the library was compiled, such as "volcontact_site"
+// [bytes]; 0 for other names. A program in another language compares it with its own.
+VOLCONTACT_API int volcontact_record_size(const char* name);
 
 // 0 when the MuJoCo in this process is the one this library was compiled for.
 VOLCONTACT_API int volcontact_check_version(char* message, int message_size);

@@ -88,8 +88,8 @@ vc_site plain(const SiteReport& from) {
 }
 
 bool is_finite(const ContactReport& report) {
-  const double sum = report.wrench_on_A.force.sum() + report.wrench_on_A.torque.sum() +
-                     report.wrench_on_B.force.sum() + report.wrench_on_B.torque.sum() +
+  const Wrench on_A = report.wrench_on_A(), on_B = report.wrench_on_B();
+  const double sum = on_A.force.sum() + on_A.torque.sum() + on_B.force.sum() + on_B.torque.sum() +
                      report.elastic_energy + report.power.sum();
   return sum - sum == 0.0 && std::all_of(report.memory.begin(), report.memory.end(),
                                          [](double number) { return number - number == 0.0; });
@@ -97,10 +97,11 @@ bool is_finite(const ContactReport& report) {
 
 vc_result plain(const ContactReport& from) {
   vc_result to{};
-  copy_vector(from.wrench_on_A.force, to.force_on_a);
-  copy_vector(from.wrench_on_A.torque, to.torque_on_a);
-  copy_vector(from.wrench_on_B.force, to.force_on_b);
-  copy_vector(from.wrench_on_B.torque, to.torque_on_b);
+  const Wrench on_A = from.wrench_on_A(), on_B = from.wrench_on_B();
+  copy_vector(on_A.force, to.force_on_a);
+  copy_vector(on_A.torque, to.torque_on_a);
+  copy_vector(on_B.force, to.force_on_b);
+  copy_vector(on_B.torque, to.torque_on_b);
   to.elastic_energy = from.elastic_energy;
   copy_channels(from.power, to.power);
   VolumeMetrics sum;
@@ -137,6 +138,10 @@ int vc_evaluate(const vc_model* model, vc_workspace* workspace, const vc_motion*
     });
     check(elapsed >= 0.0 && elapsed - elapsed == 0.0, [&] {
       return std::string("vc_evaluate: elapsed = " + std::to_string(elapsed) + " [s] must be >= 0");
+    });
+    check(state_size >= 0, [&] {
+      return std::string("vc_evaluate: state_size = " + std::to_string(state_size) +
+                         " must be >= 0; vc_model_state_size tells the size");
     });
     const ContactModel& contact = *model->contact;
     const int row = contact.row_size();

@@ -62,7 +62,7 @@ typedef struct vc_metrics {
   double area;           /* of A's surface inside B [m^2] */
   double counter_area;   /* of B's surface inside A [m^2] */
   double depth_moment;   /* integral of depth over the volume along the normal [m^4] */
-  double depth;          /* extent along the normal [m] */
+  double depth;          /* longest column along the normal [m] */
   double flatness;       /* 1 for a flat patch, small where the normal means little [-] */
   double volume_error;   /* bound or estimate of the error of V [m^3] */
   int status;            /* VC_OK, ... */

@@ -30,7 +30,8 @@ void bind_metrics(nb::module_& m) {
       .def_ro("counter_area", &VolumeMetrics::counter_area, "Area of B's surface inside A [m^2]")
       .def_ro("depth_moment", &VolumeMetrics::depth_moment,
               "Integral of L^2/2 over the patch, L the column length along the normal [m^4]")
-      .def_ro("depth", &VolumeMetrics::depth, "Extent of the volume along the normal [m]")
+      .def_ro("depth", &VolumeMetrics::depth,
+              "How deep one solid lies in the other, along the normal [m]")
       .def_ro("volume_error", &VolumeMetrics::volume_error,
               "Bound or estimate of the error of the volume [m^3]")
       .def_prop_ro(

@@ -118,16 +118,16 @@ void bind_report(nb::module_& m) {
       .def_prop_ro("metrics", &PyReport::metrics, "Sum over all sites, in the world frame")
       .def_ro("sites", &PyReport::sites)
       .def_prop_ro(
-          "force_on_A", [](const PyReport& r) { return r.wrench_on_A.force; },
+          "force_on_A", [](const PyReport& r) { return r.wrench_on_A().force; },
           "[N], shape (3,), world frame")
       .def_prop_ro(
-          "torque_on_A", [](const PyReport& r) { return r.wrench_on_A.torque; },
+          "torque_on_A", [](const PyReport& r) { return r.wrench_on_A().torque; },
           "About A's origin [N m], shape (3,), world frame")
       .def_prop_ro(
-          "force_on_B", [](const PyReport& r) { return r.wrench_on_B.force; },
+          "force_on_B", [](const PyReport& r) { return r.wrench_on_B().force; },
           "[N], shape (3,), world frame")
       .def_prop_ro(
-          "torque_on_B", [](const PyReport& r) { return r.wrench_on_B.torque; },
+          "torque_on_B", [](const PyReport& r) { return r.wrench_on_B().torque; },
           "About B's origin [N m], shape (3,), world frame")
       .def_prop_ro("touching", &PyReport::touching)
       .def_ro("elastic_energy", &PyReport::elastic_energy, "[J]")

@@ -5,7 +5,10 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <exception>
+#include <string>
 #include <utility>
 
 #include "bindings.h"
@@ -30,6 +33,54 @@ Keeping keeping_from(const std::string& word) {
   require(word == "value", "keeping '" + word + "' must be one of vector, amount, value");
   return Keeping::kValue;
 }
+
+std::string type_of(const nb::handle& value) {
+  return value.is_none() ? "None" : "a " + nb::cast<std::string>(nb::type_name(value.type()));
+}
+
+// What a law gave, for messages: "own_law: magnitude".
+struct Given {
+  const std::string& law;
+  std::string what;
+
+  std::string text() const { return law + ": " + what; }
+
+  void require_finite(double number, const char* unit) const {
+    if (std::isfinite(number)) return;
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%g", number);
+    throw std::invalid_argument(text() + " = " + digits + " [" + unit +
+                                "]; evaluate must give finite numbers");
+  }
+
+  template <typename T>
+  T as(const nb::handle& value, const char* wanted) const {
+    T out;
+    if (!value.is_none() && nb::try_cast<T>(value, out)) return out;
+    throw nb::type_error((text() + " is " + type_of(value) + "; it must be " + wanted).c_str());
+  }
+};
+
+void check(const std::string& law, const NormalOutput& out) {
+  Given{law, "magnitude"}.require_finite(out.magnitude, "N");
+  Given{law, "elastic"}.require_finite(out.elastic, "N");
+  Given{law, "elastic_energy"}.require_finite(out.elastic_energy, "J");
+  Given{law, "rolling_damping"}.require_finite(out.rolling_damping, "N s/m^4");
+}
+
+void check(const std::string& law, const FrictionOutput& out) {
+  for (const int i : {0, 1, 2}) {
+    Given{law, "force[" + std::to_string(i) + "]"}.require_finite(out.force[i], "N");
+  }
+  Given{law, "torque"}.require_finite(out.torque, "N m");
+  Given{law, "slide_energy"}.require_finite(out.slide_energy, "J");
+  Given{law, "spin_energy"}.require_finite(out.spin_energy, "J");
+  Given{law, "slide_power"}.require_finite(out.slide_power, "W");
+  Given{law, "spin_power"}.require_finite(out.spin_power, "W");
+}
+
+constexpr const char* output_name(const NormalOutput*) { return "a NormalOutput"; }
+constexpr const char* output_name(const FrictionOutput*) { return "a FrictionOutput"; }
 
 // The table of states of a law, and the numbers of a site as a dict of its names.
 class StateTable {
@@ -57,15 +108,19 @@ class StateTable {
     return state;
   }
 
-  void write(const nb::dict& state, double* numbers) const {
-    require(state.size() == fields_.size(), "a law must not add or remove states");
+  void write(const std::string& law, const nb::dict& state, double* numbers) const {
+    require(state.size() == fields_.size(), law + ": a law must not add or remove states");
     for (const StateField& field : fields_) {
+      const Given given{law, std::string("state '") + field.name + "'"};
+      require(state.contains(field.name), given.text() + " is missing; a law must not remove it");
+      const nb::object value = state[field.name];
       if (field.size() == 3) {
-        const Vec3 vector = nb::cast<Vec3>(state[field.name]);
+        const Vec3 vector = given.as<Vec3>(value, "three numbers");
         std::copy_n(vector.data(), 3, numbers);
       } else {
-        *numbers = nb::cast<double>(state[field.name]);
+        *numbers = given.as<double>(value, "a number");
       }
+      for (int i = 0; i < field.size(); ++i) given.require_finite(numbers[i], field.unit);
       numbers += field.size();
     }
   }
@@ -92,8 +147,11 @@ class PythonLaw final : public Base {
       const nb::object self = nb::find(*this);
       const nb::dict numbers = table_.read(state.committed);
       const nb::object out = self.attr("evaluate")(in, numbers, state.elapsed);
-      table_.write(numbers, state.pending);
-      return nb::cast<Output>(out);
+      table_.write(name_, numbers, state.pending);
+      const Output given = Given{name_, "what evaluate returned"}.as<Output>(
+          out, output_name(static_cast<const Output*>(nullptr)));
+      check(name_, given);
+      return given;
     } catch (...) {
       raised = std::current_exception();
       return {};

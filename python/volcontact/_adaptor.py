@@ -76,6 +76,7 @@ class RawEnergy(ctypes.Structure):
         ("forgotten", ctypes.c_double),
         ("work", ctypes.c_double),
         ("numerical", ctypes.c_double),
+        ("unpaid", ctypes.c_double),
     )
 
 
@@ -95,6 +96,18 @@ class Key(ctypes.Structure):
     )
 
 
+def record_sizes() -> dict[str, int]:
+    """How long the records of the C interface are here, by their names there [bytes]."""
+    structures = {
+        "volcontact_energy": RawEnergy,
+        "volcontact_surface_size": RawSurfaceSize,
+        "volcontact_key": Key,
+    }
+    arrays = {"volcontact_site": SITE_DTYPE, "volcontact_contact": CONTACT_DTYPE}
+    sizes = {name: ctypes.sizeof(structure) for name, structure in structures.items()}
+    return sizes | {name: dtype.itemsize for name, dtype in arrays.items()}
+
+
 class _Signature(NamedTuple):
     arguments: tuple[Any, ...]
     has_message: bool = False
@@ -103,6 +116,7 @@ class _Signature(NamedTuple):
 _WITH_KEYS = _Signature((ctypes.c_void_p, ctypes.POINTER(Key), ctypes.c_int), has_message=True)
 _SIGNATURES = {
     "mujoco_version": _Signature(()),
+    "record_size": _Signature((ctypes.c_char_p,)),
     "check_version": _Signature((), has_message=True),
     "userdata_size_with": _WITH_KEYS,
     "reserve_with": _WITH_KEYS,
@@ -144,12 +158,25 @@ class Adaptor:
         self._library = ctypes.CDLL(str(path))
         self._functions: dict[str, Callable[..., int]] = {}
         for name, signature in _SIGNATURES.items():
-            function = getattr(self._library, f"volcontact_{name}")
+            try:
+                function = getattr(self._library, f"volcontact_{name}")
+            except AttributeError:
+                raise RuntimeError(
+                    f"{path} is no library of this volcontact: it lacks volcontact_{name}; "
+                    "build it again"
+                ) from None
             function.restype = ctypes.c_int
             message = (ctypes.c_char_p, ctypes.c_int) if signature.has_message else ()
             function.argtypes = (*signature.arguments, *message)
             self._functions[name] = function
         self.call("check_version")
+        for name, size in record_sizes().items():
+            theirs = self.call("record_size", name.encode())
+            if theirs != size:
+                raise RuntimeError(
+                    f"{path} is no library of this volcontact: its {name} has {theirs} bytes and "
+                    f"that of the package {size}; build it again"
+                )
 
     @property
     def passive(self) -> Any:
@@ -187,7 +214,7 @@ class Adaptor:
         length = self.call(name, *arguments, None, 0)
         buffer = ctypes.create_string_buffer(length + 1)
         self.call(name, *arguments, buffer, length + 1)
-        return buffer.value.decode("utf-8")
+        return buffer.value.decode("utf-8", "replace")
 
 
 @functools.cache

@@ -56,7 +56,7 @@ class VolumeMetrics:
 
     @property
     def depth(self) -> float:
-        """Extent of the volume along the normal [m]"""
+        """How deep one solid lies in the other, along the normal [m]"""
 
     @property
     def volume_error(self) -> float:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
@@ -58,13 +59,18 @@ def _misspelt_reference(path_or_text: str, *, is_text: bool) -> str | None:
 
 
 def _roots(path_or_text: str, *, is_text: bool) -> list[ElementTree.Element]:
-    """The document and all it includes."""
+    """The document and all it includes, each file once: files may include each other in a ring."""
     if is_text:
         return [ElementTree.fromstring(path_or_text)]
     top = Path(path_or_text)
-    roots, waiting = [], [top]
+    roots, waiting, seen = [], [top], {os.path.realpath(top)}
     while waiting:
         root = ElementTree.parse(waiting.pop()).getroot()
         roots.append(root)
-        waiting += [top.parent / include.get("file", "") for include in root.iter("include")]
+        for include in root.iter("include"):
+            file = top.parent / include.get("file", "")
+            place = os.path.realpath(file)
+            if place not in seen:
+                seen.add(place)
+                waiting.append(file)
     return roots

@@ -84,7 +84,7 @@ class _NativeProbe:
     def energy(self, data: mujoco.MjData) -> volumetric_scene.Energy:
         del data
         none = volumetric_scene.Channels(0.0, 0.0, 0.0, 0.0)
-        return volumetric_scene.Energy(0.0, 0.0, none, none, 0.0, 0.0)
+        return volumetric_scene.Energy(0.0, 0.0, none, none, 0.0, 0.0, 0.0)
 
     def dropped(self, data: mujoco.MjData) -> int:
         del data

@@ -12,6 +12,7 @@ import mujoco
 import numpy as np
 
 from volcontact._adaptor import SITE_DTYPE
+from volcontact._files import appearing_in
 from volcontact.scene import Channels, Contact
 
 SITE_UNITS = {
@@ -135,29 +136,28 @@ class Recorder:
         """Writes `states.parquet` and `sites.parquet`, one row an instant and one a site.
 
         Vectors have a column a component (`qpos_0`, `dissipated_slide`, `force_x`); every column
-        has its unit in the metadata of its field.
+        has its unit in the metadata of its field. Both files appear whole, or neither does.
 
         Returns:
             The two files.
         """
-        path = Path(folder)
-        path.mkdir(parents=True, exist_ok=True)
         states: dict[str, tuple[np.ndarray, str]] = {}
         for name, (dims, values, attributes) in self.variables().items():
             if dims[0] != "time":
                 continue
-            names: Iterable[object] = range(values.shape[-1])
+            parts: Iterable[object] = range(values.shape[-1])
             if "channel" in dims:
-                names = Channels._fields
-            _add_columns(states, name, values, names, attributes["units"])
+                parts = Channels._fields
+            _add_columns(states, name, values, parts, attributes["units"])
         sites: dict[str, tuple[np.ndarray, str]] = {}
         recorded = self.sites
         for name, unit in SITE_UNITS.items():
             _add_columns(sites, name, recorded[name], "xyz", unit)
-        files = path / "states.parquet", path / "sites.parquet"
-        for file, columns in zip(files, (states, sites), strict=True):
-            _write(file, columns)
-        return files
+        names = "states.parquet", "sites.parquet"
+        with appearing_in(folder) as new:
+            for name, columns in zip(names, (states, sites), strict=True):
+                _write(new / name, columns)
+        return Path(folder) / names[0], Path(folder) / names[1]
 
 
 def _add_columns(

@@ -44,6 +44,8 @@ class Energy(NamedTuple):
             the start [J].
         numerical: what of -work is neither stored nor dissipated [J]; made by the finite step, it
             vanishes with it. Negative where steps that are too large give energy to the motion.
+        unpaid: what the laws would hold besides `elastic`, in overlaps that no motion made [J]; no
+            body gets it back.
     """
 
     elastic: float
@@ -52,6 +54,7 @@ class Energy(NamedTuple):
     power: Channels
     work: float
     numerical: float
+    unpaid: float
 
 
 def load(
@@ -301,7 +304,9 @@ class Contact(Closing):
         raw = self._raw_energy(data)
         dissipated = Channels(*raw.dissipated)
         power = Channels(*raw.power)
-        return Energy(raw.elastic, sum(dissipated), dissipated, power, raw.work, raw.numerical)
+        return Energy(
+            raw.elastic, sum(dissipated), dissipated, power, raw.work, raw.numerical, raw.unpaid
+        )
 
     def dropped(self, data: mujoco.MjData) -> int:
         """How many evaluations had a force that was no finite number; such forces are left out."""

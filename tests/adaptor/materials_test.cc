@@ -39,6 +39,21 @@ TEST(Materials, StiffnessesAreInSeries) {
   EXPECT_DOUBLE_EQ(value(laws, "stiffness"), 0.75e6);
 }
 
+TEST(Materials, StiffnessesToTheEndOfTheirRangeAreInSeries) {
+  const KeyedValues rigid{"volcontact/material/rigid", {{"stiffness", {1e308}}}, {}};
+  const PairLaws laws = combine({"a", 1.0, &rigid}, {"b", 0.6, &rigid}, nullptr);
+  EXPECT_EQ(value(laws, "stiffness"), 0.5e308);
+  EXPECT_EQ(laws.laws.share_of_a, 0.5);
+}
+
+TEST(Materials, WhatTwoMaterialsMakeOutOfRangeNamesThem) {
+  const KeyedValues soft{"volcontact/material/soft", {{"stiffness", {5e-324}}}, {}};
+  EXPECT_TRUE(testing::contains(
+      testing::message_of([&] { combine({"a", 1.0, &soft}, {"b", 0.6, &soft}, nullptr); }),
+      "geoms 'a' and 'b', of volcontact/material/soft and volcontact/material/soft: hunt_crossley: "
+      "stiffness = 0"));
+}
+
 TEST(Materials, DampingIsWeightedByCompliance) {
   // (kB aA + kA aB) / (kA + kB), notes on the first-order series combination: 0.5.
   const PairLaws laws = combine({"a", 1.0, &kSoft}, {"b", 0.6, &kHard}, nullptr);

@@ -42,5 +42,14 @@ TEST(SceneKey, AMissingPartIsNamed) {
   EXPECT_TRUE(contains(message, "after 'volcontact/option/implicit/' comes one of on, off, auto"));
 }
 
+TEST(SceneKey, AKeyThatEndsBeforeItsNameIsToldSo) {
+  const auto key = parse_key("volcontact/material");
+  EXPECT_EQ(key->stem(2), "volcontact/material");
+  const std::string message = message_of([&] { unknown_part(*key, 2, {"stiffness", "friction"}); });
+  EXPECT_EQ(message,
+            "volcontact/material: unknown key; after 'volcontact/material/' comes a name, then "
+            "'/' and one of stiffness, friction");
+}
+
 }  // namespace
 }  // namespace volcontact::adaptor::scene_key_test

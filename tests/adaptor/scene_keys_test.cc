@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "adaptor/support/models.h"
 
 namespace volcontact::adaptor::scene_keys_test {
@@ -248,6 +250,42 @@ TEST(SceneKeysError, FieldOfAnotherLaw) {
   EXPECT_EQ(error(kSteel + numeric("volcontact/material/steel/normal_law/volume_spring") +
                   numeric("volcontact/material/steel/damping", "1")),
             "volcontact/material/steel/damping: volume_spring has no such field; it has stiffness");
+}
+
+TEST(SceneKeysError, KeyThatEndsBeforeItsName) {
+  for (const std::string section : {"material", "pair", "shape"}) {
+    const std::string text = error(numeric("volcontact/" + section));
+    EXPECT_TRUE(testing::contains(text, "volcontact/" + section + ": unknown key; after "));
+    EXPECT_TRUE(testing::contains(text, "comes a name, then '/' and one of "));
+  }
+}
+
+// Keys of every length, whole, cut short, with a part left out, doubled, or misspelt: each is read
+// or refused by a message that names it.
+TEST(SceneKeysError, AnyKeyIsReadOrRefused) {
+  const testing::ModelPointer m = testing::compile(
+      scene(kSteel + tuple("volcontact/pair/stack", {{"geom", "crate"}, {"geom", "top"}})));
+  const std::vector<std::string> words{"",        "material",      "pair",  "shape",     "solid",
+                                       "option",  "steel",         "stack", "geom",      "/",
+                                       "=",       "hunt_crossley", "torus", "stiffness", "target",
+                                       "passive", "STEEL",         "\xff",  "volcontact"};
+  std::mt19937 random(7);
+  const auto below = [&](std::size_t n) { return random() % n; };
+  int refused = 0;
+  for (int i = 0; i < 20000; ++i) {
+    std::string name = below(8) ? "volcontact/" : "robot_volcontact/";
+    for (std::size_t part = 0, parts = below(6); part < parts; ++part) {
+      name += (part ? "/" : "") + words[below(words.size())];
+    }
+    name.resize(name.size() - (below(4) ? 0 : below(name.size() - 1)));
+    const std::vector<double> numbers(below(4), below(2) ? 1.0 : -1e308);
+    const std::string text =
+        testing::message_of([&] { read_scene_keys(m.get(), {{name, numbers}}); });
+    if (text.empty()) continue;
+    ++refused;
+    EXPECT_TRUE(testing::contains(text, name.substr(0, name.find("volcontact") + 5)));
+  }
+  EXPECT_GT(refused, 10000);
 }
 
 TEST(SceneKeysError, TextIsNotRead) {

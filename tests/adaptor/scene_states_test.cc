@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "adaptor/largest_state.h"
 #include "adaptor/scene_contact.h"
 #include "adaptor/support/count_allocations.h"
 #include "adaptor/support/models.h"
@@ -149,7 +150,9 @@ TEST(SceneStates, ASceneWithoutMemoryKeepsNoRows) {
   const auto m = testing::compile(
       "<mujoco><worldbody><geom type=\"plane\" size=\"1 1 1\"/>"
       "<body><freejoint/><geom size=\".1\"/></body></worldbody></mujoco>");
-  EXPECT_EQ(SceneContact(m.get()).layout(m.get()).states, 0);
+  // But for the energy of the one pair.
+  const int energies = SitePoolLayout{rows_for(1, 2), PairEnergy::kNumbers}.size();
+  EXPECT_EQ(SceneContact(m.get()).layout(m.get()).states, energies);
 }
 
 }  // namespace

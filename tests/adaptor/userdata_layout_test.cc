@@ -23,7 +23,7 @@ class Integrator {
   UserdataBlock block() { return {numbers_.data() + numbers_.size(), kLayout}; }
   std::vector<double>& numbers() { return numbers_; }
 
-  static constexpr UserdataLayout kLayout{1, 3, 0, 2};
+  static constexpr UserdataLayout kLayout{1, 3, 0, 2, 4};
 
  private:
   std::vector<double> numbers_;
@@ -47,6 +47,7 @@ TEST(UserdataLayout, BlockStaysInsideItsSize) {
     block.slot(0).set_energy({1.0, {1, 1, 1, 1}, {1, 1, 1, 1}, {1, 1, 1, 1}, 1.0, 1.0});
     std::fill_n(block.slot(0).forces(), 2, 1.0);
     block.slot(0).states()[0] = 1.0;
+    std::fill_n(block.motion(), 4, 4.0);
     std::fill_n(block.base(), 3, 2.0);
     std::fill_n(block.left(), 3, 3.0);
   }

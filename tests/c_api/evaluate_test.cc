@@ -67,10 +67,10 @@ TEST(CEvaluate, EqualsTheModelBehindItToTheBit) {
   same.evaluate(bodies, {}, own, report);
   ASSERT_TRUE(report.touching());
   for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(result.force_on_a[i], report.wrench_on_A.force[i]);
-    EXPECT_EQ(result.torque_on_a[i], report.wrench_on_A.torque[i]);
-    EXPECT_EQ(result.force_on_b[i], report.wrench_on_B.force[i]);
-    EXPECT_EQ(result.torque_on_b[i], report.wrench_on_B.torque[i]);
+    EXPECT_EQ(result.force_on_a[i], report.wrench_on_A().force[i]);
+    EXPECT_EQ(result.torque_on_a[i], report.wrench_on_A().torque[i]);
+    EXPECT_EQ(result.force_on_b[i], report.wrench_on_B().force[i]);
+    EXPECT_EQ(result.torque_on_b[i], report.wrench_on_B().torque[i]);
   }
   EXPECT_EQ(result.elastic_energy, report.elastic_energy);
   EXPECT_EQ(result.power[2], report.power.slide);
@@ -171,6 +171,11 @@ TEST(CEvaluate, WrongInputIsExplained) {
   state.assign(static_cast<std::size_t>(vc_model_state_size(model.get(), 2)), 0.0);
   EXPECT_TRUE(fails(evaluate(model, scratch, motion, result, &state, nullptr, -1.0),
                     VC_ERROR_ARGUMENT, {"elapsed = -1"}));
+  const Model without_states = model_of(solid("sphere", "radius", {0.05}), solid("half_space"));
+  for (const vc_model* any : {model.get(), without_states.get()}) {
+    EXPECT_TRUE(fails(vc_evaluate(any, scratch.get(), &motion, nullptr, nullptr, -1, 0.0, &result),
+                      VC_ERROR_ARGUMENT, {"vc_evaluate: state_size = -1", "must be >= 0"}));
+  }
   state[0] = 1.0;
   state[1] = 5.0;
   EXPECT_TRUE(fails(evaluate(model, scratch, motion, result, &state), VC_ERROR_ARGUMENT,

@@ -224,6 +224,13 @@ def test_assembly_page_and_its_plots_are_generated_from_the_results() -> None:
         assert f"<dc:source>{module.digest()}</dc:source>" in plot, command
 
 
+def test_campaign_page_is_generated_from_the_results() -> None:
+    module = generator("make_campaign")
+    assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
+        "run './run python docs/make_campaign.py'"
+    )
+
+
 def test_third_party_page_is_generated_from_the_results() -> None:
     module = generator("make_third_party")
     assert module.PAGE.read_text(encoding="utf-8") == module.render(), (

@@ -6,6 +6,7 @@ from __future__ import annotations
 import gc
 import math
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -142,6 +143,91 @@ def test_what_a_law_raises_comes_out():
     with pytest.raises(KeyError, match="no such luck"):
         model.evaluate(X_WA=at(0.049))
     assert not model.evaluate(X_WA=at(1.0)).touching
+
+
+NORMAL = dict(magnitude=1.0, elastic=1.0, elastic_energy=0.0)
+FRICTION = dict(force=np.zeros(3), slide_power=0.0)
+# What evaluate returns, and what is said of it.
+WRONG_RESULTS = {
+    "nan": ({"magnitude": math.nan}, "mine: magnitude = nan [N]; evaluate must give finite"),
+    "infinity": ({"elastic_energy": -math.inf}, "mine: elastic_energy = -inf [J]"),
+    "rolling": ({"rolling_damping": math.inf}, "mine: rolling_damping = inf [N s/m^4]"),
+    "nothing": (None, "mine: what evaluate returned is None; it must be a NormalOutput"),
+    "a number": (9.81, "mine: what evaluate returned is a float; it must be a NormalOutput"),
+    "the other": (vc.FrictionOutput(**FRICTION), "is a volcontact._volcontact.FrictionOutput; it"),
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG_RESULTS)
+def test_a_normal_law_that_gives_no_numbers_is_named(wrong):
+    result, message = WRONG_RESULTS[wrong]
+
+    class Mine(vc.NormalLaw):
+        name = "mine"
+
+        def evaluate(self, contact, state, elapsed):
+            return vc.NormalOutput(**(NORMAL | result)) if isinstance(result, dict) else result
+
+    model = vc.ContactModel(pairs=[BALL], normal=Mine())
+    with pytest.raises((TypeError, ValueError), match=re.escape(message)):
+        model.evaluate(X_WA=at(0.049))
+
+
+@pytest.mark.parametrize(
+    ("result", "message"),
+    [
+        ({"force": np.array([0.0, math.nan, 0.0])}, "mine: force[1] = nan [N]"),
+        ({"torque": math.inf}, "mine: torque = inf [N m]"),
+        ({"slide_power": math.nan}, "mine: slide_power = nan [W]"),
+        ({"spin_energy": -math.inf}, "mine: spin_energy = -inf [J]"),
+        (None, "mine: what evaluate returned is None; it must be a FrictionOutput"),
+    ],
+)
+def test_a_friction_law_that_gives_no_numbers_is_named(result, message):
+    class Mine(vc.FrictionLaw):
+        name = "mine"
+
+        def evaluate(self, contact, state, elapsed):
+            return vc.FrictionOutput(**(FRICTION | result)) if result else None
+
+    model = vc.ContactModel(pairs=[BALL], normal=vc.VolumeSpring(), friction=Mine())
+    with pytest.raises((TypeError, ValueError), match=re.escape(message)):
+        model.evaluate(X_WA=at(0.049))
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        (math.nan, "mine: state 'way' = nan [m]"),
+        ("far", "mine: state 'way' is a str; it must be a number"),
+        (None, "mine: state 'way' is None; it must be a number"),
+    ],
+)
+def test_a_state_that_is_no_number_is_named(value, message):
+    class Mine(vc.NormalLaw):
+        name = "mine"
+        states: ClassVar = {"way": vc.LawState("m")}
+
+        def evaluate(self, contact, state, elapsed):
+            state["way"] = value
+            return vc.NormalOutput(**NORMAL)
+
+    model = vc.ContactModel(pairs=[BALL], normal=Mine())
+    with pytest.raises((TypeError, ValueError), match=re.escape(message)):
+        model.evaluate(X_WA=at(0.049))
+
+
+def test_a_state_of_another_name_is_told():
+    class Mine(vc.NormalLaw):
+        name = "mine"
+        states: ClassVar = {"way": vc.LawState("m")}
+
+        def evaluate(self, contact, state, elapsed):
+            state["weight"] = state.pop("way")
+            return vc.NormalOutput(**NORMAL)
+
+    with pytest.raises(ValueError, match="mine: state 'way' is missing"):
+        vc.ContactModel(pairs=[BALL], normal=Mine()).evaluate(X_WA=at(0.049))
 
 
 def test_model_keeps_its_law_and_lets_go_of_it():

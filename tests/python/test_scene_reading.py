@@ -150,6 +150,8 @@ def test_description_says_what_was_understood():
         "mesh": "exact",
         "tolerance": 1e-4,
         "engine": "auto",
+        "disabled": "respect",
+        "exit_speed": 0.1,
         "target": "applied",
         "pairs": "native",
         "formulation": "gonthier",

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/force/elastic_layer.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "volcontact/base/fields.h"
 #include "volcontact/force/restitution.h"
 
@@ -17,6 +21,19 @@ double checked(const char* name, const char* unit, double value, const Range& ra
 
 double stiffness(double value) { return checked("stiffness", "N/m^3", value, kPositive); }
 
+// Both over the same power of two, which makes the larger one about 1: their sum and their products
+// with other numbers stay finite, and ratios have the bits that they had.
+struct Scaled {
+  Scaled(double stiffness_a, double stiffness_b)
+      : a(stiffness(stiffness_a)), b(stiffness(stiffness_b)) {
+    const int exponent = std::ilogb(std::max(a, b));
+    a = std::scalbn(a, -exponent);
+    b = std::scalbn(b, -exponent);
+  }
+  double a;
+  double b;
+};
+
 }  // namespace
 
 double layer_stiffness(double modulus, double thickness) {
@@ -31,14 +48,24 @@ double confined_layer_stiffness(double modulus, double thickness, double poisson
 
 double series_stiffness(double stiffness_a, double stiffness_b) {
   const double a = stiffness(stiffness_a), b = stiffness(stiffness_b);
-  return a * b / (a + b);
+  const double product = a * b;
+  if (std::isfinite(product) && product >= std::numeric_limits<double>::min()) {
+    return product / (a + b);
+  }
+  const auto [least, most] = std::minmax(a, b);
+  return least / (1.0 + least / most);
 }
 
 double series_damping(double stiffness_a, double damping_a, double stiffness_b, double damping_b) {
-  const double a = stiffness(stiffness_a), b = stiffness(stiffness_b);
+  const auto [a, b] = Scaled(stiffness_a, stiffness_b);
   return (b * checked("damping", "s/m", damping_a, kNonNegative) +
           a * checked("damping", "s/m", damping_b, kNonNegative)) /
          (a + b);
+}
+
+double share_of_first(double stiffness_a, double stiffness_b) {
+  const auto [a, b] = Scaled(stiffness_a, stiffness_b);
+  return b / (a + b);
 }
 
 double series_restitution(double stiffness_a, double restitution_a, double stiffness_b,

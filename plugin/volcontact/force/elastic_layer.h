@@ -18,6 +18,9 @@ double series_stiffness(double stiffness_a, double stiffness_b);
 /// a [s/m] of two layers in series, each with the damping it would have against a rigid body.
 double series_damping(double stiffness_a, double damping_a, double stiffness_b, double damping_b);
 
+/// What the first of two layers in series takes of the whole deformation [-].
+double share_of_first(double stiffness_a, double stiffness_b);
+
 /// e [-] of two layers in series, each with the restitution it would have against a rigid body, all
 /// at one impact speed.
 double series_restitution(double stiffness_a, double restitution_a, double stiffness_b,

@@ -27,7 +27,7 @@ struct VolumeMetrics {
   double area = 0.0;                ///< of A's surface inside B [m^2]
   double counter_area = 0.0;        ///< of B's surface inside A [m^2]
   double depth_moment = 0.0;        ///< int L^2/2 dA, L = column length along the normal [m^4]
-  double depth = 0.0;               ///< extent of Omega along the normal [m]
+  double depth = 0.0;               ///< longest column along the normal [m]
   double volume_error = 0.0;        ///< bound (or estimate, see the engine) of |error of V| [m^3]
   Status status = Status::kOk;
 

@@ -81,12 +81,8 @@ void add_friction(const ContactLaws& laws, const CarriedSite& carried, const Law
   site.taken.spin = -friction.torque * site.spin;
 }
 
-void add_site(SiteReport&& site, int pair, const BodyMotion& motion, ContactReport& report) {
+void add_site(SiteReport&& site, int pair, ContactReport& report) {
   site.pair = pair;
-  const Wrench on_A{site.torque_on_A, site.force_on_A};
-  const Wrench on_B{-site.torque_on_A, -site.force_on_A};
-  report.wrench_on_A += on_A.about(motion.X_WA.translation - site.metrics.centroid);
-  report.wrench_on_B += on_B.about(motion.X_WB.translation - site.metrics.centroid);
   report.elastic_energy += site.elastic_energy;
   report.bristle_energy += site.bristle_energy;
   report.power += site.power;
@@ -162,8 +158,8 @@ void ContactModel::evaluate(const BodyMotion& motion, const SiteMemory& memory,
                             Workspace& workspace, ContactReport& report) const noexcept {
   report.sites.clear();
   report.memory.clear();
-  report.wrench_on_A = {};
-  report.wrench_on_B = {};
+  report.p_WA = motion.X_WA.translation;
+  report.p_WB = motion.X_WB.translation;
   report.elastic_energy = 0.0;
   report.bristle_energy = {};
   report.power = {};
@@ -198,7 +194,7 @@ void ContactModel::evaluate(const BodyMotion& motion, const SiteMemory& memory,
       if (field_W.error > options_.tolerance * field_W.force.norm()) {
         site.metrics.status = std::max(site.metrics.status, Status::kApproximate);
       }
-      add_site(std::move(site), pair, motion, report);
+      add_site(std::move(site), pair, report);
     }
   }
 }

@@ -58,8 +58,8 @@ struct ContactReport {
   std::vector<SiteReport> sites;  ///< empty when apart
   std::vector<double> memory;     ///< a row a site, for the next evaluation; none where the laws
                                   ///< keep nothing
-  Wrench wrench_on_A;             ///< world frame, about A's origin
-  Wrench wrench_on_B;             ///< world frame, about B's origin
+  Vec3 p_WA = Vec3::Zero();       ///< where A's origin was [m]
+  Vec3 p_WB = Vec3::Zero();       ///< where B's origin was [m]
   double elastic_energy = 0.0;    ///< [J]
   ByChannel bristle_energy;       ///< [J]
   ByChannel power;                ///< dissipated [W]
@@ -72,6 +72,21 @@ struct ContactReport {
   double elapsed = 0.0;            ///< since these [s]
 
   bool touching() const { return !sites.empty(); }
+
+  /// What the sites do together to A, about its origin, and to B, about its own; world frame. Of
+  /// the forces that the sites have now: an implicit step changes them.
+  Wrench wrench_on_A() const noexcept { return wrench_about(p_WA, 1.0); }
+  Wrench wrench_on_B() const noexcept { return wrench_about(p_WB, -1.0); }
+
+ private:
+  Wrench wrench_about(const Vec3& origin, double sign) const noexcept {
+    Wrench sum;
+    for (const SiteReport& site : sites) {
+      const Wrench one{sign * site.torque_on_A, sign * site.force_on_A};
+      sum += one.about(origin - site.metrics.centroid);
+    }
+    return sum;
+  }
 };
 
 }  // namespace volcontact

@@ -168,11 +168,23 @@ void BoreOutline::crossings(Place (&inner)[2], Place (&outer)[2], Place (&found)
   // The last step goes to where the chord crosses.
   for (int i = 0; i < kLanes; ++i) {
     const Place &from = inner[i / kShare], &to = outer[i / kShare];
-    angles[i] = from.angle + (to.angle - from.angle) * (1.0 - from.rho) / (to.rho - from.rho);
+    const double part = std::clamp((1.0 - from.rho) / (to.rho - from.rho), 0.0, 1.0);
+    angles[i] = from.angle + (to.angle - from.angle) * part;
   }
   places_at(angles, places);
   found[0] = places[0];
   found[1] = places[kShare];
+}
+
+void BoreOutline::between(const Place (&from)[2], const Place (&to)[2], Place (&places)[kLanes]) {
+  constexpr double kParts[] = {0.01, 0.1, 0.4, 0.7};
+  double angles[kLanes];
+  for (int i = 0; i < kLanes; ++i) {
+    const int side = i / (kLanes / 2);
+    const double way = wrapped(to[side].angle - from[side].angle);
+    angles[i] = from[side].angle + kParts[i % (kLanes / 2)] * way;
+  }
+  places_at(angles, places);
 }
 
 }  // namespace volcontact

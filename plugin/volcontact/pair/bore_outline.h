@@ -36,6 +36,9 @@ class BoreOutline {
   /// Where the outline crosses the wall, between two pairs of an inner and an outer place.
   void crossings(Place (&inner)[2], Place (&outer)[2], Place (&found)[2]);
 
+  /// Places of the outline on the way from two of them to two others, four each. After crossings().
+  void between(const Place (&from)[2], const Place (&to)[2], Place (&places)[kLanes]);
+
  private:
   void choose_frame();
   bool place_all_round(bool good_enough);

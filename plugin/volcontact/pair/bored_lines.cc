@@ -12,8 +12,10 @@ namespace {
 
 constexpr double kWidestAngle = 1.6;  // of an undivided arc [rad]
 constexpr double kSameAngle = 1e-9;
-constexpr double kOnAxis = 1e-8;  // of a plane from the axis, per radius
-constexpr double kOnFace = 1e-6;  // of an apex from a face, per its distance from the middle
+constexpr double kPastEnd = 1e-6;  // of a lobe: there the outline is known to rounding [rad]
+constexpr double kOnAxis = 1e-8;   // of a plane from the axis, per radius
+constexpr double kOnFace = 1e-6;   // of an apex from a face, per its distance from the middle
+constexpr double kOnWall = 1e-12;  // of a place from the wall, per the size of the numbers
 constexpr double kEndError =
     5.0;  // error by its estimate where an arc ends in nothing, as measured
 
@@ -40,19 +42,29 @@ class BoreRun {
     s_.fan.choose_rule(options_.tolerance);
     move_off_axis();
     outline_.trace();
+    set_rounding();
     const std::vector<Place>& places = outline_.places();
     for (const Place& place : places) {
       if (!std::isfinite(place.rho)) return false;
     }
     const auto [nearest, farthest] = std::minmax_element(
         places.begin(), places.end(), [](const Place& p, const Place& q) { return p.rho < q.rho; });
-    if (farthest->rho <= 1.0) return true;  // all of it in the bore
-    if (nearest->rho <= 1.0) return each_lobe();
+    if (!is_outer(*farthest)) return true;  // all of it in the bore
+    if (nearest->rho < 1.0 - rounding_) return each_lobe();
     return outside_all_round();
   }
 
  private:
   using Place = BoreOutline::Place;
+
+  // Distance from the wall, in radii, below which a place lies on it. There is nothing between a
+  // wall and what fits it, and a bore that the overlap touches takes nothing away.
+  void set_rounding() {
+    const double size = bore_.center.norm() + window_.center.norm() + X_AB_.translation.norm();
+    rounding_ = kOnWall * (1.0 + size / bore_.radius_at(window_.center));
+  }
+
+  bool is_outer(const Place& place) const { return place.rho > 1.0 + rounding_; }
 
   // A round face is no function of the direction from a place on it.
   bool apex_is_on_a_face() const {
@@ -130,19 +142,20 @@ class BoreRun {
     const std::size_t n = outline_.places().size();
     std::size_t first = 0;  // an inner place whose next one is outer
     while (first < n &&
-           !(outline_.places()[first].rho <= 1.0 && outline_.places()[(first + 1) % n].rho > 1.0))
+           !(!is_outer(outline_.places()[first]) && is_outer(outline_.places()[(first + 1) % n]))) {
       ++first;
+    }
     const std::size_t begun = regions_.size();
     for (std::size_t k = 0; k < n;) {
       const Place inner = outline_.places()[(first + k) % n];
       std::size_t last = k + 1;
       Place top = outline_.places()[(first + last) % n];
-      while (last < n && outline_.places()[(first + last) % n].rho > 1.0) {
+      while (last < n && is_outer(outline_.places()[(first + last) % n])) {
         const Place& p = outline_.places()[(first + last) % n];
         if (p.rho > top.rho) top = p;
         ++last;
       }
-      const bool is_lobe = inner.rho <= 1.0 && last > k + 1;
+      const bool is_lobe = !is_outer(inner) && last > k + 1;
       if (is_lobe &&
           !add_lobe(inner, top, outline_.places()[(first + last - 1) % n], k + 1, last, first)) {
         regions_.cut(begun);
@@ -161,6 +174,9 @@ class BoreRun {
                 after = outline_.places()[(first + to) % n];
     Place inner_two[2] = {inner, after}, outer_two[2] = {outer, last_outer}, found[2];
     outline_.crossings(inner_two, outer_two, found);
+    Place beside[kLanes];
+    const Place next_two[2] = {outer, last_outer};
+    outline_.between(found, next_two, beside);
     const Place &begin = found[0], &end = found[1];
     set_bore_frame(top.point);
     double low = angle_of(begin.point), high = angle_of(end.point);
@@ -168,6 +184,15 @@ class BoreRun {
     if (high < 0.0) high += 2.0 * kPi;
     if (low > high || high - low > 2.0 * kPi) return false;
     // Past the ends a half-plane would cut the overlap, but not at the wall.
+    for (const Place& place : beside) {
+      double angle = angle_of(place.point);
+      if (angle < low - kPi) angle += 2.0 * kPi;
+      if (angle > high + kPi) angle -= 2.0 * kPi;
+      const bool within = (angle >= low - kPastEnd && angle <= high + kPastEnd) ||
+                          (angle - 2.0 * kPi >= low - kPastEnd) ||
+                          (angle + 2.0 * kPi <= high + kPastEnd);
+      if (!within) return false;
+    }
     for (std::size_t k = from; k < to; ++k) {
       const double angle = angle_of(outline_.places()[(first + k) % n].point);
       const bool within =
@@ -320,6 +345,7 @@ class BoreRun {
   BoreOutline outline_;
   FanFrame frame_;
   Vec3 side_u_, side_v_;
+  double rounding_ = 0.0;  // of a distance from the axis, in radii
   double turned_by_ = 0.0, error_ = 0.0, volume_scale_ = 0.0;
 };
 

@@ -18,6 +18,8 @@ constexpr double kReach = 1e-13;      // of the size: where rounding decides whe
 constexpr int kMostContacts = 20000;  // of one query
 constexpr double kFlux = 1e-8;        // of the square of the length of a curve
 constexpr double kNoArea = 1e-8;      // of the largest cell: rounding has made it
+constexpr double kTouch = 1e-9;       // of an edge: how far a point may be off it
+constexpr double kCentroid = 1e-9;    // of the size: how far out of bounds it may be
 
 class Columns {
  public:
@@ -42,12 +44,15 @@ class Columns {
   void meshes() {
     if (bounds_apart(a_.bounds, b_->bounds, X_AB_)) return;
     if (b_->planes != nullptr && add_on_one_face()) return finish();
+    dropped_ = 0.0;
     const double reach = kReach * (size_of(a_.bounds) + size_of(b_->bounds));
+    if (coincide(a_, *b_, X_BA_, reach, scratch_.slot_of_triangle)) return add_coinciding(reach);
     const bool counted =
         find_contacts(*a_.tree, *b_->tree, X_BA_, reach, kMostContacts, scratch_.crossing);
     for (std::vector<int>& parts : scratch_.crossing_parts) parts.clear();
     if (!counted || !add_patches()) {
       out_.sites.clear();
+      dropped_ = 0.0;
       add_all_columns();
     }
     finish();
@@ -75,6 +80,17 @@ class Columns {
     m.status = Status::kContained;
     m.depth_moment = -(X_BA_ * m.centroid).z() * m.volume;
     m.depth = a_.bounds.half_sizes().dot(up_A.cwiseAbs()) - (X_BA_ * a_.bounds.center()).z();
+    out_.sites.push_back(m);
+    finish();
+  }
+
+  // The same surface twice: all of the solid, and no direction. Every face of A is flush with one
+  // of B, and so is B's.
+  void add_coinciding(double reach) {
+    VolumeMetrics m = a_.own;
+    m.counter_area = a_.surface_area;
+    m.volume_error = reach * a_.surface_area;
+    m.status = Status::kContained;
     out_.sites.push_back(m);
     finish();
   }
@@ -133,6 +149,7 @@ class Columns {
   // the one that the curve of the patch bounds.
   bool add_patch(const ContactPatch& patch) {
     if (!patch.flux.closed || patch.flux.toward_a.isZero()) return false;
+    if (!(patch.flux.length > 0.0)) return false;  // a mere touch tells nothing
     const std::vector<TriangleContact>& contacts = scratch_.crossing.contacts;
     const Pose X_BC{columns_along(contacts, scratch_.patches, patch),
                     0.5 * (patch.low + patch.high)};
@@ -164,6 +181,7 @@ class Columns {
       }
       make_cells(*a_.tree, X_CA, *b_->tree, X_CB, window, threads_, scratch_.cells);
       keep_crossing_parts(patch);
+      if (level) drop_beyond_levels(window);
       if (!ends_outwards()) continue;
       const bool shared = !is_within(window, nullptr);
       // One curve bounds one region, and without upright faces no wall of it is out of sight.
@@ -176,12 +194,85 @@ class Columns {
       if ((shared || !level) && is_layered(cells())) continue;
       if (!level && scratch_.cells.upright) continue;
       if (shared && !find_own_regions(patch, window)) continue;
+      if (meets_other_curve(patch, X_CB, margin, shared)) return false;
       const Vec3 area_vector =
           R_BC * add_regions(X_CA, X_CB, X_AB_ * X_BC, b_->tree, shared || simple);
       if (!level && (R_BC * area_vector_of_b(shared) + patch.flux.area_vector).norm() > doubt) {
         return false;
       }
       return (area_vector - patch.flux.area_vector).norm() <= doubt;
+    }
+    return false;
+  }
+
+  // No surface passes through the ends of the window: what lies beyond them is another part of its
+  // body, of which some faces reach into the window beside the rectangle and others do not.
+  void drop_beyond_levels(const ColumnWindow& window) {
+    std::erase_if(cells(), [&](const ColumnCell& cell) {
+      const double x = cell.x[0], y = cell.y[0];
+      if (x < window.low.x() || x > window.high.x() || y < window.low.y() || y > window.high.y()) {
+        return false;
+      }
+      const double half = 0.5 * cell.delta[0];
+      return cell.middle[0] - half < window.low.z() || cell.middle[0] + half > window.high.z();
+    });
+  }
+
+  // Whether the curve of another patch bounds what the cells hold, of all regions or of those that
+  // are marked: that patch would count it again. So it is with a body whose ends are flush with two
+  // opposite faces of the other one.
+  bool meets_other_curve(const ContactPatch& patch, const Pose& X_CB, double margin, bool own) {
+    const PatchScratch& patches = scratch_.patches;
+    if (patches.patches.size() == 1) return false;
+    const Aabb bounds = bounds_of_cells(margin, own);
+    const Vec3 middle = bounds.center(), half = bounds.half_sizes();
+    for (const ContactPatch& other : patches.patches) {
+      if (other.first == patch.first) continue;
+      const Vec3 apart = X_CB * (0.5 * (other.low + other.high)) - middle;
+      const Vec3 reach = X_CB.rotation.cwiseAbs() * (0.5 * (other.high - other.low)) + half;
+      if ((apart.cwiseAbs().array() > reach.array()).any()) continue;
+      for (int k = other.first; k < other.last; ++k) {
+        const TriangleContact& contact = scratch_.crossing.contacts[patches.order[k]];
+        const Vec3 p = X_CB * contact.p;
+        if (!contact.proper) {  // of a touch only a box is known
+          const Vec3 extent = contact.q - contact.p;
+          const Vec3 away = p + X_CB.rotation * (0.5 * extent) - middle;
+          const Vec3 far = half + X_CB.rotation.cwiseAbs() * (0.5 * extent);
+          if ((away.cwiseAbs().array() <= far.array()).all()) return true;
+        } else if (((p - middle).cwiseAbs().array() <= half.array()).all() &&
+                   is_on_cells(p, margin, own)) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+  Aabb bounds_of_cells(double margin, bool own) const {
+    Aabb bounds{Vec3::Constant(kInfinity), Vec3::Constant(-kInfinity)};
+    for (std::size_t k = 0; k < scratch_.cells.cells.size(); ++k) {
+      if (!counts(k, own)) continue;
+      const ColumnCell& cell = scratch_.cells.cells[k];
+      for (int i = 0; i < cell.count; ++i) {
+        const Vec3 p(cell.x[i], cell.y[i], cell.middle[i]);
+        const Vec3 reach(margin, margin, 0.5 * cell.delta[i] + margin);
+        bounds.min = bounds.min.cwiseMin(p - reach);
+        bounds.max = bounds.max.cwiseMax(p + reach);
+      }
+    }
+    return bounds;
+  }
+  // Whether a cell is one of those that a patch counts.
+  bool counts(std::size_t k, bool own) const {
+    return !own || scratch_.own_regions[scratch_.regions.region_of[k].of_f] != 0;
+  }
+  bool is_on_cells(const Vec3& p, double margin, bool own) {
+    for (std::size_t k = 0; k < cells().size(); ++k) {
+      const ColumnCell& cell = cells()[k];
+      if (counts(k, own) && cell.covers(p.x(), p.y(), kTouch) &&
+          cell.height_of_f(p.x(), p.y()) <= p.z() + margin &&
+          cell.height_of_g(p.x(), p.y()) >= p.z() - margin) {
+        return true;
+      }
     }
     return false;
   }
@@ -227,7 +318,7 @@ class Columns {
       pairs.emplace_back(contact.f, contact.g);
     }
     std::sort(pairs.begin(), pairs.end());
-    const int regions = find_regions(*a_.tree, b_->tree, cells(), scratch_.regions);
+    const int regions = find_regions(*a_.tree, b_->tree, rounding_, cells(), scratch_.regions);
     std::vector<char>& own = scratch_.own_regions;
     own.assign(static_cast<std::size_t>(regions), 0);
     for (std::size_t k = 0; k < cells().size(); ++k) {
@@ -314,7 +405,7 @@ class Columns {
   Vec3 add_regions(const Pose& X_CA, const Pose& X_CB, const Pose& X_AC, const ObbTree* tree_b,
                    bool own = false) {
     const int regions = own ? static_cast<int>(scratch_.own_regions.size())
-                            : find_regions(*a_.tree, tree_b, cells(), scratch_.regions);
+                            : find_regions(*a_.tree, tree_b, rounding_, cells(), scratch_.regions);
     const ColumnSurface a{a_.tree, &X_CA}, b{tree_b, &X_CB};
     // At most the volume of slivers of faces that count as none.
     const double left_out = own ? 0.0 : scratch_.regions.left_out * size_of(a_.bounds);
@@ -327,9 +418,9 @@ class Columns {
           sum_region(region, cells(), scratch_.regions.region_of, a, b, scratch_.cells.path));
       area_vector += sums.back().moments.area_vector;
     }
-    // A surface that looks into a cavity takes its volume away from the region around it.
-    if (std::any_of(sums.begin(), sums.end(),
-                    [&](const CellSum& sum) { return sum.moments.volume < -error_of(sum); })) {
+    // A surface that looks into a cavity takes its volume away from the region around it. And where
+    // faces coincide, what was told apart need not be a region.
+    if (sums.size() > 1 && !are_regions(sums, common_bounds(X_CA, tree_b, X_CB))) {
       for (std::size_t i = 1; i < sums.size(); ++i) sums[0] += sums[i];
       sums.resize(1);
     }
@@ -340,17 +431,44 @@ class Columns {
       for (CellSum& sum : sums) sum.energy = energy * (sum.moments.volume / volume);
     }
     for (const CellSum& sum : sums) {
-      if (!(sum.moments.volume > error_of(sum))) continue;
+      if (!(sum.moments.volume > error_of(sum))) {
+        dropped_ += std::abs(sum.moments.volume) + error_of(sum) + left_out;
+        continue;
+      }
       VolumeMetrics m = sum.moments.metrics();
       m.volume_error = error_of(sum) + left_out;
       const double length = m.area_vector.norm();
       const double along = length > 0.0 ? std::abs(m.area_vector.z()) / length : 1.0;
       m.depth_moment = sum.energy * along;
-      // A region may show no face to the columns, only walls.
-      m.depth = sum.high > sum.low ? (sum.high - sum.low) * along : 0.0;
+      m.depth = sum.depth * along;  // 0 where a region shows no face to the columns, only walls
       out_.sites.push_back(transformed(m, X_AC));
     }
     return area_vector;
+  }
+
+  // Whether each of the sums may be that of a region: no negative volume, and the centroid within
+  // the bounds of both solids.
+  bool are_regions(const std::vector<CellSum>& sums, const Aabb& common) const {
+    const Vec3 reach = common.min.cwiseAbs().cwiseMax(common.max.cwiseAbs());
+    return std::all_of(sums.begin(), sums.end(), [&](const CellSum& sum) {
+      const double volume = sum.moments.volume, doubt = error_of(sum);
+      const Vec3& first = sum.moments.first;
+      const Vec3 slack = (doubt + kCentroid * std::abs(volume)) * reach;
+      return volume >= -doubt && ((first - volume * common.max).array() <= slack.array()).all() &&
+             ((volume * common.min - first).array() <= slack.array()).all();
+    });
+  }
+
+  // What the bounds of A and of B have in common, in C; those of A where B is a half-space.
+  Aabb common_bounds(const Pose& X_CA, const ObbTree* tree_b, const Pose& X_CB) const {
+    const auto placed = [](const Aabb& bounds, const Pose& X) {
+      const Vec3 middle = X * bounds.center(), half = X.rotation.cwiseAbs() * bounds.half_sizes();
+      return Aabb{middle - half, middle + half};
+    };
+    const Aabb bounds = placed(a_.bounds, X_CA);
+    if (tree_b == nullptr) return bounds;
+    const Aabb other = placed(b_->bounds, X_CB);
+    return {bounds.min.cwiseMax(other.min), bounds.max.cwiseMin(other.max)};
   }
 
   double error_of(const CellSum& sum) const {
@@ -362,7 +480,7 @@ class Columns {
     for (const VolumeMetrics& site : out_.sites) out_.total = out_.total + site;
     // Samples may miss what is there.
     out_.total.status = std::max(out_.total.status, sampled_.status);
-    out_.total.volume_error = std::max(out_.total.volume_error, sampled_.volume_error);
+    out_.total.volume_error = std::max(out_.total.volume_error, sampled_.volume_error) + dropped_;
   }
 
   const SurfaceView& a_;
@@ -372,6 +490,7 @@ class Columns {
   ColumnsScratch& scratch_;
   Interference& out_;
   double rounding_;
+  double dropped_ = 0.0;   // at most, of regions too small to tell from rounding [m^3]
   VolumeMetrics sampled_;  // where the budget did not allow more
 };
 

@@ -25,6 +25,7 @@ struct ColumnsScratch {
   std::vector<int> crossing_here[2];   ///< of one patch
   std::vector<std::pair<int, int>> own_pairs;
   std::vector<char> own_regions;
+  std::vector<int> slot_of_triangle;  ///< of B's tree
 };
 
 /// Interference of two solids bounded by closed triangle meshes, exact to rounding: metrics in A's

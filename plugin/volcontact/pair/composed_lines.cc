@@ -8,6 +8,8 @@
 namespace volcontact {
 namespace {
 
+constexpr double kOnAxis = 1e-9;  // of a place from the axis of a bore, per its distance
+
 class ComposedRun {
  public:
   ComposedRun(const Pose& X_AB, const InterferenceOptions& options, LinesScratch& lines,
@@ -84,9 +86,10 @@ class ComposedRun {
   // False when a plane that touches the wall along a line keeps the two apart.
   static bool reaches(const ConvexView& body, const Pose& X, const Bore& bore) {
     if (!body.bounded()) return true;
-    const Vec3 out = bore.from_axis(body.middle(X));
+    const Vec3 middle = body.middle(X), out = bore.from_axis(middle);
     const double length = out.norm();
-    if (!(length > 0.0)) return true;
+    // On the axis it is in the bore, and what is left of `out` is rounding that points anywhere.
+    if (!(length > kOnAxis * ((middle - bore.center).norm() + bore.radius))) return true;
     const Vec3 normal = bore.wall_normal(out / length);
     return -body.support_height(X, -normal) - normal.dot(bore.center) < bore.radius;
   }

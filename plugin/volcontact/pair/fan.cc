@@ -228,7 +228,15 @@ void Fan::set(const FaceSet& faces, const std::vector<PlaneFace>& idle, const Fa
 
 void Fan::clear() { clear(total_, total_planes_); }
 
-void Fan::choose_rule(double tolerance) { faces_.fine = tolerance <= kFineTolerance; }
+void Fan::choose_rule(double tolerance) {
+  faces_.fine = tolerance <= kFineTolerance;
+  faces_.knot_parts = kKnotParts;
+}
+
+void Fan::look_closer() {
+  faces_.fine = true;
+  faces_.knot_parts = kMoreKnotParts;
+}
 
 void Fan::ends(SimdPath path, const double* u, const double* v, double* rho, double* height) {
   VOLCONTACT_SIMD_CALL(path, ends, faces_, work_.data()->x, u, v, rho, height);

@@ -84,6 +84,7 @@ struct FanFaces {
   double start = 0.0;           ///< rho of the wall of a bore about the axis; 0 without
   double area_scale = 0.0;      ///< of the frame
   bool fine = false;            ///< eight nodes on each piece of a section, not five
+  int knot_parts = 3;           ///< of a section, each with one knot of two round faces
 };
 
 /// Sums over the columns of a fan, in coordinates along u, v and t from its center: x, y, h. These
@@ -94,8 +95,7 @@ struct FanSums {
     double sums[4];
   };
   /// int weight times 1, x, y, h, xx, xy, yy, xh, yh, hh over a round face, where weight times half
-  /// the gradient is the area vector, and its area. The integrals only when both solids have round
-  /// faces.
+  /// the gradient is the area vector, and its area.
   struct OnRound {
     double sums[10];
     double area;
@@ -136,6 +136,9 @@ class Fan {
   /// For a relative error of the volume. Area vectors converge less fast than volumes: with five
   /// nodes they are off by 1e-7 to 1e-4.
   void choose_rule(double tolerance);
+  /// For what set() brings next: looks for more changes of face in a half-plane, and has eight
+  /// nodes between them.
+  void look_closer();
 
   /// Largest rho of the overlap in eight directions (u, v), of any length but zero, and the height
   /// of the middle of the column there.

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kParallel = 1e-12;  // squared sine below which two planes have no line in common
 constexpr int kMaxPlanes = 12;       // with more, corners are left to the refinement
+constexpr double kNearApex = 1.5;    // of the overlap: an apex that may be felt in it
 constexpr int kRimSteps = 16;        // places tried on a rim in search of the other solid
 
 // normal . x = offset, x counted from the center. A face of the overlap if `face` is not negative.
@@ -56,7 +57,10 @@ class BreakSearch {
   void run() {
     breaks_.clear();
     const int n = static_cast<int>(faces_.planes.size());
-    for (int r = 0; r < static_cast<int>(faces_.rounds.size()); ++r) find_tops(r);
+    for (int r = 0; r < static_cast<int>(faces_.rounds.size()); ++r) {
+      find_tops(r);
+      if (faces_.rounds[r].cone) find_apex(r);
+    }
     breaks_.complete = n <= kMaxPlanes;
     if (!breaks_.complete) return;
     for (int i = 0; i < n; ++i) {
@@ -100,6 +104,13 @@ class BreakSearch {
 
   // Highest and lowest places of a round face.
   void find_tops(int r) { intersect(polar(r, frame_.u), polar(r, frame_.v), r, kTop); }
+
+  // A half-plane near the apex of a cone cuts it in an arc that bends sharply, and so it does where
+  // the tip is cut off by a small disc.
+  void find_apex(int r) {
+    const Vec3 x = faces_.rounds[r].center - frame_.center;
+    if (is_near(x)) note_direction(x);
+  }
 
   // On the edge of plane i and round face r: the highest and lowest places, and those where a
   // half-plane of the fan touches it. Also the seams of a capsule.
@@ -311,10 +322,24 @@ class BreakSearch {
     const double height = frame_.central ? 1.0 / y.z() : y.z();
     breaks_.low = std::min(breaks_.low, height);
     breaks_.high = std::max(breaks_.high, height);
+    if (use == kTop) return;
+    note_direction(x);
+  }
+  void note_direction(const Vec3& x) {
+    const Vec3 y = to_uv_ * x;
+    const double height = frame_.central ? 1.0 / y.z() : y.z();
     const double length = y.head<2>().norm(), rho = frame_.central ? length * height : length;
-    if (use == kTop || !(rho > 1e-9)) return;
+    if (!(rho > 1e-9)) return;
     if (faces_.has_bore && rho < 1.0 - 1e-9) return;
     breaks_.directions.push_back({y.x() / length, y.y() / length});
+  }
+
+  // Whether an apex is about as far from the axis of the fan as the overlap reaches.
+  bool is_near(const Vec3& x) const {
+    const Vec3 y = to_uv_ * x;
+    if (frame_.central && !(y.z() > 0.0)) return false;
+    const double length = y.head<2>().norm() / (frame_.central ? y.z() : 1.0);
+    return length < kNearApex;
   }
 
   const FaceSet& faces_;

@@ -85,6 +85,34 @@ MomentSum moments_of(const Fan& fan, const FaceSet& faces, const FanFrame& frame
   return sum;
 }
 
+void SurfaceFlux::add_round(const FanRound& r, const double* x) {
+  Mat3 gradient, sums;  // of 1, x, y, times the same
+  gradient << Vec3(r.g), Vec3(r.g_u), Vec3(r.g_v);
+  sums << x[0], x[1], x[2], x[1], x[4], x[5], x[2], x[5], x[6];
+  flux_ += sums * (gradient.transpose() * axes_) +
+           Vec3(x[3], x[7], x[8]) * (Vec3(r.g_t).transpose() * axes_);
+}
+
+double SurfaceFlux::open(double volume, const Eigen::Vector2d& middle, double size) const {
+  Axes rest = flux_;
+  rest.bottomRows<2>() -= middle * flux_.row(0);
+  rest.row(0) *= size;
+  rest(1, 0) -= volume;
+  rest(2, 1) -= volume;
+  return rest.cwiseAbs().maxCoeff();
+}
+
+double openness(const Fan& fan, const FaceSet& faces, const FanFrame& frame) {
+  SurfaceFlux flux((SurfaceFlux::Axes() << frame.u, frame.v).finished());
+  for (int i = 0; i < fan.faces().active_planes; ++i) {
+    flux.add_plane(faces.planes[fan.faces().planes[i].face].normal, fan.total().planes[i].sums);
+  }
+  for (int i = 0; i < fan.faces().round_count; ++i) {
+    flux.add_round(fan.faces().rounds[i], fan.total().rounds[i].sums);
+  }
+  return flux.open(fan.total().moments[0]);
+}
+
 double share_of_bore(const Fan& fan, const FaceSet& faces, const FanFrame& frame) {
   constexpr double kBalanced = 1e-3;  // weight of areas where all area vectors vanish
   Surface wall, rest;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/interference.h"
 
+#include <algorithm>
+#include <cmath>
 #include <type_traits>
 
 #include "volcontact/pair/clip.h"
@@ -14,6 +16,7 @@
 #include "volcontact/pair/composed_columns.h"
 #include "volcontact/pair/composed_lines.h"
 #include "volcontact/pair/octree.h"
+#include "volcontact/pair/overlap_limits.h"
 #include "volcontact/pair/ring_composed.h"
 #include "volcontact/pair/ring_lines.h"
 #include "volcontact/pair/ring_pair.h"
@@ -175,8 +178,8 @@ bool inner_lines(const A& a, const B& b, const Pose& X_AB, const InterferenceOpt
     add_lines_pieces(b, scratch.composed.pieces[1]);
     return ring_composed(a, X_AB, options, scratch.ring, scratch.composed, out);
   } else if constexpr (has_ring<A, B>) {
-    ring_interference(a, ConvexView(b), X_AB, options, scratch.ring, scratch.composed.regions, out);
-    return true;
+    return ring_interference(a, ConvexView(b), X_AB, options, scratch.ring,
+                             scratch.composed.regions, out);
   } else if constexpr (has_ring_composed<B, A> || has_ring<B, A>) {
     if (!inner_lines(b, a, X_AB.inverse(), options, scratch, out)) return false;
     mirror_sites(X_AB, out);
@@ -190,13 +193,27 @@ bool inner_lines(const A& a, const B& b, const Pose& X_AB, const InterferenceOpt
   }
 }
 
+// Whether the numbers of the sites and their sum can be those of an overlap. Each site is looked
+// at: wrong ones may cancel.
+template <typename A, typename B>
+bool are_possible(const A& a, const B& b, const Pose& X_AB, const Interference& out) {
+  if (out.sites.empty()) return !out.total.touching() && is_finite(out.total);
+  const OverlapLimits limits_a = limits_of(a), limits_b = limits_of(b);
+  const auto possible = [&](const VolumeMetrics& metrics) {
+    return is_possible(metrics, limits_a, limits_b, X_AB);
+  };
+  return possible(out.total) &&
+         (out.sites.size() == 1 || std::all_of(out.sites.begin(), out.sites.end(), possible));
+}
+
 // The same, or else by the surface of the overlap. False when that fails as well.
 template <typename A, typename B>
 bool lines(const A& a, const B& b, const Shape& shape_a, const Shape& shape_b, const Pose& X_AB,
            const InterferenceOptions& options, InterferenceWorkspace::Scratch& scratch,
            Interference& out) {
-  if (inner_lines(a, b, X_AB, options, scratch, out) && is_finite(out.total)) return true;
-  return shell_interference(shape_a, shape_b, X_AB, options, scratch.shell, out);
+  if (inner_lines(a, b, X_AB, options, scratch, out) && are_possible(a, b, X_AB, out)) return true;
+  return shell_interference(shape_a, shape_b, X_AB, options, scratch.shell, out) &&
+         are_possible(a, b, X_AB, out);
 }
 
 // False when the pose is beyond the engine.
@@ -263,22 +280,35 @@ void interference(const Shape& a, const Shape& b, const Pose& X_AB,
     out.engine = wanted ? options.engine : engine_for_pair(solid_a, solid_b);
     if (!X_AB.is_finite()) return set_status(Status::kInvalid, out);
     if constexpr (both_unbounded<A, B>) return set_status(Status::kUnbounded, out);
+    const auto possible = [&] { return are_possible(solid_a, solid_b, X_AB, out); };
+    // Whether there is nothing left to do: from what is no number nothing better follows.
+    const auto settled = [&] {
+      if (is_finite(out.total)) return possible();
+      set_status(Status::kInvalid, out);
+      return true;
+    };
     if constexpr (serves_pair<A, B>(Engine::kClosedForm)) {
       if (out.engine == Engine::kClosedForm) {
         out.total = closed_form_metrics(solid_a, solid_b, X_AB);
-        return set_one_site(out);
+        set_one_site(out);
+        // One formula gives all the numbers, in the time that it takes to look at them: V tells.
+        if (!std::isfinite(out.total.volume)) return set_status(Status::kInvalid, out);
+        if (is_possible_volume(out.total, limits_of(solid_a), limits_of(solid_b))) return;
+        out.engine = Engine::kOctree;
       }
     }
     if constexpr (serves_pair<A, B>(Engine::kClip)) {
       if (out.engine == Engine::kClip) {
         out.total = clip_metrics(solid_a, solid_b, X_AB, workspace.scratch().clip);
-        return set_one_site(out);
+        set_one_site(out);
+        if (settled()) return;
+        out.engine = Engine::kOctree;
       }
     }
     if constexpr (prefers_columns<A, B>) {
       if (out.engine == Engine::kColumns && !wanted) {
-        if (columns(solid_a, solid_b, X_AB, options, workspace.scratch(), out) &&
-            is_finite(out.total) && out.total.status != Status::kApproximate) {
+        if (columns(solid_a, solid_b, X_AB, options, workspace.scratch(), out) && possible() &&
+            out.total.status != Status::kApproximate) {
           return;
         }
         out.engine = Engine::kLines;
@@ -292,14 +322,12 @@ void interference(const Shape& a, const Shape& b, const Pose& X_AB,
     }
     if constexpr (serves_pair<A, B>(Engine::kColumns)) {
       if (out.engine == Engine::kColumns) {
-        if (columns(solid_a, solid_b, X_AB, options, workspace.scratch(), out)) {
-          if (is_finite(out.total)) return;
-          return set_status(Status::kInvalid, out);
-        }
+        if (columns(solid_a, solid_b, X_AB, options, workspace.scratch(), out) && settled()) return;
         out.engine = Engine::kOctree;
       }
     }
     octree_interference(a, b, X_AB, options, workspace.scratch().octree, out);
+    if (!possible()) set_status(Status::kInvalid, out);
   };
   std::visit(run, a, b);
 }

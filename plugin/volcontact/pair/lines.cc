@@ -54,8 +54,13 @@ class LinesRun {
     find_breaks(s_.faces.active, frame_, tolerance(), s_.breaks);
     const bool smooth = s_.breaks.complete && s_.breaks.directions.empty();
     if (!smooth || !integrate_smooth()) integrate_arcs();
+    if (is_open(options_.tolerance)) look_closer(smooth);
     return metrics();
   }
+
+  // The surface that was found is not closed, so part of it was overlooked, and so may be a part of
+  // the volume.
+  bool beyond() const { return is_open(std::max(options_.tolerance, outer_rule::kLeastOpen)); }
 
   // Nothing where the window saw something: the fan stands on a place from where it does not see.
   bool lost(const VolumeMetrics& metrics, double least_volume) const {
@@ -71,6 +76,20 @@ class LinesRun {
   static VolumeMetrics contained(VolumeMetrics metrics) {
     metrics.status = Status::kContained;
     return metrics;
+  }
+
+  bool is_open(double tolerance) const {
+    return window_.kind == LinesWindow::Kind::kOverlap &&
+           open_ > tolerance * s_.fan.total().moments[0];
+  }
+
+  // Once more, with more columns in between.
+  void look_closer(bool smooth) {
+    s_.fan.look_closer();
+    s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
+    target_ *= outer_rule::kCloserTarget;
+    depth_ += outer_rule::kCloserDepth;
+    if (!smooth || !integrate_smooth() || is_open(options_.tolerance)) integrate_arcs();
   }
 
   bool is_flat(Owner owner) const { return !s_.faces.active.has_rounds(owner); }
@@ -162,6 +181,7 @@ class LinesRun {
       volume[half] = s_.fan.batch().moments[0];
     }
     error_ = even_error(volume[0], volume[1]);
+    measure_opening();
     return error_ <= outer_rule::kEvenTarget * options_.tolerance * (volume[0] + volume[1]);
   }
 
@@ -172,6 +192,10 @@ class LinesRun {
     set_corners();
     set_arcs();
     while (!s_.arcs.empty()) integrate_arc();
+    measure_opening();
+  }
+  void measure_opening() {
+    open_ = s_.faces.active.has_bore ? 0.0 : openness(s_.fan, s_.faces.active, frame_);
   }
 
   // The part of the line x + height t inside of both; false when it is empty.
@@ -262,8 +286,7 @@ class LinesRun {
     double volume = 0.0;
     for (double part : section) volume += part;
     volume_scale_ = std::max(volume_scale_, volume);
-    if (error > outer_rule::kTarget * options_.tolerance * volume_scale_ &&
-        arc.depth < outer_rule::kMaxDepth) {
+    if (error > target_ * options_.tolerance * volume_scale_ && arc.depth < depth_) {
       divide(arc);
       return;
     }
@@ -297,8 +320,9 @@ class LinesRun {
     }
     result.depth_moment = sums.depth_moment;
     result.depth = std::max(sums.high, s_.breaks.high) - std::min(sums.low, s_.breaks.low);
-    result.volume_error = error_ + outer_rule::kInnerError * result.volume;
-    if (error_ > options_.tolerance * result.volume) result.status = Status::kApproximate;
+    result.volume_error = std::max(error_, open_) + outer_rule::kInnerError * result.volume;
+    if (std::max(error_, open_) > options_.tolerance * result.volume)
+      result.status = Status::kApproximate;
     return transformed(result, Pose{Mat3::Identity(), frame_.center});
   }
 
@@ -311,6 +335,9 @@ class LinesRun {
   FanFrame frame_;
   bool along_normal_ = false;  // the columns are to follow the normal, which is yet to be found
   double error_ = 0.0;
+  double open_ = 0.0;  // how far the surface is from closed
+  double target_ = outer_rule::kTarget;
+  int depth_ = outer_rule::kMaxDepth;
   double volume_scale_ = 0.0;  // least V, as known so far
 };
 
@@ -334,6 +361,10 @@ bool lines_interference(const ConvexView& a, const ConvexView& b, const Pose& X_
   LinesRun run(a, b, X_AB, options, scratch);
   out.total = run.run(false);
   if (run.lost(out.total, std::min(volume_a, volume_b))) return false;
+  if (run.beyond()) {
+    out.total = VolumeMetrics{};
+    return false;
+  }
   if (out.total.touching()) out.sites.push_back(out.total);
   return true;
 }
@@ -343,6 +374,7 @@ bool add_lines_region(const ConvexView& a, const ConvexView& b, const Pose& X_AB
                       LinesRegions& regions) noexcept {
   LinesRun run(a, b, X_AB, options, scratch);
   const VolumeMetrics metrics = run.run(true);
+  if (run.beyond()) return false;
   if (!metrics.touching()) {
     return !run.lost(metrics, std::min(a.own_metrics().volume, b.own_metrics().volume));
   }

@@ -28,14 +28,15 @@ struct LinesScratch {
 };
 
 /// Interference of two convex solids of which at least one is round, by columns along the contact
-/// normal: metrics in A's frame and about A's origin, one site. `volume_error` is an estimate.
-/// False in a degenerate pose that it cannot make out. docs/theory.md, "Lines".
+/// normal: metrics in A's frame and about A's origin, one site. `volume_error` is an estimate, no
+/// less than the surface found is from closed. False in a degenerate pose that it cannot make out,
+/// or where the surface stays open. docs/theory.md, "Lines".
 bool lines_interference(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
                         const InterferenceOptions& options, LinesScratch& scratch,
                         Interference& out) noexcept;
 
-/// Adds the overlap of two convex bodies that are pieces of solids, if there is one. False in a
-/// degenerate pose that it cannot make out.
+/// Adds the overlap of two convex bodies that are pieces of solids, if there is one. False as
+/// above.
 bool add_lines_region(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
                       const InterferenceOptions& options, LinesScratch& scratch,
                       LinesRegions& regions) noexcept;

@@ -12,7 +12,8 @@
 namespace volcontact {
 namespace {
 
-constexpr int kSumGrain = 64;  // leaves in a partial sum
+constexpr double kPlanePatch = 1.0 - 1e-9;  // flatness of a patch on a plane
+constexpr int kSumGrain = 64;               // leaves in a partial sum
 
 OctreeScratch::Totals totals_of(const Cell& cell) {
   const Vec3& c = cell.center;
@@ -44,20 +45,32 @@ VolumeMetrics metrics_from(const OctreeScratch::Totals& t) {
   return moments.metrics();
 }
 
-// The overlap is all of one solid: its own metrics, when known, are exact, and there is no
-// direction.
-bool contained(const OctreeTask& task, const OctreeScratch::Totals& t, int inner,
+// Of the own volume K where the overlap may be all of the inner solid. It is certainly all of a
+// convex solid that no face of the other passes through. Else a part of it may stick out, or be
+// somewhere else: K is no farther off than the lower bound.
+double error_of_own(const OctreeTask& task, const OctreeScratch::Totals& t, int inner) {
+  const SolidView& solid = task.solid(inner);
+  const double rounding = task.rounding + solid.own.volume_error;
+  if (solid.convex && t.doubt[1 - inner] == 0.0) return rounding;
+  return rounding + std::max(0.0, solid.own.volume - t.low);
+}
+
+// No surface of the other solid lies in the region. Where it is the only one it may be all of the
+// inner solid, whose own metrics, when known, are then exact. There is no direction.
+bool contained(const OctreeTask& task, const OctreeScratch::Totals& t, int inner, bool only_region,
                VolumeMetrics& metrics) {
   const VolumeMetrics& known = task.solid(inner).own;
-  if (known.volume > 0.0) {
+  if (known.volume > 0.0 && only_region) {
     const double slack = 2.0 * (t.high - t.low) + task.rounding + 1e-9 * t.volume;
     if (std::abs(known.volume - t.volume) > slack) return false;
     const VolumeMetrics own = transformed(known, task.X_SW(inner).inverse());
     metrics.volume = own.volume;
     metrics.centroid = own.centroid;
     metrics.inertia = own.inertia;
-    metrics.volume_error = task.rounding;
-    metrics.status = Status::kContained;
+    metrics.volume_error = error_of_own(task, t, inner);
+    metrics.status = metrics.volume_error <= std::max(task.tolerance * own.volume, task.rounding)
+                         ? Status::kContained
+                         : Status::kApproximate;
   } else if (metrics.status == Status::kOk) {
     metrics.status = Status::kContained;
   }
@@ -75,15 +88,26 @@ VolumeMetrics metrics_of(const OctreeTask& task, OctreeScratch& s, LeafRange lea
   metrics.volume_error = std::max(t.high - t.volume, t.volume - t.low) + task.rounding;
   metrics.status = approximate ? Status::kApproximate : Status::kOk;
   if (!(metrics.volume > 0.0)) return metrics;
-  if ((metrics.counter_area == 0.0 && contained(task, t, 0, metrics)) ||
-      (metrics.area == 0.0 && contained(task, t, 1, metrics))) {
+  if ((metrics.counter_area == 0.0 && contained(task, t, 0, leaves.all, metrics)) ||
+      (metrics.area == 0.0 && contained(task, t, 1, leaves.all, metrics))) {
     return metrics;
   }
+  // Areas are estimated apart from S, and no surface has less area than S is long.
+  const double least = metrics.area_vector.norm();
+  metrics.area = std::max(metrics.area, least);
+  metrics.counter_area = std::max(metrics.counter_area, least);
   const Vec3 n = metrics.normal();
   if (n.isZero(0.0)) return metrics;
   // First from the surface of the flatter body, whose edges are edges of the leaves' surfaces.
   const double side = t.doubt[0] <= t.doubt[1] ? -1.0 : 1.0;
-  metrics.depth_moment = depth_moment(task, s, leaves, n, side, t.volume);
+  const OctreeScratch::ColumnSum columns = sum_columns(task, s, leaves, n, side, t.volume);
+  metrics.depth_moment = columns.moment;
+  // The ends of an overlap are known better than the columns between them. But one that is neither
+  // convex nor on a plane may reach around what it lies on.
+  if (!(task.a.convex && task.b.convex) && metrics.flatness() < kPlanePatch) {
+    metrics.depth = columns.depth;
+    return metrics;
+  }
   const double depth = farthest(task, s, leaves, n) + farthest(task, s, leaves, -n);
   metrics.depth = std::isfinite(depth) ? std::max(0.0, depth) : 0.0;
   return metrics;
@@ -162,7 +186,10 @@ void octree_interference(const SolidView& a, const SolidView& b, const Pose& X_A
     out.total.status = Status::kUnbounded;
     return;
   }
-  if (a.own.volume == 0.0 || b.own.volume == 0.0) return;
+  const auto is_nothing = [](const SolidView& view) {
+    return view.own.volume == 0.0 && view.own.volume_error == 0.0;
+  };
+  if (is_nothing(a) || is_nothing(b)) return;
   const OverlapWindow window = find_window(a, b, X_AB, scratch.hull, scratch.part);
   if (window.apart) return;
   Crew crew;

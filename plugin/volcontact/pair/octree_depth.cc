@@ -126,6 +126,7 @@ OctreeScratch::ColumnSum ColumnPass::total(const OctreeScratch::Columns& columns
     const double volume = columns.starts[i].area * length;
     sum.volume += volume;
     sum.moment += volume * lever;
+    sum.depth = std::max(sum.depth, length);
   }
   return sum;
 }
@@ -150,6 +151,7 @@ OctreeScratch::ColumnSum ColumnPass::sum(LeafRange leaves, int levels, bool fine
   for (int task = 0; task < tasks; ++task) {
     all.volume += s_.partial_columns[task].volume;
     all.moment += s_.partial_columns[task].moment;
+    all.depth = std::max(all.depth, s_.partial_columns[task].depth);
   }
   return all;
 }
@@ -194,8 +196,9 @@ double farthest_in(const OctreeTask& task, OctreeScratch& s, int leaf, const Vec
 
 // L may have kinks where no leaf ends; the volume, known better, tells whether the columns saw
 // them. Columns are followed from one side, then from the other, then more densely.
-double depth_moment(const OctreeTask& task, OctreeScratch& scratch, LeafRange leaves, const Vec3& n,
-                    double first_side, double volume) {
+OctreeScratch::ColumnSum sum_columns(const OctreeTask& task, OctreeScratch& scratch,
+                                     LeafRange leaves, const Vec3& n, double first_side,
+                                     double volume) {
   struct Density {
     int levels;
     bool fine;
@@ -216,11 +219,11 @@ double depth_moment(const OctreeTask& task, OctreeScratch& scratch, LeafRange le
         least_error = error;
         best = sum;
       }
-      if (error <= allowed) return best.moment;
+      if (error <= allowed) return best;
     }
     if (levels > 0 && least_error > 0.5 * before) break;  // more of them would not help
   }
-  return best.moment;
+  return best;
 }
 
 double farthest(const OctreeTask& task, OctreeScratch& s, LeafRange leaves, const Vec3& e) {

@@ -12,10 +12,12 @@ struct LeafRange {
   bool all = true;  ///< there is no other site
 };
 
-/// int L^2/2 dA along the normal n, by columns from the leaves' surfaces; `first_side` (1 or -1)
-/// tells from which side, in terms of n, to try first. `volume` is what the columns must add up to.
-double depth_moment(const OctreeTask& task, OctreeScratch& scratch, LeafRange leaves, const Vec3& n,
-                    double first_side, double volume);
+/// Columns along the normal n, from the leaves' surfaces: int L^2/2 dA and the longest L. From
+/// which side to try first, in terms of n, `first_side` (1 or -1) tells. `volume` is what they must
+/// add up to.
+OctreeScratch::ColumnSum sum_columns(const OctreeTask& task, OctreeScratch& scratch,
+                                     LeafRange leaves, const Vec3& n, double first_side,
+                                     double volume);
 
 /// Largest height e . x of the overlap over the origin of W.
 double farthest(const OctreeTask& task, OctreeScratch& scratch, LeafRange leaves, const Vec3& e);

@@ -49,6 +49,7 @@ struct OctreeScratch {
   };
   struct ColumnSum {
     double volume = 0.0, moment = 0.0;
+    double depth = 0.0;  ///< length of the longest one
   };
 
   PieceList pieces_a, pieces_b;

@@ -15,6 +15,11 @@ namespace outer_rule {
 inline constexpr double kTarget = 5e-2;      ///< share of the tolerance asked: no more division
 inline constexpr double kEvenTarget = 1e-2;  ///< the same of even steps, where a kink may be hidden
 inline constexpr int kMaxDepth = 4;          ///< of divisions of an arc
+inline constexpr double kCloserTarget = 1e-2;  ///< of the target, on a closer look
+inline constexpr int kCloserDepth = 2;         ///< more of divisions then
+/// Of V: a surface as far from closed as this is an answer, to any tolerance, but an approximate
+/// one.
+inline constexpr double kLeastOpen = 1e-3;
 inline constexpr double kInnerError = 3e-6;  ///< of the rule along a half-plane, per V; as measured
 }  // namespace outer_rule
 

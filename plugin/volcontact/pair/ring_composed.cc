@@ -59,8 +59,10 @@ bool ring_composed(const Torus& torus, const Pose& X_AB, const InterferenceOptio
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const LinesPiece& piece = pieces[i];
     const std::size_t before = regions.size();
-    add_ring_regions(torus, piece.body, X_AB * piece.X_SB, options, ring, regions,
-                     RingSurface::kTorus);
+    if (!add_ring_regions(torus, piece.body, X_AB * piece.X_SB, options, ring, regions,
+                          RingSurface::kTorus)) {
+      return false;
+    }
     if (regions.size() == before) continue;
     if (piece.bores) {
       for (const Bore& bore : *piece.bores) {

@@ -36,9 +36,11 @@ void RingFan::accept_batch() {
   total_.area += batch_.area;
   for (int i = 0; i < 3; ++i) total_.vector[i] += batch_.vector[i];
   for (int i = 0; i < 2; ++i) total_.moment[i] += batch_.moment[i];
+  for (int i = 0; i < 3; ++i) total_.across_rho[i] += batch_.across_rho[i];
   total_.least_inside = std::min(total_.least_inside, batch_.least_inside);
   for (int i = 0; i < faces_.fan.round_count; ++i) {
-    total_.round_area[i] += batch_.round_area[i];
+    for (int k = 0; k < 9; ++k) total_.rounds[i].sums[k] += batch_.rounds[i].sums[k];
+    total_.rounds[i].area += batch_.rounds[i].area;
   }
   for (int i = 0; i < faces_.fan.active_planes; ++i) {
     for (int k = 0; k < 4; ++k) total_.planes[i].sums[k] += batch_.planes[i].sums[k];

@@ -22,14 +22,15 @@ struct RingFaces {
 
 /// Sums over sections of the overlap, in the ring's frame and about its center.
 struct RingSums {
-  double moments[10];   ///< int dV times 1, x, y, z, xx, xy, yy, xz, yz, zz
-  double radial;        ///< int rho dV
-  double area;          ///< of the ring's surface in the body
-  double vector[3];     ///< int n dS over it
-  double moment[2];     ///< x and y of int x cross n dS; that about the axis vanishes
-  double least_inside;  ///< least squared distance from the middle of the tube
-  double round_area[FanFaces::kMaxRounds];  ///< of the body's faces in the ring
-  FanSums::OnPlane* planes;                 ///< as many as there are planes
+  double moments[10];    ///< int dV times 1, x, y, z, xx, xy, yy, xz, yz, zz
+  double radial;         ///< int rho dV
+  double area;           ///< of the ring's surface in the body
+  double vector[3];      ///< int n dS over it
+  double moment[2];      ///< x and y of int x cross n dS; that about the axis vanishes
+  double least_inside;   ///< least squared distance from the middle of the tube
+  double across_rho[3];  ///< int n_rho rho dS over it, times xx, xy, yy of the direction
+  FanSums::OnRound rounds[FanFaces::kMaxRounds];  ///< of the body in the ring; no zz
+  FanSums::OnPlane* planes;                       ///< as many as there are planes
 };
 
 /// The overlap of a ring and a convex body in half-planes through the axis of the ring, eight at a
@@ -43,6 +44,8 @@ class RingFan {
   void set(const FaceSet& faces, double major_radius, double minor_radius);
   /// For what set() brings next; as Fan::choose_rule().
   void choose_rule(double tolerance) { fan_.choose_rule(tolerance); }
+  /// For what set() brings next; as Fan::look_closer().
+  void look_closer() { fan_.look_closer(); }
   const RingFaces& faces() const { return faces_; }
   /// The plane of the body behind a plane of the sums.
   int plane_face(int i) const { return faces_.fan.planes[i].face; }

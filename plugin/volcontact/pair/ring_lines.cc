@@ -6,6 +6,7 @@
 
 #include "volcontact/pair/even_steps.h"
 #include "volcontact/pair/even_turn.h"
+#include "volcontact/pair/fan_metrics.h"
 #include "volcontact/pair/outer_rule.h"
 #include "volcontact/pair/ring_breaks.h"
 
@@ -20,6 +21,9 @@ constexpr double kNearRangeEnd = 3e-4;  // of a range: to which its ends are kno
 constexpr double kOnAxis = 1e-8;        // of a plane from the axis, per radius
 constexpr double kEndError = 5.0;       // error by its estimate where an arc ends in nothing
 constexpr double kTarget = 1e-2;  // share of the tolerance asked of an arc: kinks may be hidden
+// Where two silhouettes come near each other the normals in the check of the surface converge far
+// less fast than V: on a closer look a gap this many times as large is another one's error.
+constexpr double kGapShare = 0.1;
 constexpr double kWhole = 0.999;  // share of a solid in the overlap, that is all of it
 
 class RingRun {
@@ -35,14 +39,18 @@ class RingRun {
         regions_(regions),
         surface_(surface) {}
 
-  void run() {
+  bool run() {
     set_faces();
-    s_.fan.choose_rule(options_.tolerance);
-    s_.fan.set(s_.faces, torus_.major_radius(), torus_.minor_radius());
+    set_fan();
     find_ring_sites(body_, X_, s_.path, s_.fan, s_.sites);
-    if (s_.sites.ranges.empty()) return;
+    if (s_.sites.ranges.empty()) return true;
     find_ring_breaks(s_.faces, torus_.major_radius(), torus_.minor_radius(), s_.breaks);
-    for (const RingRange& range : s_.sites.ranges) integrate(range);
+    for (const RingRange& range : s_.sites.ranges) {
+      integrate(range);
+      if (is_open(std::max(options_.tolerance, outer_rule::kLeastOpen))) return false;
+      add_region();
+    }
+    return true;
   }
 
  private:
@@ -110,10 +118,36 @@ class RingRun {
     range.high = corners_.back();
   }
 
+  void set_fan() {
+    s_.fan.choose_rule(options_.tolerance);
+    if (closer_) s_.fan.look_closer();
+    s_.fan.set(s_.faces, torus_.major_radius(), torus_.minor_radius());
+  }
+
   void integrate(RingRange range) {
+    if (closer_) {
+      closer_ = false;
+      set_fan();
+    }
+    set_corners(range);
+    integrate_corners(range);
+    if (!is_open(options_.tolerance)) return;
+    const double volume = s_.fan.total().moments[0];
+    closer_ = true;
+    set_fan();
+    integrate_corners(range);
+    open_ = std::max(kGapShare * open_, std::abs(s_.fan.total().moments[0] - volume));
+  }
+
+  bool is_open(double tolerance) const { return open_ > tolerance * s_.fan.total().moments[0]; }
+  double target() const {
+    return (closer_ ? outer_rule::kCloserTarget : 1.0) * kTarget * options_.tolerance;
+  }
+  int depth() const { return outer_rule::kMaxDepth + (closer_ ? outer_rule::kCloserDepth : 0); }
+
+  void integrate_corners(const RingRange& range) {
     s_.fan.clear();
     error_ = volume_scale_ = 0.0;
-    set_corners(range);
     const bool done =
         range.whole
             ? s_.breaks.empty() && integrate_even_turn(s_.fan, s_.path, options_.tolerance, error_)
@@ -129,7 +163,32 @@ class RingRun {
         integrate_arc(arc, 0.0, 1.0, 0);
       }
     }
-    add_region();
+    open_ = openness();
+  }
+
+  // How far from closed the surface is, see SurfaceFlux. A face through the axis is not in the
+  // sums.
+  double openness() const {
+    if (has_axial_plane()) return 0.0;
+    const RingSums& sums = s_.fan.total();
+    const FanFaces& fan = s_.fan.faces().fan;
+    const double* m = sums.across_rho;
+    SurfaceFlux::Axes axes, of_torus;
+    axes << Vec3::UnitX(), Vec3::UnitY();
+    of_torus << sums.vector[0], sums.vector[1], m[0], m[1], m[1], m[2];
+    SurfaceFlux flux(axes);
+    flux.add(of_torus);
+    for (int i = 0; i < fan.active_planes; ++i) {
+      flux.add_plane(s_.faces.planes[s_.fan.plane_face(i)].normal, sums.planes[i].sums);
+    }
+    for (int i = 0; i + 1 < fan.round_count; ++i) {
+      flux.add_round(fan.rounds[i], sums.rounds[i].sums);
+    }
+    const double* v = sums.moments;
+    if (!(v[0] > 0.0)) return 0.0;
+    const Vec3 middle = Vec3(v[1], v[2], v[3]) / v[0];
+    const double spread = (v[4] + v[6] + v[9]) / v[0] - middle.squaredNorm();
+    return flux.open(v[0], middle.head<2>(), std::sqrt(std::max(spread, 0.0)));
   }
 
   // A range without breaks. At its ends sections mostly grow like an odd power of the root of the
@@ -150,7 +209,7 @@ class RingRun {
     double volume;
     error_ = steps.error(section, volume);
     volume_scale_ = volume;
-    if (error_ > outer_rule::kTarget * options_.tolerance * volume) {
+    if (error_ > outer_rule::kTarget * options_.tolerance * volume || closer_) {
       error_ = 0.0;
       return false;
     }
@@ -158,7 +217,7 @@ class RingRun {
     return true;
   }
 
-  void integrate_arc(const Arc& arc, double x_from, double x_to, int depth) {
+  void integrate_arc(const Arc& arc, double x_from, double x_to, int divisions) {
     double u[kLanes], v[kLanes], weight[kLanes], section[kLanes];
     for (int i = 0; i < kLanes; ++i) {
       double angle, speed;
@@ -172,10 +231,10 @@ class RingRun {
     for (int i = 0; i < kLanes; ++i) volume += section[i] *= weight[i];
     const double error = (arc.begins || arc.ends ? kEndError : 1.0) * legendre_error(section);
     volume_scale_ = std::max(volume_scale_, volume);
-    if (error > kTarget * options_.tolerance * volume_scale_ && depth < outer_rule::kMaxDepth) {
+    if (error > target() * volume_scale_ && divisions < depth()) {
       const double middle = 0.5 * (x_from + x_to);
-      integrate_arc(arc, x_from, middle, depth + 1);
-      integrate_arc(arc, middle, x_to, depth + 1);
+      integrate_arc(arc, x_from, middle, divisions + 1);
+      integrate_arc(arc, middle, x_to, divisions + 1);
       return;
     }
     error_ += error;
@@ -192,8 +251,9 @@ class RingRun {
     set_surface(sum);
     VolumeMetrics metrics = sum.metrics();
     if (!metrics.touching()) return;
-    metrics.volume_error = error_ + outer_rule::kInnerError * metrics.volume;
-    if (error_ > options_.tolerance * metrics.volume) metrics.status = Status::kApproximate;
+    const double error = std::max(error_, open_);
+    metrics.volume_error = error + outer_rule::kInnerError * metrics.volume;
+    if (error > options_.tolerance * metrics.volume) metrics.status = Status::kApproximate;
     set_depth(metrics);
     settle_contained(metrics);
     LinesRegion& region = regions_.add();
@@ -217,7 +277,7 @@ class RingRun {
       sum.area_vector -= x[0] * n;
       sum.area_moment -= Vec3(x[1], x[2], x[3]).cross(n);
     }
-    for (int i = 0; i + 1 < fan.round_count; ++i) sum.counter_area += sums.round_area[i];
+    for (int i = 0; i + 1 < fan.round_count; ++i) sum.counter_area += sums.rounds[i].area;
     const Vec3 of_torus(sums.vector[0], sums.vector[1], sums.vector[2]);
     if (flat) {
       // A face through the axis lies in one half-plane, of which the sums see nothing.
@@ -299,29 +359,32 @@ class RingRun {
   RingSurface surface_;
   std::vector<double>& corners_ = s_.corners;
   double error_ = 0.0, volume_scale_ = 0.0;
+  double open_ = 0.0;    // how far the surface is from closed
+  bool closer_ = false;  // more columns, since with fewer it was not
 };
 
 }  // namespace
 
-void add_ring_regions(const Torus& torus, const ConvexView& body, const Pose& X,
+bool add_ring_regions(const Torus& torus, const ConvexView& body, const Pose& X,
                       const InterferenceOptions& options, RingScratch& scratch,
                       LinesRegions& regions, RingSurface surface) noexcept {
-  RingRun(torus, body, X, options, scratch, regions, surface).run();
+  return RingRun(torus, body, X, options, scratch, regions, surface).run();
 }
 
-void ring_interference(const Torus& torus, const ConvexView& body, const Pose& X_AB,
+bool ring_interference(const Torus& torus, const ConvexView& body, const Pose& X_AB,
                        const InterferenceOptions& options, RingScratch& scratch,
                        LinesRegions& regions, Interference& out) noexcept {
   out.sites.clear();
   out.total = VolumeMetrics{};
-  if (!(torus.own_metrics().volume > 0.0) || !(body.own_metrics().volume > 0.0)) return;
+  if (!(torus.own_metrics().volume > 0.0) || !(body.own_metrics().volume > 0.0)) return true;
   regions.cut(0);
-  add_ring_regions(torus, body, X_AB, options, scratch, regions);
+  if (!add_ring_regions(torus, body, X_AB, options, scratch, regions)) return false;
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const VolumeMetrics& site = regions[i].metrics;
     out.total = i == 0 ? site : out.total + site;
     out.sites.push_back(site);
   }
+  return true;
 }
 
 }  // namespace volcontact

@@ -22,14 +22,14 @@ enum class RingSurface { kBest, kTorus };
 
 /// Regions of the overlap of a torus with a bounded convex body at the pose X in its frame, by
 /// columns in half-planes through the axis of the torus. Adds them to `regions`, in the frame of
-/// the torus, with the torus as A; one for every contact site. `volume_error` is an estimate.
-/// docs/theory.md, "Rings".
-void add_ring_regions(const Torus& torus, const ConvexView& body, const Pose& X,
+/// the torus, with the torus as A; one for every contact site. False where the surface it finds is
+/// not closed, so that part of the overlap may be missed. docs/theory.md, "Rings".
+bool add_ring_regions(const Torus& torus, const ConvexView& body, const Pose& X,
                       const InterferenceOptions& options, RingScratch& scratch,
                       LinesRegions& regions, RingSurface surface = RingSurface::kBest) noexcept;
 
-/// Interference of a torus with a convex body: metrics in the frame of the torus.
-void ring_interference(const Torus& torus, const ConvexView& body, const Pose& X_AB,
+/// Interference of a torus with a convex body: metrics in the frame of the torus. False as above.
+bool ring_interference(const Torus& torus, const ConvexView& body, const Pose& X_AB,
                        const InterferenceOptions& options, RingScratch& scratch,
                        LinesRegions& regions, Interference& out) noexcept;
 

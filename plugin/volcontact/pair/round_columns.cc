@@ -237,9 +237,9 @@ class RoundColumns {
       std::swap(s_.parts, s_.divided);
     }
     RoundSum sum = sum_parts(up);
-    const double depth = height_over(sum.low, up);
+    // A patch that is all edge on, as the sides of a bar through B, has no columns.
     for (std::size_t i = 0; i < slivers; ++i) {
-      if (s_.points.tip_depth[i] > kTipDepth * depth) return false;
+      if (s_.points.tip_depth[i] > kTipDepth * sum.longest) return false;
     }
     for (int round = 0; round < kMostRounds && !precise(sum); ++round) {
       divide_doubtful(sum);
@@ -257,18 +257,28 @@ class RoundColumns {
                      surface.area,
                      std::max(std::abs(sum.counter_area), surface.area_vector.norm())};
     patch.depth_moment = along_n.energy;
-    patch.depth = height_over(along_n.low, n.isZero(0.0) ? up : n);
+    patch.depth = longest_column(along_n, n.isZero(0.0) ? up : n);
     patch.volume_error = error_of(sum);
     return true;
   }
 
-  // How far the patch reaches along `up` over a height.
-  double height_over(double low, const Vec3& up) const {
-    double high = low;
-    for (const Triangle& t : s_.parts) {
-      for (const Vec3& p : t.corner) high = std::max(high, up.dot(p));
+  // Of those that were summed, and of those at the corners of the triangle that has it.
+  double longest_column(const RoundSum& sum, const Vec3& up) const {
+    double longest = sum.longest;
+    for (std::size_t i = 0; i < s_.parts.size(); ++i) {
+      if (s_.triangles.longest[i] < sum.longest) continue;
+      for (const Vec3& x : s_.parts[i].corner) longest = std::max(longest, column_from(x, up));
+      break;
     }
-    return high - low;
+    return longest;
+  }
+  double column_from(const Vec3& x, const Vec3& up) const {
+    double length = round_interval(solid_, x, -up).leave;
+    for (int k = 0; k < solid_.plane_count; ++k) {
+      const double speed = -solid_.plane_normal(k).dot(up);
+      if (speed > 0.0) length = std::min(length, -solid_.over_plane(k, x) / speed);
+    }
+    return std::isfinite(length) ? length : 0.0;
   }
 
   double error_of(const RoundSum& sum) const {

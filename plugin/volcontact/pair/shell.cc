@@ -32,7 +32,7 @@ class ShellRun {
     out_.total = VolumeMetrics{};
     out_.sites.clear();
     for (const SolidView& view : views_) {
-      if (view.own.volume == 0.0) return true;
+      if (view.own.volume == 0.0 && view.own.volume_error == 0.0) return true;
     }
     window_ = find_window(views_[0], views_[1], X_AB_, s_.hull, s_.part);
     if (window_.apart) return true;
@@ -340,7 +340,8 @@ class ShellRun {
   // No surface of the other solid: there is no direction.
   VolumeMetrics contained(VolumeMetrics metrics, int inner) const {
     const VolumeMetrics& own = views_[inner].own;
-    if (std::abs(own.volume - metrics.volume) <= kContained * metrics.volume) {
+    if (own.status == Status::kOk &&
+        std::abs(own.volume - metrics.volume) <= kContained * metrics.volume) {
       const Pose X_WS = inner == 0 ? window_.X_AW.inverse() : Pose(window_.X_AW.inverse() * X_AB_);
       metrics = transformed(own, X_WS);
     }

@@ -194,6 +194,23 @@ class Quickhull {
   std::vector<Face> faces_;
 };
 
+// The points over a power of two, so that the farthest coordinate is about 1, and rounded to
+// multiples of 2^-350, so that no product of three coordinates, nor its rounding error, underflows:
+// else a sum would not be exact. A coordinate above 1e-89 of the largest one keeps all its bits.
+std::vector<Vec3> scaled(const std::vector<Vec3>& points) {
+  double largest = 0.0;
+  for (const Vec3& p : points) largest = std::max(largest, p.lpNorm<Eigen::Infinity>());
+  if (largest == 0.0) return points;
+  constexpr int kFinest = 350;
+  const int exponent = std::ilogb(largest);
+  const auto rounded = [exponent](double x) {
+    return std::scalbn(std::nearbyint(std::scalbn(x, kFinest - exponent)), -kFinest);
+  };
+  std::vector<Vec3> result;
+  for (const Vec3& p : points) result.emplace_back(rounded(p.x()), rounded(p.y()), rounded(p.z()));
+  return result;
+}
+
 }  // namespace
 
 int side_of_plane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
@@ -221,7 +238,8 @@ std::vector<std::array<int, 3>> convex_hull(const std::vector<Vec3>& points) {
     require(points[i].allFinite(),
             "convex_polytope: vertex " + std::to_string(i) + " is not finite");
   }
-  return Quickhull(points).triangles();
+  const std::vector<Vec3> tame = scaled(points);
+  return Quickhull(tame).triangles();
 }
 
 }  // namespace volcontact

@@ -5,6 +5,8 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <sstream>
+#include <stdexcept>
 #include <utility>
 
 #include "volcontact/base/fields.h"
@@ -154,10 +156,25 @@ ConvexPolytope::Face make_face(const Loop& loop, const std::vector<Vec3>& vertic
   return face;
 }
 
+// Fifth powers of lengths, of which inertia is made, are to be numbers.
+void check_size(const std::vector<Vec3>& points) {
+  constexpr double kLeast = 1e-50, kMost = 1e50;
+  double largest = 0.0;
+  for (const Vec3& p : points) {
+    largest = std::max(largest, (p - points[0]).lpNorm<Eigen::Infinity>());
+  }
+  if (largest >= kLeast && largest <= kMost) return;
+  std::ostringstream text;
+  text << "convex_polytope: the vertices are up to " << largest << " m apart; must be " << kLeast
+       << " to " << kMost;
+  throw std::invalid_argument(text.str());
+}
+
 }  // namespace
 
 ConvexPolytope::ConvexPolytope(const std::vector<Vec3>& points) {
   const std::vector<Triangle> triangles = convex_hull(points);
+  check_size(points);
   auto data = std::make_shared<Data>();
   TetrahedronSum sum{points[triangles[0][0]], {}};
   data->bounds = {sum.origin, sum.origin};

@@ -54,6 +54,8 @@ struct Csg::Data {
   std::vector<Member> members;
   std::vector<Step> steps;
   Aabb bounds;
+  double most_volume = 0.0;
+  int most_parts = 0;
   mutable std::once_flag pieces_once, carved_once, metrics_once;
   mutable PieceList pieces;
   mutable std::vector<CarvedPiece> carved;
@@ -74,6 +76,24 @@ Csg::Csg(const std::shared_ptr<Data>& data) : data_(data) {
     if (low > high) low = high = 0.5 * (low + high);
     data->bounds.max[i] = high;
     data->bounds.min[i] = low;
+  }
+  data->most_volume = evaluate<double>(
+      data_->steps,
+      [&](int i) {
+        return std::visit([](const auto& shape) { return shape.own_metrics().volume; },
+                          data_->members[i].shape);
+      },
+      [](Operation operation, double& a, double b) {
+        if (operation == Operation::kUnion) a += b;
+        if (operation == Operation::kIntersection) a = std::min(a, b);
+      });
+  if (data_->bounds.bounded()) {
+    const double box = (data_->bounds.max - data_->bounds.min).prod();
+    data->most_volume = std::min(data->most_volume, box);
+  }
+  // Each member begins and ends a part at most as often as a line has parts in it.
+  for (const Member& member : data_->members) {
+    data->most_parts += std::holds_alternative<Torus>(member.shape) ? 2 : 1;
   }
 }
 
@@ -121,6 +141,10 @@ const std::vector<Csg::Member>& Csg::members() const { return data_->members; }
 const std::vector<Csg::Step>& Csg::steps() const { return data_->steps; }
 
 Aabb Csg::bounds() const { return data_->bounds; }
+
+double Csg::most_volume() const { return data_->most_volume; }
+
+int Csg::most_parts() const { return data_->most_parts; }
 
 double Csg::support_height(const Vec3& e) const {
   return evaluate<double>(

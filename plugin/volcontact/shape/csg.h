@@ -67,7 +67,12 @@ class Csg {
   double support_height(const Vec3& e) const;
   double signed_distance(const Vec3& p) const;
   Vec3 gradient(const Vec3& p) const;
-  /// Closed form where the carved pieces allow, else a quadrature to 1e-8 of the volume.
+  /// The volume is no larger: of the members, counted as if unions had nothing in common and
+  /// nothing were cut off [m^3].
+  double most_volume() const;
+  /// Most parts of a straight line within the solid.
+  int most_parts() const;
+  /// Closed form where the carved pieces allow, else by lines to 1e-8, or approximate at a budget.
   VolumeMetrics own_metrics() const;
 
   /// Pieces with disjoint interiors whose faces are surface all over or not at all; none when a

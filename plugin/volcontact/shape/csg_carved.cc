@@ -2,6 +2,7 @@
 #include "volcontact/shape/csg_carved.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 
 #include "volcontact/shape/csg_bores.h"
@@ -47,7 +48,7 @@ class Carver {
   bool fills(const Carvings& a, const Carvings& b) const;
   Carvings united(const Carvings& a, const Carvings& b) const;
   Carvings met(const Carvings& a, const Carvings& b) const;
-  std::optional<Carving> met(const Carving& piece, const Carving& other) const;
+  Carvings met(const Carving& piece, const Carving& other) const;
   Carving part(const Carving& of, PosedShape body) const;
   bool reach(const PartHull& hull, const std::vector<MemberFace>& faces) const;
   bool inside(const Carving& piece, const MemberFace& round) const;
@@ -231,13 +232,14 @@ Carvings Carver::united(const Carvings& a, const Carvings& b) const {
   return *best;
 }
 
-// The part of a piece within the body of another one, carved by both.
-std::optional<Carving> Carver::met(const Carving& piece, const Carving& other) const {
+// The part of a piece within the body of another one, carved by both: several pieces where the
+// carved faces of the two cross.
+Carvings Carver::met(const Carving& piece, const Carving& other) const {
   const auto convex_parts = faces_of(other.body);
   const bool apart =
       std::none_of(convex_parts.begin(), convex_parts.end(),
                    [&](const std::vector<MemberFace>& faces) { return reach(piece.hull, faces); });
-  if (apart) return std::nullopt;
+  if (apart) return {};
   if (convex_parts.size() != 1) throw NotPossible{};
   Carving rest = piece;
   for (const MemberFace& face : convex_parts[0]) {
@@ -247,7 +249,7 @@ std::optional<Carving> Carver::met(const Carving& piece, const Carving& other) c
     }
     Split halves = split(rest.body, face, size_);
     if (!halves.possible) throw NotPossible{};
-    if (!halves.inside) return std::nullopt;
+    if (!halves.inside) return {};
     rest = part(rest, std::move(*halves.inside));
   }
   Carvings one{std::move(rest)};
@@ -256,20 +258,20 @@ std::optional<Carving> Carver::met(const Carving& piece, const Carving& other) c
     for (Carving& carving : one) carve(std::move(carving), round, next);
     one.swap(next);
   }
-  return one.empty() ? std::nullopt : std::optional<Carving>(one[0]);
+  return one;
 }
 
 Carvings Carver::met(const Carvings& a, const Carvings& b) const {
   Carvings all;
   for (const Carving& one : a) {
     for (const Carving& two : b) {
-      std::optional<Carving> both;
+      Carvings both;
       try {
         both = met(one, two);
       } catch (const NotPossible&) {
         both = met(two, one);
       }
-      if (both) all.push_back(std::move(*both));
+      std::move(both.begin(), both.end(), std::back_inserter(all));
     }
   }
   return all;

@@ -131,7 +131,7 @@ VolumeMetrics csg_own_metrics(const Csg& solid) {
         member.X_SM);
   }
   if (const auto sum = closed_form(solid)) return sum->metrics();
-  return csg_metrics_by_lines(solid);
+  return csg_metrics_by_lines(solid, kMostLineWork);
 }
 
 }  // namespace volcontact

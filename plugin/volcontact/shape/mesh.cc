@@ -164,8 +164,12 @@ Mesh::Nearest Mesh::nearest(const Vec3& p) const {
       return a.squared != b.squared ? a.squared > b.squared : a.child > b.child;
     });
   }
-  const Triangle& corners = mesh.triangles[best_triangle];
   const std::vector<Vec3>& faces = data_->face_normals;
+  if (best_triangle < 0) {  // p is no number, or so far away that squares overflow
+    const Vec3& corner = mesh.vertices[mesh.triangles[0][0]];
+    return {(p - corner).stableNorm(), corner, false, faces[0]};
+  }
+  const Triangle& corners = mesh.triangles[best_triangle];
   Vec3 outward = faces[best_triangle];
   if (best_feature >= 4) {
     outward = data_->corner_normals[corners[best_feature - 4]];

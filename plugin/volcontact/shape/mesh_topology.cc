@@ -31,6 +31,12 @@ void check(const std::vector<Vec3>& vertices, const std::vector<Triangle>& trian
     }
   }
   for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const auto& [a, b, c] = triangles[t];
+    if (a == b || b == c || c == a) {
+      throw std::invalid_argument("mesh: triangle " + std::to_string(t) + " names vertex " +
+                                  std::to_string(b == c ? b : a) +
+                                  " twice; a triangle has three corners: leave it out");
+    }
     for (int corner : triangles[t]) {
       if (corner < 0 || corner >= static_cast<int>(vertices.size())) {
         throw std::invalid_argument("mesh: triangle " + std::to_string(t) + " names vertex " +

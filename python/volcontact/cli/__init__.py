@@ -8,7 +8,12 @@ ran and MuJoCo or volcontact warned of the numbers, 130 interrupted.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+import contextlib
+import os
+import signal
+import sys
+import threading
+from collections.abc import Iterator, Sequence
 
 import mujoco
 
@@ -44,8 +49,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = make_parser().parse_args(argv)
     terminal = Terminal(json=getattr(arguments, "json", False))
     try:
-        with terminal.python_warnings():
+        with _ended_as_by_hand(), terminal.python_warnings():
             status: int = arguments.execute(arguments, terminal)
+            terminal.flush()
             return status
     except KeyboardInterrupt:
         terminal.error("interrupted")
@@ -59,6 +65,33 @@ def main(argv: Sequence[str] | None = None) -> int:
     except (ValueError, OSError, RuntimeError, mujoco.FatalError) as error:
         terminal.error(str(error) or type(error).__name__)
         return _ERROR
+    finally:
+        _give_up_output()
+
+
+@contextlib.contextmanager
+def _ended_as_by_hand() -> Iterator[None]:
+    """Within it SIGTERM and SIGHUP end the program as Ctrl-C does, so that it tidies up."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP)}
+    taken = [number for number, handler in before.items() if handler == signal.SIG_DFL]
+    for number in taken:
+        signal.signal(number, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        for number in taken:
+            signal.signal(number, before[number])
+
+
+def _give_up_output() -> None:
+    """Drops what standard output does not take, so that Python does not try again at its end."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def make_parser() -> argparse.ArgumentParser:

@@ -16,6 +16,7 @@ from rich.markup import escape
 from rich.table import Table
 
 import volcontact
+from volcontact._files import appearing
 from volcontact.cli.arguments import add_command, add_keys, pixels
 from volcontact.cli.terminal import Terminal
 
@@ -162,7 +163,8 @@ def _draw(
         picture = renderer.draw(
             data.qpos, sites=recorded_sites(sites), style=style, view=arguments.camera
         )
-    arguments.picture.write_bytes(png(picture))
+    with appearing(arguments.picture) as file:
+        file.write_bytes(png(picture))
 
 
 def _print(description: dict[str, Any], terminal: Terminal) -> None:

@@ -14,6 +14,7 @@ from rich.padding import Padding
 from rich.table import Table
 
 import volcontact
+from volcontact._files import appearing_in
 from volcontact.cli.arguments import add_command, add_keys, add_time, pixels, positive
 from volcontact.cli.status import report_warnings
 from volcontact.cli.terminal import Terminal
@@ -80,7 +81,7 @@ def add_to(commands: Subparsers) -> None:
 
 def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     """Runs the command and returns the exit status."""
-    from volcontact.report import Comparison, Limits, write_report
+    from volcontact.report import Comparison, Limits, files, fill_report
     from volcontact.report.design_pose import read_design_pose, read_peak_limits
     from volcontact.simulation import simulate
 
@@ -89,7 +90,9 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
         limits = Limits(
             arguments.force_limit, arguments.torque_limit, read_peak_limits(arguments.scene)
         )
-        # Before the runs, so that a machine without OpenGL says so at once.
+        # Before the runs, so that a place that cannot be written to says so at once, and a machine
+        # without OpenGL.
+        folder = stack.enter_context(appearing_in(arguments.out, files.ALL))
         renderer = None if arguments.no_frames else stack.enter_context(_renderer(arguments))
         bars = stack.enter_context(terminal.progress())
         volumetric, native = (
@@ -114,13 +117,14 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             volcontact_version=volcontact.__version__,
             limits=limits,
         )
-        report = write_report(
+        fill_report(
             comparison,
-            arguments.out,
+            folder,
             renderer=renderer,
             camera=arguments.camera,
             progress=bars.task("pictures"),
         )
+    report = arguments.out / files.REPORT
     if terminal.json:
         terminal.result({**comparison.summary(), "report": str(report)})
     else:
@@ -144,7 +148,7 @@ def _print(comparison: Comparison, report: Path, terminal: Terminal) -> None:
 
     table = Table("", "volumetric", "native", box=None, pad_edge=False)
     for row in key_figures_side_by_side(comparison):
-        table.add_row(row.name, row.volumetric, row.native)
+        table.add_row(*map(escape, (row.name, row.volumetric, row.native)))
     terminal.out.print(table)
     colors = {"good": "green", "bad": "red", "plain": "bold"}
     for finding in findings(comparison):

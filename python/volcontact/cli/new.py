@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from rich.markup import escape
 
+from volcontact._files import appearing_in
 from volcontact.cli.arguments import plain_command
 from volcontact.cli.terminal import Terminal
 
@@ -58,13 +59,15 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     scene = folder / "scene.xml"
     template = _FOLDER / arguments.template
     written = []
-    for source in sorted(path for path in template.rglob("*") if path.is_file()):
-        target = folder / source.relative_to(template)
-        target.parent.mkdir(parents=True, exist_ok=True)
-        # The comments of the template say what to type next.
-        content = source.read_text(encoding="utf-8")
-        target.write_text(re.sub(r"\bSCENE\b", str(scene), content), encoding="utf-8")
-        written.append(str(target))
+    with appearing_in(folder) as new:
+        for source in sorted(path for path in template.rglob("*") if path.is_file()):
+            name = source.relative_to(template)
+            target = new / name
+            target.parent.mkdir(parents=True, exist_ok=True)
+            # The comments of the template say what to type next.
+            content = source.read_text(encoding="utf-8")
+            target.write_text(re.sub(r"\bSCENE\b", str(scene), content), encoding="utf-8")
+            written.append(str(folder / name))
     if terminal.json:
         terminal.result({"scene": str(scene), "files": written})
         return 0

@@ -4,14 +4,17 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import mujoco
+from rich.markup import escape
 from rich.table import Table
 
 import volcontact
+from volcontact._files import appearing_in
 from volcontact.cli.arguments import add_command, add_keys, add_time
 from volcontact.cli.status import report_warnings
 from volcontact.cli.terminal import Terminal
@@ -43,19 +46,25 @@ def add_to(commands: Subparsers) -> None:
         "--out",
         type=Path,
         metavar="DIR",
-        help="write summary.json and trajectory.parquet into this folder",
+        help="write summary.json, trajectory and sites into this folder, for an earlier report's",
     )
     parser.set_defaults(execute=execute)
 
 
 def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     """Runs the command and returns the exit status."""
+    from volcontact.report import files
     from volcontact.report.comparison import run_summary
     from volcontact.report.design_pose import read_design_pose
     from volcontact.simulation import simulate
 
     design = read_design_pose(arguments.scene)
-    with terminal.progress() as bars:
+    with contextlib.ExitStack() as stack:
+        # Before the run, so that a place that cannot be written to says so at once.
+        folder = None
+        if arguments.out is not None:
+            folder = stack.enter_context(appearing_in(arguments.out, files.ALL))
+        bars = stack.enter_context(terminal.progress())
         recording = simulate(
             arguments.scene,
             contact=arguments.contact,
@@ -66,18 +75,17 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             frame_interval=None,
             progress=bars.task(f"{arguments.contact} contact"),
         )
-    summary = {
-        arguments.contact: run_summary(recording, design),
-        "mujoco_version": mujoco.mj_versionString(),
-        "volcontact_version": volcontact.__version__,
-    }
-    if arguments.out is not None:
-        from volcontact.report.table import write_table
+        summary = {
+            arguments.contact: run_summary(recording, design),
+            "mujoco_version": mujoco.mj_versionString(),
+            "volcontact_version": volcontact.__version__,
+        }
+        if folder is not None:
+            from volcontact.report.table import write_table
 
-        arguments.out.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(summary, indent=2, allow_nan=False) + "\n"
-        (arguments.out / "summary.json").write_text(text, encoding="utf-8")
-        write_table((recording,), arguments.out / "trajectory.parquet")
+            text = json.dumps(summary, indent=2, allow_nan=False) + "\n"
+            (folder / files.SUMMARY).write_text(text, encoding="utf-8")
+            write_table((recording,), folder / files.TRAJECTORY)
     if terminal.json:
         terminal.result(summary)
     else:
@@ -85,7 +93,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
 
         table = Table("", arguments.contact, box=None, pad_edge=False)
         for name, text in key_figures(recording, design):
-            table.add_row(name, text)
+            table.add_row(escape(name), escape(text))
         terminal.out.print(table)
         if arguments.out is not None:
             terminal.out.print(f"written to {arguments.out}", markup=False)

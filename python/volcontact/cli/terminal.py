@@ -9,10 +9,27 @@ import time
 import warnings
 from collections.abc import Callable, Iterator
 
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderableType
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+from rich.segment import Segment
+
+from volcontact.printable import printable
 
 _PATIENCE = 0.7  # a bar appears when the work has taken so long [s]
+
+
+class SafeConsole(Console):
+    """A console that spells out control characters of what it is given: names may have any."""
+
+    def render(
+        self, renderable: RenderableType, options: ConsoleOptions | None = None
+    ) -> Iterator[Segment]:
+        """As of `Console`; its own colours and movements stay."""
+        for segment in super().render(renderable, options):
+            if segment.control:
+                yield segment
+            else:
+                yield Segment(printable(segment.text), segment.style)
 
 
 class Terminal:
@@ -24,18 +41,34 @@ class Terminal:
 
     def __init__(self, *, json: bool = False) -> None:
         self.json = json
-        self.out = Console(highlight=False, soft_wrap=json)
-        self.log = Console(stderr=True, highlight=False)
+        self.out = SafeConsole(highlight=False, soft_wrap=json)
+        self.log = SafeConsole(stderr=True, highlight=False)
 
     def result(self, content: object) -> None:
         """Prints a result for machines."""
-        self.out.out(json_format.dumps(content, indent=2), highlight=False)
+        try:
+            self.out.out(json_format.dumps(content, indent=2), highlight=False)
+        except OSError as error:
+            raise _named(error) from error
+        self.flush()
+
+    def flush(self) -> None:
+        """Sees to it that all that was printed has arrived.
+
+        Raises:
+            OSError: it cannot; says that it is standard output.
+        """
+        try:
+            self.out.file.flush()
+        except OSError as error:
+            raise _named(error) from error
 
     def error(self, message: str) -> None:
         """Prints one line that says what is wrong."""
         line = " ".join(message.split())
         if self.json:
-            self.result({"error": line})
+            with contextlib.suppress(OSError):  # which may be what is wrong
+                self.result({"error": line})
         self.log.print("error:", style="bold red", end=" ")
         self.log.print(line, markup=False, soft_wrap=True)
 
@@ -68,6 +101,11 @@ class Terminal:
             yield bars
         finally:
             bars.close()
+
+
+def _named(error: OSError) -> OSError:
+    """The error of a stream, whose name Python leaves out."""
+    return type(error)(error.errno, error.strerror, "standard output")
 
 
 class ProgressBars:

@@ -3,17 +3,16 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import re
 import stat
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from volcontact._files import appearing
 from volcontact.meshes.obj import read_obj
 from volcontact.meshes.off import HEADER, read_off
 from volcontact.meshes.ply import ply_bytes, read_ply
@@ -86,18 +85,8 @@ def write_mesh(
     name = os.fspath(path)
     content = _bytes_of(name, vertices, faces)
     try:
-        handle, part = tempfile.mkstemp(dir=Path(name).parent, prefix=".volcontact-")
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(content)
-            mask = os.umask(0)
-            os.umask(mask)
-            Path(part).chmod(0o666 & ~mask)
-            Path(part).replace(name)
-        except BaseException:
-            with contextlib.suppress(OSError):
-                Path(part).unlink()
-            raise
+        with appearing(name) as part:
+            part.write_bytes(content)
     except OSError as error:
         raise MeshFileError(
             f"{name}: {error.strerror}. Choose a place that can be written."

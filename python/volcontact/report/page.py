@@ -12,6 +12,7 @@ import jinja2
 import numpy as np
 from markupsafe import Markup
 
+from volcontact.printable import printable
 from volcontact.recording import Frame, Recording
 from volcontact.report import palette
 from volcontact.report.comparison import Comparison
@@ -41,6 +42,7 @@ def page(comparison: Comparison, pairs: list[FramePair], made: list[Curve]) -> s
         trim_blocks=True,
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
+        finalize=_seen,
     )
     run = comparison.volumetric
     parts = tables(run.description)
@@ -61,6 +63,11 @@ def page(comparison: Comparison, pairs: list[FramePair], made: list[Curve]) -> s
         by_weight=run.weight > 0.0,
         colors=palette,
     )
+
+
+def _seen(value: object) -> object:
+    """What a template is given: names may have control characters; figures are made without."""
+    return printable(value) if type(value) is str else value
 
 
 def title_of(scene: str) -> str:
@@ -104,7 +111,7 @@ def _site_rows(run: Recording, frame: Frame) -> list[list[str]]:
         along = abs(float(site["force"] @ site["normal"]))
         rows.append(
             [
-                f"{run.geoms[site['geom_a']]} with {run.geoms[site['geom_b']]}",
+                printable(f"{run.geoms[site['geom_a']]} with {run.geoms[site['geom_b']]}"),
                 quantity(along, "N"),
                 quantity(float(np.sqrt(max(forces[i] ** 2 - along**2, 0.0))), "N"),
                 quantity(float(np.linalg.norm(site["torque"])), "N m"),

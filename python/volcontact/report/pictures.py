@@ -133,10 +133,31 @@ def write_movie(pairs: list[FramePair], path: Path) -> bool:
         ffmpeg_log_level="error",
     )
     film.send(None)
-    for sheet in sheets:
-        film.send(np.ascontiguousarray(sheet[:height, :width]))
+    try:
+        for sheet in sheets:
+            film.send(np.ascontiguousarray(sheet[:height, :width]))
+    except OSError as error:
+        reason = str(error).split("\n", 1)[0]
+        raise OSError(f"{path.name}: the film cannot be written: {reason}") from error
     film.close()
+    if not _is_whole_film(path):  # the encoder ends without a word
+        raise OSError(f"{path.name}: the film was cut short: is the disk full?")
     return True
+
+
+def _is_whole_film(path: Path) -> bool:
+    """Whether an MP4 file has its index and all of its boxes."""
+    place, size, kinds = 0, path.stat().st_size if path.exists() else 0, set()
+    with path.open("rb") if size else io.BytesIO() as file:
+        while place < size:
+            file.seek(place)
+            head = file.read(16)
+            length = int.from_bytes(head[:4], "big")
+            if length == 1:  # a long one, with its length behind
+                length = int.from_bytes(head[8:16], "big")
+            kinds.add(head[4:8])
+            place += max(length, 8)
+    return b"moov" in kinds and place == size
 
 
 def png(picture: np.ndarray, colors: int | None = None) -> bytes:

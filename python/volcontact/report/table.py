@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.csv as csv
 import pyarrow.parquet as pq
 
+from volcontact.printable import cell
 from volcontact.recording import CHANNELS, Recording
 
 _UNITS = {
@@ -99,7 +100,13 @@ def _flat(table: pa.Table) -> pa.Table:
             text = pa.types.is_dictionary(field.type)
             arrays.append(column.cast(pa.string()) if text else column)
             names.append(field.name + head)
+    arrays = [_cells(array) if pa.types.is_string(array.type) else array for array in arrays]
+    names = [cell(name) for name in names]
     return pa.table(arrays, names=names)
+
+
+def _cells(column: pa.ChunkedArray) -> pa.Array:
+    return pa.array([cell(text) for text in column.to_pylist()], pa.string())
 
 
 def _table(run: Recording) -> pa.Table:

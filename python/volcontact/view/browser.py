@@ -16,6 +16,7 @@ from volcontact.render import default_view
 from volcontact.report.palette import NATIVE, VOLUMETRIC, rgb
 from volcontact.view.drawing import SiteDrawing, Triangles
 from volcontact.view.geoms import geom_triangles
+from volcontact.view.guard import Guard, guarded
 from volcontact.view.stage import Stage
 
 _PERIOD = 1.0 / 30.0  # of moving bodies [s]
@@ -30,23 +31,34 @@ class Page(Closing):
 
     Args:
         stage: what to show.
-        host: from which machines it may be opened; "127.0.0.1" is this one alone.
+        host: from which machines it may be opened; "127.0.0.1" is this one alone. Any other takes
+            the token that `address` ends in.
         port: to listen at; the next free one where it is taken.
 
     Attributes:
         address: to open in the browser.
 
     Raises:
-        RuntimeError: viser is not installed.
+        ModuleNotFoundError: viser is not installed.
+        RuntimeError: its server cannot be guarded.
     """
 
     def __init__(self, stage: Stage, *, host: str = "127.0.0.1", port: int = 8080) -> None:
         import viser
 
         self._stage = stage
-        self._server = viser.ViserServer(host=host, port=port, label="volcontact", verbose=False)
+        guard = Guard(host)
+        with guarded(guard) as started:
+            self._server = viser.ViserServer(
+                host=host, port=port, label="volcontact", verbose=False
+            )
+        if not started.is_set():  # the page would be open to every web site
+            self.close()
+            raise RuntimeError(
+                f"viser {viser.__version__} starts its server in a way that volcontact cannot guard"
+            )
         shown = "localhost" if host in ("127.0.0.1", "0.0.0.0") else host
-        self.address = f"http://{shown}:{self._server.get_port()}"
+        self.address = f"http://{shown}:{self._server.get_port()}{guard.query}"
         self._bodies = list(self._add_geoms())
         self._labels: list[Any] = []
         self._things: dict[str, Any] = {}

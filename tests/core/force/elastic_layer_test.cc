@@ -41,6 +41,21 @@ TEST(ElasticLayer, SeriesDampingIsThatOfTwoLayersToFirstOrder) {
   EXPECT_NEAR((pressure / elastic - 1.0) / v, series_damping(kA, aA, kB, aB), 1e-5);
 }
 
+// Two equal springs in series are half as stiff, and share the deformation, however stiff they are.
+TEST(ElasticLayer, StiffnessesToTheEndsOfTheirRange) {
+  for (const double k : {1e-300, 1e-160, 1.0, 1e160, 1e300, 1e308, 1.7e308}) {
+    EXPECT_EQ(series_stiffness(k, k), 0.5 * k);
+    EXPECT_EQ(share_of_first(k, k), 0.5);
+    EXPECT_EQ(series_damping(k, 0.5, k, 1.5), 1.0);
+    EXPECT_NEAR(series_restitution(k, 0.7, k, 0.7), 0.7, 1e-12);
+    EXPECT_EQ(series_stiffness(1.0, k), series_stiffness(k, 1.0));
+  }
+  EXPECT_EQ(series_stiffness(1e308, 1e-300), 1e-300);
+  EXPECT_EQ(share_of_first(1e308, 1e-300), 0.0);
+  EXPECT_EQ(share_of_first(1e-300, 1e308), 1.0);
+  EXPECT_DOUBLE_EQ(share_of_first(1e8, 3e8), 0.75);
+}
+
 TEST(ElasticLayer, EqualRestitutionsStay) {
   EXPECT_NEAR(series_restitution(1e8, 0.7, 3e8, 0.7), 0.7, 1e-12);
   EXPECT_THROW(series_restitution(1e8, 0.0, 3e8, 0.7), std::invalid_argument);

@@ -35,7 +35,7 @@ ContactReport report_of(const ContactModel& model, const BodyMotion& motion,
 
 // Wrench on A about `point` [m] of the world.
 Vec6 wrench_at(const ContactReport& report, const BodyMotion& motion, const Vec3& point) {
-  const Wrench w = report.wrench_on_A.about(point - motion.X_WA.translation);
+  const Wrench w = report.wrench_on_A().about(point - motion.X_WA.translation);
   Vec6 out;
   out << w.torque, w.force;
   return out;

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include "core/support/csg_solids.h"
 #include "core/support/evaluated.h"
 #include "core/support/gradient.h"
+#include "core/support/random.h"
 #include "volcontact/pair/gauss.h"
 #include "volcontact/pair/interference.h"
+#include "volcontact/shape/csg_metrics.h"
 
 namespace volcontact::bored_lines_test {
 namespace {
@@ -179,6 +182,105 @@ TEST(BoredLines, ABodyBesideTheBoreIsAsOnAWholeBlock) {
   const VolumeMetrics expected = evaluated(whole, bar, X, Engine::kClip).total;
   EXPECT_NEAR(out.total.volume, expected.volume, 1e-6 * expected.volume);
   EXPECT_TRUE(out.total.area_vector.isApprox(expected.area_vector, 1e-6));
+}
+
+constexpr double kTilts[] = {0.0, 1e-15, 1e-12, 1e-8, 1e-7, 1e-6};  // [rad]
+
+// The tube of the capsule runs along the columns then, or nearly. Against the lengths of lines
+// through both solids, upright; a tilt moves no face by more than its angle times 0.4 m.
+TEST(BoredLines, ACapsuleThatStandsInABlockBesideTheBore) {
+  using namespace testing;
+  const Csg bored = box(.3, .3, .2) - tube(.15, .4);
+  const Csg counterbored = box(.3, .3, .2) - tube(.1, .4) - tube(.2, .1, at(0, 0, .15));
+  struct Case {
+    Csg block;
+    double radius;
+    Vec3 place;
+  };
+  const Case cases[] = {{bored, .2, {.1, 0, .2}},
+                        {bored, .15, {.05, 0, .1}},
+                        {bored, .1, {.2, .1, -.1}},
+                        {counterbored, .2, {.1, 0, .2}},
+                        {counterbored, .15, {0, .05, 0}}};
+  for (const auto& [block, radius, place] : cases) {
+    const Capsule pill({.radius = radius, .half_length = .2});
+    const VolumeMetrics exact =
+        csg_metrics_by_lines(block & Csg(pill, at(place.x(), place.y(), place.z())));
+    for (const double tilt : kTilts) {
+      const Pose X = turned({1, .3, 0}, tilt, place);
+      for (const bool swap : {false, true}) {
+        const VolumeMetrics m = swap ? transformed(evaluated(pill, block, X.inverse()).total, X)
+                                     : evaluated(block, pill, X).total;
+        EXPECT_EQ(m.status, Status::kOk);
+        EXPECT_NEAR(m.volume, exact.volume, 2e-4 * exact.volume + 0.4 * tilt) << "tilt " << tilt;
+        EXPECT_LE((m.centroid - exact.centroid).norm(), 1e-3 * radius + tilt);
+      }
+    }
+  }
+}
+
+// Wall on wall: no volume, wherever the two are and however they are turned.
+TEST(BoredLines, WhatFitsABoreExactlyTouchesNothing) {
+  using namespace testing;
+  const Csg block = box(.3, .3, .2) - tube(.15, .4), pipe = tube(.3, .3) - tube(.2, .4);
+  test::Random random(3);
+  for (int i = 0; i < 20; ++i) {
+    const Pose X = i == 0 ? Pose{} : random.pose(.3);
+    for (const double z : {0.0, .05, .2}) {
+      for (const auto& [hollow, radius] : {std::pair{block, .15}, {pipe, .2}}) {
+        const Shape fits[] = {
+            Capsule({.radius = radius, .half_length = .2}),
+            Cylinder({.radius = radius, .half_length = .25}), Sphere({.radius = radius}),
+            Frustum({.bottom_radius = radius, .top_radius = .1, .half_length = .1})};
+        for (const Shape& fit : fits) {
+          const Interference out = evaluated(hollow.posed(X), fit, X * at(0, 0, z));
+          EXPECT_LE(out.total.volume, 1e-15);
+          EXPECT_EQ(out.total.status, Status::kOk);
+        }
+      }
+    }
+  }
+}
+
+// A half-space against a pipe that lies on it: a segment of the outer circle less one of the bore,
+// which begins where the plane touches the bore.
+TEST(BoredLines, APlaneThatTouchesABoreCutsASegment) {
+  using namespace testing;
+  const Csg pipe = tube(.3, .3) - tube(.2, .4);
+  const auto segment = [](double r, double h) {
+    return h < r ? r * r * std::acos(h / r) - h * std::sqrt(r * r - h * h) : 0.0;
+  };
+  for (const double beyond : {0.0, 1e-15, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4}) {
+    for (const double side : {-1.0, 1.0}) {
+      const double h = .2 + side * beyond;
+      const Pose X = turned(Vec3::UnitX(), .5 * kPi, {0, 0, h});
+      const double expected = .6 * (segment(.3, h) - segment(.2, h));
+      const Interference out = evaluated(HalfSpace(), pipe, X);
+      EXPECT_NEAR(out.total.volume, expected, 1e-5 * expected) << "beyond " << side * beyond;
+      EXPECT_EQ(out.total.status, Status::kOk);
+      EXPECT_EQ(out.sites.size(), 1u);
+    }
+  }
+}
+
+// A rod across the bore whose end face lies in it: its corners reach past the ends of the lobe, by
+// little. Against the lengths of lines through both solids.
+TEST(BoredLines, CornersThatReachPastALobe) {
+  using namespace testing;
+  const Csg cup = tube(.3, .3) - tube(.2, .3, at(0, 0, .1));
+  for (const double end : {.06, .1, .14}) {
+    for (const double tilt : {0.0, 1e-4}) {
+      const double radius = .2;
+      const Cylinder rod({.radius = radius, .half_length = .1});
+      Pose X = at(end + .1, 0, .05);
+      X.rotation << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+      X.rotation = X.rotation * test::turn(Vec3::UnitX(), tilt);
+      const VolumeMetrics exact = csg_metrics_by_lines(cup & Csg(rod, X));
+      const Interference out = evaluated(cup, rod, X);
+      EXPECT_NEAR(out.total.volume, exact.volume, 1e-3 * exact.volume) << end << " " << tilt;
+      EXPECT_LE((out.total.centroid - exact.centroid).norm(), 1e-3 * radius);
+    }
+  }
 }
 
 TEST(BoredLines, AFreePegTouchesNothing) {

@@ -151,6 +151,163 @@ TEST(Columns, FlushFacesDoNotDisturb) {
   }
 }
 
+// How far off a flush place bodies are put: from nothing through rounding to what is seen.
+constexpr double kOffsets[] = {0.0, 1e-17, 1e-16, 1e-15, 1e-13, 1e-11, 1e-9, 1e-7, 1e-6};
+
+// A block between two planes: of its height what lies between them is left.
+TEST(Columns, AMeshFlushWithTwoOppositeFacesCountsOnce) {
+  const double h = 0.03, r = 0.034;
+  Random random(31);
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 half(0.05, 0.05, 0.05);
+    half[axis] = h;
+    half[(axis + 1) % 3] = 0.04;
+    const Box box({.half_sizes = half});
+    const std::vector<Shape> others = {box, test::polytope_of(box), mesh_of(box_soup(half)),
+                                       mesh_of(box_soup(half, 3))};
+    for (int sides = 3; sides <= 8; ++sides) {
+      // A prism of that many sides from face to face; in its plane it stays away from the others.
+      std::vector<Eigen::Vector2d> outline;
+      std::vector<Triangle> cuts;
+      for (int i = 0; i < sides; ++i) {
+        const double angle = 2.0 * kPi * i / sides;
+        outline.emplace_back(r * std::cos(angle), r * std::sin(angle));
+        if (i >= 2) cuts.push_back({0, i - 1, i});
+      }
+      const double base = 0.5 * sides * r * r * std::sin(2.0 * kPi / sides);
+      const Pose up{basis_with_z(Vec3::Unit(axis)), Vec3::Zero()};
+      const Mesh prism = mesh_of(test::prism_soup(outline, cuts, h).moved(up));
+      for (const Shape& other : others) {
+        for (double off : kOffsets) {
+          for (double sign : {-1.0, 0.0, 1.0}) {
+            Vec3 shift = random.in_box(1.0).cwiseProduct(half - Vec3::Constant(1.1 * r));
+            if (sign == 0.0) shift.setZero();
+            shift[axis] = sign * off;
+            const double expected = base * (2.0 * h - std::abs(shift[axis]));
+            for (const Interference& out : {evaluated(prism, other, {Mat3::Identity(), shift}),
+                                            evaluated(other, prism, {Mat3::Identity(), -shift})}) {
+              EXPECT_NEAR(out.total.volume, expected, 1e-13 * expected) << axis << sides << off;
+              EXPECT_NEAR(sum_of_sites(out), out.total.volume, 1e-15 * expected);
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+// The octahedron lies in the box, some of its corners on the walls: all of it counts, once.
+TEST(Columns, ABodyThatTouchesOppositeWallsFromWithinCountsOnce) {
+  Soup soup;
+  for (int i = 0; i < 6; ++i) soup.vertices.push_back((i & 1 ? -0.14 : 0.14) * Vec3::Unit(i / 2));
+  for (int i = 0; i < 8; ++i) {
+    const int x = i & 1, y = 2 + (i >> 1 & 1), z = 4 + (i >> 2 & 1);
+    const bool turned = (x + y + z) % 2 != 0;
+    soup.triangles.push_back({x, turned ? z : y, turned ? y : z});
+  }
+  const double expected = 4.0 / 3.0 * 0.14 * 0.14 * 0.14;
+  Random random(32);
+  for (int walls = 0; walls < 8; ++walls) {
+    Vec3 half;
+    for (int k = 0; k < 3; ++k) half[k] = (walls >> k & 1) != 0 ? 0.14 : 0.21;
+    for (int turn = 0; turn < 20; ++turn) {
+      const Pose X_WM{turn == 0 ? Mat3(Mat3::Identity()) : random.pose(0.0).rotation, Vec3::Zero()};
+      const Mesh a = mesh_of(box_soup(half).moved(X_WM)), b = mesh_of(soup.moved(X_WM));
+      for (double off : {0.0, 1e-17, 1e-16, 1e-15}) {
+        const Pose X_AB = shifted(-off, 0.0, off);
+        EXPECT_NEAR(evaluated(a, b, X_AB).total.volume, expected, 1e-12 * expected) << walls;
+        EXPECT_NEAR(evaluated(b, a, X_AB).total.volume, expected, 1e-12 * expected) << walls;
+      }
+    }
+  }
+}
+
+// Clipping of its three boxes is the oracle. Tilts and shifts from rounding on: faces of the two
+// bodies that nearly coincide, seen nearly edge on.
+TEST(Columns, ABlockFlushInAChannelMeetsItAsItsBoxes) {
+  const double unit = 0.1, depth = 0.2;
+  const Soup channel = test::channel_soup(unit, depth);
+  Random random(33);
+  const auto one_of = [&](std::initializer_list<double> list) {
+    return list
+        .begin()[static_cast<int>(random.uniform(0.0, 0.999) * static_cast<double>(list.size()))];
+  };
+  int touching = 0;
+  for (int i = 0; i < 1500; ++i) {
+    Vec3 size, shift;
+    for (int k = 0; k < 3; ++k) {
+      size[k] = unit * one_of({1.0, 2.0, 3.0, 4.0, 5.0, 6.0});
+      shift[k] = (k == 0   ? 0.3
+                  : k == 1 ? 0.25
+                           : 0.2) *
+                     one_of({-1.0, 0.0, 1.0}) +
+                 0.5 * size[k] * one_of({-1.0, 0.0, 1.0}) +
+                 one_of({0.0, 1e-15, 1e-12, 1e-9, 1e-7}) * one_of({-1.0, 0.0, 1.0});
+    }
+    const Pose X_AB{test::turn(random.direction(), std::pow(10.0, random.uniform(-15.0, -3.0))),
+                    shift};
+    double expected = 0.0, doubt = 5e-16;
+    for (const auto& [middle, half] : test::channel_boxes(unit, depth)) {
+      const Pose X{X_AB.rotation, X_AB.translation - middle};
+      const VolumeMetrics m =
+          evaluated(Box({.half_sizes = half}), Box({.half_sizes = 0.5 * size}), X).total;
+      expected += m.volume;
+      doubt += m.volume_error;
+    }
+    touching += expected > 0.0;
+    // In frames that nothing is aligned with.
+    const Pose X_WM{random.pose(0.0).rotation, Vec3::Zero()};
+    const Mesh a = mesh_of(channel.moved(X_WM)), b = mesh_of(box_soup(0.5 * size).moved(X_WM));
+    const Pose X = X_WM * X_AB * X_WM.inverse();
+    for (const Interference& out : {evaluated(a, b, X), evaluated(b, a, X.inverse())}) {
+      EXPECT_NEAR(out.total.volume, expected, doubt + out.total.volume_error) << i;
+      EXPECT_LE(out.total.volume_error, 1e-12) << i;
+    }
+  }
+  EXPECT_GT(touching, 500);
+}
+
+// The window on the patch holds the arm of the channel in part, below what it looks at.
+TEST(Columns, AnArmBelowTheWindowIsNoPartOfThePatch) {
+  const double unit = 0.07, depth = 0.07;
+  const Mesh channel = mesh_of(test::channel_soup(unit, depth));
+  Soup soup = box_soup(Vec3(0.21, 0.21, 0.21));
+  Random random(34);
+  for (int i = 0; i < 400; ++i) {
+    const double off = std::pow(10.0, random.uniform(-17.0, -1.0));
+    const Pose X_AB{
+        test::turn(random.direction(), off * random.uniform(-1.0, 1.0)) *
+            test::turn(Vec3::UnitZ(), 0.25 * kPi * static_cast<int>(random.uniform(0.0, 7.999))),
+        Vec3(-0.105, -0.035, 0.0) + off * random.in_box(0.1)};
+    double expected = 0.0;
+    for (const auto& [middle, half] : test::channel_boxes(unit, depth)) {
+      const Pose X{X_AB.rotation, X_AB.translation - middle};
+      expected +=
+          evaluated(Box({.half_sizes = half}), Box({.half_sizes = Vec3(0.21, 0.21, 0.21)}), X)
+              .total.volume;
+    }
+    EXPECT_NEAR(evaluated(channel, mesh_of(soup), X_AB).total.volume, expected, 1e-11 * expected)
+        << i;
+  }
+}
+
+TEST(Columns, TheSameSurfaceTwiceIsExactWhateverItsSize) {
+  const Soup soup = test::bumpy_soup(6, 5);  // 81,920 triangles
+  const Mesh mesh = mesh_of(soup);
+  Random random(35);
+  const Pose X_AB = random.pose(0.4);
+  for (const Interference& out : {evaluated(mesh, mesh, Pose{}),
+                                  evaluated(mesh, mesh_of(soup.moved(X_AB.inverse())), X_AB)}) {
+    const VolumeMetrics own = mesh.own_metrics();
+    EXPECT_EQ(out.total.status, Status::kContained);
+    EXPECT_NEAR(out.total.volume, own.volume, 1e-13 * own.volume);
+    EXPECT_LE((out.total.centroid - own.centroid).norm(), 1e-13);
+    EXPECT_LE(std::abs(out.total.volume - own.volume), out.total.volume_error);
+    EXPECT_LE(out.total.volume_error, 1e-11 * own.volume);
+    EXPECT_EQ(out.sites.size(), 1u);
+  }
+}
+
 TEST(Columns, ABodyInsideOfAnotherIsContained) {
   const Mesh outer = mesh_of(test::bumpy_soup(3, 1)),
              inner = mesh_of(box_soup(Vec3(0.2, 0.3, 0.1)));

@@ -3,9 +3,11 @@
 // Holes with a cone for a wall: cups and chamfers.
 #include <gtest/gtest.h>
 
+#include "core/support/csg_solids.h"
 #include "core/support/evaluated.h"
 #include "core/support/gradient.h"
 #include "volcontact/pair/interference.h"
+#include "volcontact/shape/csg_metrics.h"
 
 namespace volcontact::cone_bores_test {
 namespace {
@@ -133,6 +135,26 @@ TEST(ConeBores, AgreeWithTheCertifiedBounds) {
     EXPECT_NEAR(out.total.volume, octree.volume, 2e-3 * octree.volume) << c.name;
     EXPECT_NEAR(out.total.area, octree.area, 0.02 * octree.area) << c.name;
     EXPECT_NEAR(out.total.counter_area, octree.counter_area, 0.02 * octree.counter_area) << c.name;
+  }
+}
+
+// The apex of the cone lies in the tube of the capsule, and a ball behind it. Against the lengths
+// of lines through both solids.
+TEST(ConeBores, ACapsuleThatHoldsTheApexOfAChamfer) {
+  const Pose above = testing::at(0, 0, .15);
+  const Csg slab = without(testing::box(.3, .3, .05, above), testing::cone(.15, .25, .05, above));
+  for (const double half_length : {.1, .3}) {
+    const Capsule pill({.radius = .25, .half_length = half_length});
+    for (const double z : {-.2, 0.0}) {
+      for (const double x : {.05, .2}) {
+        const Pose X = testing::at(x, -.1, z);
+        const VolumeMetrics exact = csg_metrics_by_lines(slab & Csg(pill, X));
+        const Interference out = evaluated(slab, pill, X);
+        EXPECT_EQ(out.engine, Engine::kLines);
+        EXPECT_NEAR(out.total.volume, exact.volume, 1e-5 * exact.volume);
+        EXPECT_LE((out.total.centroid - exact.centroid).norm(), 1e-5);
+      }
+    }
   }
 }
 

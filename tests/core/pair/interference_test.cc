@@ -3,13 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <new>
+#include <tuple>
+#include <vector>
 
 #include "core/support/evaluated.h"
 #include "core/support/gradient.h"
 #include "core/support/matchers.h"
+#include "core/support/meshes.h"
 #include "core/support/random_shapes.h"
 #include "volcontact/pair/geometric_pair.h"
 
@@ -260,6 +264,67 @@ TEST(Interference, TheValueHasNoHistory) {
       EXPECT_EQ(result.total.area_moment, fresh.total.area_moment);
       EXPECT_EQ(result.total.depth_moment, fresh.total.depth_moment);
     }
+  }
+}
+
+// A peg that is off the axis of its bore by e presses on the wall by e less the play, whatever the
+// engine and the way the solids are written. The crescent of the overlap reaches much farther.
+TEST(Interference, DepthMeansTheSameInEveryEngine) {
+  const double r = 0.005, play = 2e-5, e = 2.13e-5;
+  const int sides = 720;
+  const Cylinder peg({.radius = r, .half_length = 0.02});
+  const Csg block(Csg::Operation::kDifference, Csg(Box({.half_sizes = Vec3(0.02, 0.02, 0.01)})),
+                  Csg(Cylinder({.radius = r + play, .half_length = 0.03})));
+  std::vector<Eigen::Vector2d> outline;
+  std::vector<Triangle> cuts;
+  for (int i = 0; i < sides; ++i) {
+    const double angle = 2.0 * kPi * i / sides;
+    outline.emplace_back(r * std::cos(angle), r * std::sin(angle));
+    if (i >= 2) cuts.push_back({0, i - 1, i});
+  }
+  const Mesh peg_mesh = test::mesh_of(test::prism_soup(outline, cuts, 0.02));
+  const Mesh sleeve = test::mesh_of(test::ring_soup(r + play, 0.02, 0.01, sides));
+  const double facet = r * (1.0 - std::cos(kPi / sides));  // of play that facets take or give
+  const std::tuple<Shape, Shape, Engine> cases[] = {{block, peg, Engine::kLines},
+                                                    {block, peg, Engine::kOctree},
+                                                    {block, peg_mesh, Engine::kColumns},
+                                                    {sleeve, peg_mesh, Engine::kColumns},
+                                                    {sleeve, peg, Engine::kColumns}};
+  int number = 0;
+  for (const auto& [a, b, engine] : cases) {
+    const Pose X_AB = test::shifted(e, 0.0, 0.0);
+    for (const Interference& out :
+         {evaluated(a, b, X_AB, engine), evaluated(b, a, X_AB.inverse(), engine)}) {
+      EXPECT_EQ(out.engine, engine);
+      ASSERT_EQ(out.sites.size(), 1u) << number;
+      EXPECT_NEAR(out.total.depth, e - play, 2.0 * facet) << number;
+      EXPECT_EQ(out.sites[0].depth, out.total.depth) << number;
+    }
+    ++number;
+  }
+}
+
+// Of a tip or ball on a plane face it is how far that reaches below the face.
+TEST(Interference, DepthIsHowFarATipReachesBelowAFace) {
+  const double depth = 0.01;
+  const Vec3 half(0.3, 0.3, 0.2);
+  const Box box({.half_sizes = half});
+  const Mesh mesh = test::mesh_of(test::box_soup(half, 2));
+  const Vec3 corner(0.1, 0.1, 0.1);
+  const Mat3 R = test::turn(Vec3(1.0, 2.0, 3.0), 0.4);
+  const Box tip({.half_sizes = corner});
+  const double reach = tip.support_height(-R.row(2).transpose());
+  const Sphere ball({.radius = 0.1});
+  for (const Shape& ground : {Shape(box), Shape(mesh)}) {
+    for (const Shape& other : {Shape(tip), Shape(test::mesh_of(test::box_soup(corner, 3)))}) {
+      const Pose X_AB{R, Vec3(0.02, 0.03, 0.2 + reach - depth)};
+      EXPECT_NEAR(evaluated(ground, other, X_AB).total.depth, depth, 1e-12);
+      EXPECT_NEAR(evaluated(other, ground, X_AB.inverse()).total.depth, depth, 1e-12);
+      EXPECT_NEAR(evaluated(ground, other, X_AB, Engine::kOctree).total.depth, depth, 0.1 * depth);
+    }
+    const Pose X_AB = test::shifted(0.02, 0.03, 0.3 - depth);
+    EXPECT_NEAR(evaluated(ground, ball, X_AB).total.depth, depth, 0.05 * depth);
+    EXPECT_NEAR(evaluated(ground, ball, X_AB, Engine::kOctree).total.depth, depth, 0.05 * depth);
   }
 }
 

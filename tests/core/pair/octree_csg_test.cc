@@ -39,6 +39,48 @@ TEST(OctreeCsg, BoundsHoldTheVolumeOfEveryKindOfSolid) {
   EXPECT_GT(touching, 20 / kEvery);
 }
 
+// Of a solid of several parts one or more lie in the other solid: that is not all of it, however
+// few cells there are to tell. Parts without pieces leave most doubt. Closed forms.
+TEST(OctreeCsg, PartsOfASolidWithinTheOtherCountOnce) {
+  const double slab = .2 * .02 * .16, ring = 2.0 * kPi * kPi * .1 * .02 * .02;
+  // Two slabs, of a block less another block that has a hole.
+  const Csg slabs =
+      (box(.1, .12, .08) - tube(.05, .3)) - (box(.12, .1, .09) - cone(.04, .015, .12));
+  const Csg torus(Torus({.major_radius = .1, .minor_radius = .02}));
+  const Csg rings = torus + torus.posed(at(.5, 0, 0));
+  const Csg boxes = box(.05, .05, .05) + box(.05, .05, .05, at(.5, 0, 0));
+  const Csg all = box(1, 1, 1);
+  struct Case {
+    Csg a, b;
+    double volume;
+  };
+  const Case cases[] = {{slabs, all, 2.0 * slab},
+                        {slabs, box(.3, .3, .3, at(0, .4, 0)), slab},
+                        {slabs, box(.3, .3, .3, at(0, -.4, 0)), slab},
+                        {rings, all, 2.0 * ring},
+                        {rings, box(.2, .2, .2), ring},
+                        {boxes, all, 2e-3},
+                        {boxes, box(.2, .2, .2), 1e-3}};
+  OctreeScratch scratch;
+  Interference out;
+  for (const auto& [a, b, volume] : cases) {
+    for (const int most_cells : {100, 1000, 20000}) {
+      for (const bool swap : {false, true}) {
+        const Csg &one = swap ? b : a, &other = swap ? a : b;
+        octree_interference(view_of(one), view_of(other), Pose{}, {.most_cells = most_cells},
+                            scratch, out);
+        EXPECT_LE(std::abs(out.total.volume - volume), out.total.volume_error + 1e-12);
+        double sum = 0.0;
+        for (const VolumeMetrics& site : out.sites) sum += site.volume;
+        EXPECT_NEAR(sum, out.total.volume, 1e-15);
+        if (out.total.status <= Status::kContained) {
+          EXPECT_NEAR(out.total.volume, volume, 1e-3 * volume);
+        }
+      }
+    }
+  }
+}
+
 // A cell longer than the bore is wide: its columns leave the solid and enter it again.
 TEST(OctreeCsg, TheFarSideOfABoreCounts) {
   Pose X;

@@ -217,10 +217,10 @@ TEST(OctreeSites, WrenchIsContinuousThroughMergeAndSplit) {
     const double above = std::max(0.0, depth - kRecess);
     const double left = kLeft * depth, right = kRight * depth, middle = kMiddle * above;
     const double force = kStiffness * (left + right + middle);
-    EXPECT_NEAR(report.wrench_on_A.force.z(), force, 1e-6 * force) << depth;
+    EXPECT_NEAR(report.wrench_on_A().force.z(), force, 1e-6 * force) << depth;
     // About A's origin: the torque about y is - x times the force along z.
     const double torque = -kStiffness * (0.015 * left + 0.055 * middle + 0.085 * right);
-    EXPECT_NEAR(report.wrench_on_A.torque.y(), torque, -1e-6 * torque) << depth;
+    EXPECT_NEAR(report.wrench_on_A().torque.y(), torque, -1e-6 * torque) << depth;
   }
 }
 

@@ -202,6 +202,39 @@ TEST(RoundColumns, ANeedleInTheMiddleIsNotAllOfTheBall) {
               1e-3 * volume);
 }
 
+// Lines through the box itself are the oracle. The area vector vanishes: nothing says where to
+// look.
+TEST(RoundColumns, ABarThroughTheMiddleTakesItsPart) {
+  const std::vector<Shape> solids = {
+      Sphere({.radius = 0.3}), Ellipsoid({.semi_axes = Vec3(0.3, 0.25, 0.35)}),
+      Cylinder({.radius = 0.3, .half_length = 0.2}), Capsule({.radius = 0.25, .half_length = 0.1}),
+      Frustum({.bottom_radius = 0.3, .top_radius = 0.2, .half_length = 0.2})};
+  Random random(21);
+  for (const Shape& b : solids) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3 half(0.1, 0.1, 0.1);
+      half[axis] = 0.4;
+      const Box box({.half_sizes = half});
+      const Mesh bar = mesh_of(box_soup(half, 1 + axis));
+      for (double off : {0.0, 1e-15, 1e-9, 1e-6}) {
+        for (int k = 0; k < 3; ++k) {
+          // Turned about the bar, and along it: the middle stays on its axis.
+          const Mat3 about = test::turn(Vec3::Unit(axis), k == 0 ? 0.0 : random.uniform(0.0, 6.0));
+          Pose X_AB{about * test::turn(random.direction(), off), off * random.in_box(1.0)};
+          if (k == 2) X_AB.translation[axis] += random.uniform(-0.05, 0.05);
+          const VolumeMetrics expected = evaluated(box, b, X_AB, Engine::kLines, 1e-4).total;
+          for (const VolumeMetrics& m :
+               {evaluated(bar, b, X_AB).total, evaluated(b, bar, X_AB.inverse()).total}) {
+            EXPECT_NEAR(m.volume, expected.volume, 1e-3 * expected.volume) << axis << off;
+            EXPECT_LE(std::abs(m.volume - expected.volume),
+                      2.0 * (m.volume_error + expected.volume_error));
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST(RoundColumns, EachTouchedWallIsASite) {
   // A ball wedged in a channel between two walls.
   const Mesh walls =

@@ -91,6 +91,39 @@ TEST(ConvexHull, OfPointsThatDifferByRounding) {
   expect_hull(convex_hull(points), points);
 }
 
+// Of integer points, whose sides are exact, one coordinate is made tiny: products of three
+// underflow. The hull of four points is their tetrahedron.
+TEST(ConvexHull, OfTetrahedraWithATinyCoordinate) {
+  Random random(5);
+  int count = 0;
+  for (const double tiny : {0.0, 1e-320, 1e-310, -1e-300, 1e-300, 1e-280, 1e-200, 1e-100}) {
+    for (int i = 0; i < 300; ++i) {
+      std::vector<Vec3> points;
+      for (int k = 0; k < 4; ++k) {
+        points.push_back((7.0 * random.in_box(1.0)).array().round().matrix() / 7.0);
+      }
+      points[i % 4][i % 3] = tiny;
+      const Vec3 a = points[0];
+      if (std::abs((points[1] - a).cross(points[2] - a).dot(points[3] - a)) < 1e-3) continue;
+      ++count;
+      EXPECT_EQ(convex_hull(points).size(), 4u);
+    }
+  }
+  EXPECT_GT(count, 1000);
+}
+
+TEST(ConvexHull, KeepsItsTopologyAtEverySize) {
+  Random random(6);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 30; ++i) points.push_back(random.in_box(1.0));
+  const std::vector<std::array<int, 3>> hull = convex_hull(points);
+  for (const int exponent : {-1000, -400, -200, 200, 400, 1000}) {
+    std::vector<Vec3> scaled;
+    for (const Vec3& p : points) scaled.push_back(std::ldexp(1.0, exponent) * p);
+    EXPECT_EQ(convex_hull(scaled), hull);
+  }
+}
+
 TEST(ConvexHull, RejectsWhatHasNoVolume) {
   Random random(3);
   std::vector<Vec3> flat;

@@ -182,6 +182,10 @@ TEST(ConvexPolytope, ErrorsNameCountAndReason) {
   std::vector<Vec3> points = box_corners(Vec3::Ones());
   points[5].y() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(message_of(points), "convex_polytope: vertex 5 is not finite");
+  EXPECT_EQ(message_of(box_corners(Vec3::Constant(1e-100))),
+            "convex_polytope: the vertices are up to 2e-100 m apart; must be 1e-50 to 1e+50");
+  EXPECT_EQ(message_of(box_corners(Vec3::Constant(1e100))),
+            "convex_polytope: the vertices are up to 2e+100 m apart; must be 1e-50 to 1e+50");
   EXPECT_EQ(message_of(box_corners(Vec3(1, 1, 0))),
             "convex_polytope: the 8 vertices lie in one plane, so their hull has no volume");
 }

@@ -126,6 +126,33 @@ TEST(Csg, HolesAreCarvedOnce) {
   EXPECT_EQ(carved(box(.3, .2, .1) - tube(.05, .05, at(0, 0, 5))), 0u);
 }
 
+// Two bores about one axis, a tube and a cone, each in a block of its own: what the blocks have in
+// common is bored by the wider one at every height, which are the pieces. Frusta and tubes.
+TEST(Csg, WhatBoredBlocksHaveInCommonKeepsAllItsPieces) {
+  const auto frustum = [](double r, double s, double h) {
+    return kPi * h * (r * r + r * s + s * s) / 3.0;
+  };
+  for (const double radius : {.01, .02, .03, .04}) {
+    const Csg both =
+        (box(.1, .1, .05) - tube(radius, .2)) & (box(.1, .1, .05) - cone(.005, .045, .05));
+    // The cone is as wide as the tube at this height over the bottom.
+    const double height = .1 * (radius - .005) / .04;
+    const double bored = kPi * radius * radius * height + frustum(radius, .045, .1 - height);
+    EXPECT_NEAR(both.own_metrics().volume, .004 - bored, 1e-14);
+    EXPECT_EQ(both.carved_pieces().size(), 2u);
+  }
+}
+
+TEST(Csg, MostVolumeAndMostPartsAreBounds) {
+  for (const NamedSolid& named : kinds_of_solids()) {
+    EXPECT_LE(named.solid.own_metrics().volume, (1.0 + 1e-9) * named.solid.most_volume());
+    EXPECT_LE(named.solid.most_volume(), 8.0 * named.solid.bounds().half_sizes().prod());
+    EXPECT_EQ(named.solid.most_parts(), static_cast<int>(named.solid.members().size()));
+  }
+  const Csg torus(Torus({.major_radius = .2, .minor_radius = .05}));
+  EXPECT_EQ((torus + box(.1, .1, .1)).most_parts(), 3);
+}
+
 TEST(Csg, SignedDistanceIsBoundedByTheDistanceAndGrowsAlongTheGradient) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> number(-0.4, 0.4);
@@ -193,6 +220,43 @@ TEST(Csg, VolumesOfUnionAndIntersectionAddUp) {
   const Csg ring(Torus({.major_radius = .2, .minor_radius = .05}));
   const Csg half = box(.3, .3, .3, at(.3, 0, 0));
   EXPECT_NEAR(volume(ring - half), 0.5 * volume(ring), kQuadrature * volume(ring));
+}
+
+// Where the budget ends the volume is an estimate that says so, within its error of the full
+// quadrature; the same bits each time. More work, less error.
+TEST(Csg, OwnMetricsWithinABudgetAreAnEstimateThatSaysSo) {
+  int approximate = 0;
+  for (const NamedSolid& named : kinds_of_solids()) {
+    const VolumeMetrics exact = named.solid.own_metrics();
+    for (const double work : {1e3, 1e4, 1e5}) {
+      const VolumeMetrics m = csg_metrics_by_lines(named.solid, work);
+      EXPECT_LE(std::abs(m.volume - exact.volume), m.volume_error + 1e-7 * exact.volume)
+          << named.name << " " << work;
+      const Aabb bounds = named.solid.bounds();
+      EXPECT_LE((m.centroid - exact.centroid).norm(),
+                bounds.half_sizes().norm() * (m.volume_error / exact.volume + 1e-7));
+      EXPECT_LE(m.volume_error, 20.0 / std::sqrt(work) * exact.volume);
+      if (m.status == Status::kOk) continue;
+      EXPECT_EQ(m.status, Status::kApproximate);
+      EXPECT_EQ(m.volume, csg_metrics_by_lines(named.solid, work).volume);
+      ++approximate;
+    }
+  }
+  EXPECT_GT(approximate, 60);
+}
+
+// Two tori about different axes, and more than a line can be cut with in any time.
+TEST(Csg, OwnMetricsOfManyToriEnd) {
+  const Csg torus(Torus({.major_radius = .2, .minor_radius = .05}));
+  const double one = 2.0 * kPi * kPi * .2 * .05 * .05;
+  Csg chain = torus;
+  for (int i = 1; i < 6; ++i) {
+    chain = chain + torus.posed(turned(Vec3::UnitX(), i % 2 * .5 * kPi, {.31 * i, 0, 0}));
+  }
+  const VolumeMetrics m = chain.own_metrics();
+  EXPECT_EQ(m.status, Status::kApproximate);
+  EXPECT_LE(std::abs(m.volume - 6.0 * one), m.volume_error);
+  EXPECT_LE(m.volume_error, 0.05 * m.volume);
 }
 
 TEST(Csg, ATorusLeavesNoPieces) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <stdexcept>
 
 #include "core/support/matchers.h"
@@ -55,6 +56,24 @@ TEST(Mesh, HollowBodyKnowsItsCavity) {
   EXPECT_FALSE(mesh.components().list[0].cavity);
   EXPECT_TRUE(mesh.components().list[1].cavity);
   EXPECT_NEAR(mesh.components().list[1].own.volume, 8.0, 1e-14);
+}
+
+// What is no point has no distance, one at infinity an infinite one, and the far one its own.
+TEST(Mesh, PointsThatAreNoneHaveADistance) {
+  const Mesh mesh = mesh_of(test::box_soup(kHalf, 4));
+  const double nan = std::nan("");
+  for (int i = 0; i < 3; ++i) {
+    Vec3 p = 0.1 * Vec3::Ones();
+    p[i] = nan;
+    EXPECT_TRUE(std::isnan(mesh.signed_distance(p)));
+    EXPECT_TRUE(mesh.gradient(p).hasNaN() || std::abs(mesh.gradient(p).norm() - 1.0) < 1e-12);
+    p[i] = kInfinity;
+    EXPECT_EQ(mesh.signed_distance(p), kInfinity);
+    mesh.gradient(p);
+    p[i] = -1e200;
+    EXPECT_DOUBLE_EQ(mesh.signed_distance(p), 1e200);
+    EXPECT_NEAR(mesh.gradient(p)[i], -1.0, 1e-12);
+  }
 }
 
 TEST(Mesh, RefusesASurfaceThatBoundsNothing) {

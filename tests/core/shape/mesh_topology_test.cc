@@ -57,7 +57,8 @@ TEST(MeshTopology, TurnsWhatIsInsideOutAsAWhole) {
 
 TEST(MeshTopology, DropsTrianglesThatLoseACorner) {
   Soup soup = box_soup(Vec3::Ones());
-  soup.triangles.push_back({0, 0, 1});
+  soup.vertices.push_back(soup.vertices[0]);
+  soup.triangles.push_back({0, static_cast<int>(soup.vertices.size()) - 1, 1});
   MeshTopology topology;
   EXPECT_TRUE(judged(soup, topology).none());
   EXPECT_EQ(topology.triangles.size(), 12u);
@@ -105,6 +106,12 @@ TEST(MeshTopology, RefusesWhatIsNoMesh) {
   };
   const Soup cube = box_soup(Vec3::Ones());
   EXPECT_TRUE(says(message({}, {}), "no triangles; a closed surface has at least 4"));
+  for (const Triangle& folded : {Triangle{4, 4, 1}, Triangle{4, 1, 4}, Triangle{1, 4, 4}}) {
+    Soup twice = cube;
+    twice.triangles.push_back(folded);
+    EXPECT_TRUE(says(message(twice.vertices, twice.triangles),
+                     "triangle 12 names vertex 4 twice; a triangle has three corners"));
+  }
   Soup bad = cube;
   bad.vertices[7].y() = std::nan("");
   EXPECT_TRUE(says(message(bad.vertices, bad.triangles), "vertex 7 is (1, nan"));

@@ -82,6 +82,8 @@ inline std::vector<NamedSolid> kinds_of_solids() {
        box(.2, .2, .2) - tube(.05, .5) -
            tube(.05, .5, turned(Vec3::UnitX(), kPi / 2, Vec3::Zero())),
        1},
+      {"bores that meet", (box(.2, .2, .1) - tube(.05, .5)) & (box(.2, .2, .1) - cone(.02, .1, .1)),
+       2},
       {"holes of one tool", box(.3, .2, .1) - (tube(.05, .5) + cone(.05, .07, .01, at(0, 0, .09))),
        2},
   };

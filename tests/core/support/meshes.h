@@ -149,4 +149,47 @@ inline Soup ring_soup(double inner, double outer, double half, int n) {
   return soup;
 }
 
+/// A prism along z over a polygon, counterclockwise; `cuts` are the triangles that it consists of.
+inline Soup prism_soup(const std::vector<Eigen::Vector2d>& polygon,
+                       const std::vector<Triangle>& cuts, double half) {
+  const int n = static_cast<int>(polygon.size());
+  Soup soup;
+  for (double z : {-half, half}) {
+    for (const Eigen::Vector2d& p : polygon) soup.vertices.emplace_back(p.x(), p.y(), z);
+  }
+  for (const Triangle& t : cuts) {
+    soup.triangles.push_back({t[0], t[2], t[1]});
+    soup.triangles.push_back({t[0] + n, t[1] + n, t[2] + n});
+  }
+  for (int i = 0; i < n; ++i) {
+    const int j = (i + 1) % n;
+    soup.triangles.push_back({i, j, n + j});
+    soup.triangles.push_back({i, n + j, n + i});
+  }
+  return soup;
+}
+
+/// A channel along z, open towards y: 6 wide, 5 high, its walls 1 thick, as everything by `unit`;
+/// around its middle. It is made of three boxes.
+inline Soup channel_soup(double unit, double half) {
+  std::vector<Eigen::Vector2d> outline;
+  for (const auto& [x, y] : {std::pair(-3.0, -2.5),
+                             {3.0, -2.5},
+                             {3.0, 2.5},
+                             {2.0, 2.5},
+                             {2.0, -1.5},
+                             {-2.0, -1.5},
+                             {-2.0, 2.5},
+                             {-3.0, 2.5}}) {
+    outline.emplace_back(unit * x, unit * y);
+  }
+  return prism_soup(outline, {{0, 1, 5}, {1, 4, 5}, {1, 2, 4}, {2, 3, 4}, {0, 5, 7}, {5, 6, 7}},
+                    half);
+}
+inline std::vector<std::pair<Vec3, Vec3>> channel_boxes(double unit, double half) {
+  return {{unit * Vec3(0.0, -2.0, 0.0), Vec3(3.0 * unit, 0.5 * unit, half)},
+          {unit * Vec3(-2.5, 0.5, 0.0), Vec3(0.5 * unit, 2.0 * unit, half)},
+          {unit * Vec3(2.5, 0.5, 0.0), Vec3(0.5 * unit, 2.0 * unit, half)}};
+}
+
 }  // namespace volcontact::test

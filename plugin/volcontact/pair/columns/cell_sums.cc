@@ -40,7 +40,7 @@ class Summation {
       : surfaces_{&a, &b}, path_(path) {}
 
   // The columns of a cell between its two faces, or from height 0 to one of them.
-  void add_columns(const ColumnCell& cell, bool from_f, bool to_g) {
+  void add_columns(const ColumnCell& cell, bool from_f, bool to_g, bool through) {
     const double weight = -cell.sign_f * cell.sign_g;
     const bool whole = from_f && to_g;
     double part_delta[kLanes], part_middle[kLanes];
@@ -50,8 +50,7 @@ class Summation {
       const double half = 0.5 * cell.delta[i];
       const double low = from_f ? cell.middle[i] - half : 0.0;
       const double high = to_g ? cell.middle[i] + half : 0.0;
-      if (from_f) low_ = std::min(low_, low);
-      if (to_g) high_ = std::max(high_, high);
+      if (through) depth_ = std::max(depth_, cell.delta[i]);
       part_delta[i] = high - low;
       part_middle[i] = 0.5 * (low + high);
     }
@@ -80,7 +79,7 @@ class Summation {
     const double ax = cell.slope_f[0], ay = cell.slope_f[1];
     const double steepness = 1.0 + ax * ax + ay * ay;
     sum_.moments.area += cell.sign_g * cell.area * std::sqrt(steepness);
-    sum_.seen += cell.area * steepness;
+    sum_.seen += cell.area * std::sqrt(steepness);
   }
 
   // The upright walls of A on the edges of f. Across an edge with a cell on either side the surface
@@ -107,7 +106,7 @@ class Summation {
     const double gx = cell.slope_g[0], gy = cell.slope_g[1];
     const double steepness = 1.0 + gx * gx + gy * gy;
     sum_.moments.counter_area -= cell.sign_f * cell.area * std::sqrt(steepness);
-    sum_.seen += cell.area * steepness;
+    sum_.seen += cell.area * std::sqrt(steepness);
   }
 
   void add_walls_of_b(const ColumnCell& cell) {
@@ -136,8 +135,7 @@ class Summation {
     m.area_vector += Vec3(totals[11], totals[12], -totals[13]);
     m.area_moment += Vec3(totals[14], totals[15], totals[16]) / 3.0;
     sum_.energy = totals[10] / 24.0;
-    sum_.low = low_;
-    sum_.high = high_;
+    sum_.depth = depth_;
     sum_.absolute = absolute_;
     return sum_;
   }
@@ -178,7 +176,7 @@ class Summation {
   ColumnTriangles triangles_;
   alignas(64) double lanes_[kSums][kLanes] = {};
   CellSum sum_;
-  double low_ = kInfinity, high_ = -kInfinity, absolute_ = 0.0;
+  double depth_ = 0.0, absolute_ = 0.0;
 };
 
 }  // namespace
@@ -186,8 +184,7 @@ class Summation {
 CellSum& CellSum::operator+=(const CellSum& other) {
   moments += other.moments;
   energy += other.energy;
-  low = std::min(low, other.low);
-  high = std::max(high, other.high);
+  depth = std::max(depth, other.depth);
   absolute += other.absolute;
   seen += other.seen;
   return *this;
@@ -201,7 +198,7 @@ CellSum sum_region(int region, const std::vector<ColumnCell>& cells,
     const bool in_f = region_of[i].of_f == region, in_g = region_of[i].of_g == region;
     if (region_of[i].of_wall_f == region) summation.add_walls_of_a(cells[i]);
     if (region_of[i].of_wall_g == region) summation.add_walls_of_b(cells[i]);
-    if (in_f || in_g) summation.add_columns(cells[i], in_f, in_g);
+    if (in_f || in_g) summation.add_columns(cells[i], in_f, in_g, region_of[i].through);
     if (in_f) summation.add_surface_of_a(cells[i]);
     if (in_g) summation.add_surface_of_b(cells[i]);
   }

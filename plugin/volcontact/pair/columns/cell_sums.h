@@ -8,12 +8,11 @@ namespace volcontact {
 
 /// Sums over the cells of one region, about the origin of C.
 struct CellSum {
-  MomentSum moments;             ///< with the area vector and moment of A's surface
-  double energy = 0.0;           ///< int delta^2/2 over the cells [m^4]
-  double low = 0.0, high = 0.0;  ///< extent along z [m]
-  double absolute = 0.0;         ///< sum of the magnitudes of what was added to the volume [m^3]
-  double seen = 0.0;             ///< area of the cells, by the square of what their faces lose
-                                 ///< when seen along z [m^2]: by so much rounding counts
+  MomentSum moments;      ///< with the area vector and moment of A's surface
+  double energy = 0.0;    ///< int delta^2/2 over the cells [m^4]
+  double depth = 0.0;     ///< length of the longest column that is all overlap [m]
+  double absolute = 0.0;  ///< sum of the magnitudes of what was added to the volume [m^3]
+  double seen = 0.0;      ///< area of the faces in the cells [m^2]: by so much rounding counts
 
   CellSum& operator+=(const CellSum& other);
 };

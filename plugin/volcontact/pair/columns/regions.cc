@@ -9,7 +9,8 @@
 namespace volcontact {
 namespace {
 
-constexpr double kNoArea = 1e-9;  // of the cells of a face: below, they cancel out
+constexpr double kNoArea =
+    4.0;  // by the rounding along the outlines of a face's cells: they cancel
 constexpr double kTouch = 1e-9;   // of an edge: how far a point may be off it
 constexpr int kMostStacked = 64;  // cells of a face that are compared with each other
 constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
@@ -158,6 +159,15 @@ bool is_blocked(const std::vector<ColumnCell>& cells, int cell, const Side& side
   });
 }
 
+// At most; what its corners are off by, times this, its area is off by.
+double length_of_outline(const ColumnCell& cell) {
+  double length = 0.0;
+  for (int i = 0, last = cell.count - 1; i < cell.count; last = i++) {
+    length += std::abs(cell.x[i] - cell.x[last]) + std::abs(cell.y[i] - cell.y[last]);
+  }
+  return length;
+}
+
 }  // namespace
 
 bool is_layered(const std::vector<ColumnCell>& cells) noexcept {
@@ -200,8 +210,8 @@ int find_regions_below(const ObbTree& a, std::vector<ColumnCell>& cells, RegionS
 
 }  // namespace
 
-int find_regions(const ObbTree& a, const ObbTree* b, std::vector<ColumnCell>& cells,
-                 RegionScratch& scratch) noexcept {
+int find_regions(const ObbTree& a, const ObbTree* b, double rounding,
+                 std::vector<ColumnCell>& cells, RegionScratch& scratch) noexcept {
   scratch.left_out = 0.0;
   if (b == nullptr && !is_layered(cells)) return find_regions_below(a, cells, scratch);
   const int count = static_cast<int>(cells.size());
@@ -217,15 +227,15 @@ int find_regions(const ObbTree& a, const ObbTree* b, std::vector<ColumnCell>& ce
   for (int s = 0; layered && s < 2; ++s) {
     const Side& side = kSides[s];
     for_faces(cells, scratch.order, side.face_of, [&](const int* first, const int* last) {
-      double net = 0.0, all = 0.0;
+      double net = 0.0, outlines = 0.0;
       bool mixed = false;
       for (const int* i = first; i != last; ++i) {
         const int sign = side.sign_of(cells[*i]);
         net += sign * cells[*i].area;
-        all += cells[*i].area;
+        outlines += length_of_outline(cells[*i]);
         mixed |= sign < 0;
       }
-      const int value = net <= kNoArea * all ? 0 : mixed ? 2 : 1;
+      const int value = net <= kNoArea * rounding * outlines ? 0 : mixed ? 2 : 1;
       if (value == 0) scratch.left_out += std::abs(net);
       for (const int* i = first; i != last; ++i) {
         state[2 * *i + side.offset] = value;
@@ -283,10 +293,10 @@ int find_regions(const ObbTree& a, const ObbTree* b, std::vector<ColumnCell>& ce
     return number;
   };
   for (int i = 0; i < count; ++i) {
-    scratch.region_of[i] = {region(2 * i, state[2 * i] != 0),
-                            region(2 * i + 1, state[2 * i + 1] != 0),
-                            region(2 * i, (cells[i].walls & kWalls[0]) != 0),
-                            region(2 * i + 1, (cells[i].walls & kWalls[1]) != 0)};
+    scratch.region_of[i] = {
+        region(2 * i, state[2 * i] != 0), region(2 * i + 1, state[2 * i + 1] != 0),
+        region(2 * i, (cells[i].walls & kWalls[0]) != 0),
+        region(2 * i + 1, (cells[i].walls & kWalls[1]) != 0), b == nullptr || solid[i] != 0};
   }
   return regions;
 }

@@ -13,6 +13,7 @@ namespace volcontact {
 struct CellRegion {
   int of_f, of_g;
   int of_wall_f, of_wall_g;  ///< of the upright faces on edges of f and of g
+  bool through = true;       ///< all of the column between the two faces is overlap
 };
 
 /// Memory of the search for regions.
@@ -34,10 +35,10 @@ struct RegionScratch {
 };
 
 /// Parts the cells into the connected regions of the overlap and marks the edges of cells across
-/// which there is no cell. Returns the number of regions; `scratch.region_of` has one entry per
-/// cell. docs/theory.md, "Columns".
-int find_regions(const ObbTree& a, const ObbTree* b, std::vector<ColumnCell>& cells,
-                 RegionScratch& scratch) noexcept;
+/// which there is no cell. By `rounding` corners of cells are off [m]. Returns the number of
+/// regions; `scratch.region_of` has one entry per cell. docs/theory.md, "Columns".
+int find_regions(const ObbTree& a, const ObbTree* b, double rounding,
+                 std::vector<ColumnCell>& cells, RegionScratch& scratch) noexcept;
 
 /// Whether the cells are stacked: a column passes through more than one face of A or of B.
 bool is_layered(const std::vector<ColumnCell>& cells) noexcept;

@@ -68,6 +68,7 @@ void RoundTriangles::resize(std::size_t count) {
     for (auto& values : of_corner) values.assign(count, 0.0);
   }
   doubt.assign(count, 0.0);
+  longest.assign(count, 0.0);
 }
 
 void RoundTriangles::set(std::size_t i, const Vec3& a, const Vec3& b, const Vec3& c) {

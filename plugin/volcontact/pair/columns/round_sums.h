@@ -13,6 +13,7 @@ namespace volcontact {
 struct RoundTriangles {
   std::vector<double> corner[3][3];  ///< corner[i][axis]
   std::vector<double> doubt;         ///< of what each adds to V [m^3]
+  std::vector<double> longest;       ///< of the columns on each [m]
   void resize(std::size_t count);
   void set(std::size_t i, const Vec3& a, const Vec3& b, const Vec3& c);
 };
@@ -31,13 +32,13 @@ struct RoundSum {
   Mat3 second = Mat3::Zero();
   double energy = 0.0;  ///< int L^2/2 over the columns' cross-section [m^4]
   double counter_area = 0.0;
-  double low = 0.0;      ///< height of the lowest end found
+  double longest = 0.0;  ///< of the columns that were looked at [m]
   double doubt = 0.0;    ///< of the volume, by the rule on the triangles
   double slivers = 0.0;  ///< volume of the slivers
 };
 
 /// Columns run against the unit vector `up`. `triangles` and `points` are multiples of eight; their
-/// doubts and tip depths are filled in.
+/// doubts, longest columns and tip depths are filled in.
 RoundSum sum_round_columns(const RoundSolid& solid, const Vec3& up, RoundTriangles& triangles,
                            RoundPoints& points, SimdPath path) noexcept;
 

@@ -17,7 +17,7 @@ Aabb bounds_in(const SurfaceView& solid, const Pose& X) {
 
 struct Sums {
   MomentSum moments;
-  double energy = 0.0, low = kInfinity, high = -kInfinity;
+  double energy = 0.0, depth = 0.0;
 };
 
 // The parts of one column that lie in both solids.
@@ -52,8 +52,7 @@ void add_column(double x, double y, double area, std::vector<ColumnHit>& hits, S
     m.second += volume * (c * c.transpose());
     m.second(2, 2) += volume * length * length / 12.0;
     sums.energy += 0.5 * volume * length;
-    sums.low = std::min(sums.low, enter->z);
-    sums.high = std::max(sums.high, hit.z);
+    sums.depth = std::max(sums.depth, length);
     add_face(*enter);
     add_face(hit);
     enter = nullptr;
@@ -88,7 +87,7 @@ VolumeMetrics sampled_columns(const SurfaceView& a, const Pose& X_CA, const Surf
   m.volume_error = dx * dy * (high.z() - low.z());  // of one column
   if (!m.touching()) return m;
   m.depth_moment = sums.energy;
-  m.depth = sums.high - sums.low;
+  m.depth = sums.depth;
   m.volume_error = 2.0 * std::abs(halves[0] - halves[1]) + 0.01 * m.volume;
   return m;
 }

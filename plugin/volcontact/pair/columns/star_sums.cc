@@ -16,6 +16,9 @@ constexpr double kSettled = 0.15;  // of the doubt allowed, left behind in each 
 // kinks the rule errs by 8e-4 (median) to 2e-2; the errors of many triangles cancel in part.
 constexpr double kRimError = 0.002;
 
+// The same where a triangle is wider than it is far from the centre.
+constexpr double kWideError = 0.05;
+
 class Star {
  public:
   Star(const RoundSolid& solid, const Vec3& center) : solid_(solid), center_(center) {}
@@ -52,9 +55,11 @@ class Star {
     int face, other;
     const MomentSum at_middle = behind(all / 3.0, area, face);
     double outer = 0.0, least = at_middle.volume, most = least;
+    double nearest = (all / 3.0 - center_).squaredNorm();
     bool rim = false;
     const auto look = [&](const Vec3& x) {
       const MomentSum m = behind(x, area, other);
+      nearest = std::min(nearest, (x - center_).squaredNorm());
       rim |= other != face;
       least = std::min(least, m.volume);
       most = std::max(most, m.volume);
@@ -71,8 +76,14 @@ class Star {
     }
     const double rough = kRoughMiddleWeight * at_middle.volume + kRoughOuterWeight * outer;
     // Across a rim of the solid the better rule gains nothing, and both may err by the same.
+    // Nor is there a gain where the triangle is wider than it is far away: the integrand falls with
+    // the cube of the distance, and the two may agree by chance.
     const double difference = std::abs(out.moments.volume - rough);
-    out.doubt = rim ? std::max(difference, kRimError * (most - least)) : difference / kGain;
+    const double width = std::max(
+        {(c[1] - c[0]).squaredNorm(), (c[2] - c[1]).squaredNorm(), (c[0] - c[2]).squaredNorm()});
+    out.doubt = width > nearest ? std::max(difference, kWideError * (most - least))
+                : rim           ? std::max(difference, kRimError * (most - least))
+                                : difference / kGain;
     return out;
   }
 

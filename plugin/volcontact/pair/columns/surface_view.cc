@@ -2,6 +2,7 @@
 #include "volcontact/pair/columns/surface_view.h"
 
 #include <cmath>
+#include <cstddef>
 
 namespace volcontact {
 namespace {
@@ -60,6 +61,34 @@ void make_box_tree(const Vec3& half_sizes, ObbTree& tree) {
 
 double size_of(const Aabb& bounds) {
   return bounds.min.cwiseAbs().cwiseMax(bounds.max.cwiseAbs()).sum();
+}
+
+bool coincide(const SurfaceView& a, const SurfaceView& b, const Pose& X_BA, double reach,
+              std::vector<int>& slots) {
+  const auto near = [&](const Vec3& p_A, const Vec3& p_B) {
+    return (X_BA * p_A - p_B).squaredNorm() <= reach * reach;
+  };
+  if (!near(a.own.centroid, b.own.centroid) ||
+      std::abs(a.own.volume - b.own.volume) > reach * a.surface_area) {
+    return false;
+  }
+  const std::vector<int>&of_a = a.tree->triangle_of_slot, &of_b = b.tree->triangle_of_slot;
+  slots.assign(of_b.size(), -1);
+  int triangles = 0, compared = 0;
+  for (std::size_t slot = 0; slot < of_b.size(); ++slot) {
+    if (of_b[slot] >= 0) slots[of_b[slot]] = static_cast<int>(slot), ++triangles;
+  }
+  for (std::size_t slot = 0; slot < of_a.size(); ++slot) {
+    const int triangle = of_a[slot];
+    if (triangle < 0) continue;
+    if (triangle >= triangles) return false;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 p_A = a.tree->corner(static_cast<int>(slot), i);
+      if (!near(p_A, b.tree->corner(slots[triangle], i))) return false;
+    }
+    ++compared;
+  }
+  return compared == triangles;
 }
 
 bool bounds_apart(const Aabb& a, const Aabb& b, const Pose& X_AB) {

@@ -81,6 +81,11 @@ double size_of(const Aabb& bounds);
 /// Whether the bounds of A, and of B posed in A, have a side with nothing in common.
 bool bounds_apart(const Aabb& a, const Aabb& b, const Pose& X_AB);
 
+/// Whether the surfaces consist of the same triangles in the same order, no corner farther from its
+/// like than `reach` [m]. `X_BA` is the pose of A in B; `slots` is memory.
+bool coincide(const SurfaceView& a, const SurfaceView& b, const Pose& X_BA, double reach,
+              std::vector<int>& slots);
+
 template <typename S>
 concept HasTriangles = requires(const S& solid, SurfaceStore& store) { surface_of(solid, store); };
 

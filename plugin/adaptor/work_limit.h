@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "volcontact/model/contact_report.h"
+
+namespace volcontact::adaptor {
+
+/// An explicit step holds a spring up to h^2 k/m = 4, and keeps its energy where this is small:
+/// `auto` makes implicit what lies above this bound.
+inline constexpr double kStiffNumber = 0.05;
+
+/// What a pair of geoms holds of the energy of the bodies, from evaluation to evaluation while they
+/// touch: docs/theory.md, "No energy from nothing". Kept in six numbers.
+struct PairEnergy {
+  static constexpr int kNumbers = 6;
+  /// What a pair may give back above what it got, of the most it ever held. An explicit step errs
+  /// by more, by up to h^2 k/m of it, as often too little as too much.
+  static constexpr double kOverdraft = 5e-4;
+
+  double stored = 0.0;  ///< put in by motion and not given back [J]
+  double found = 0.0;   ///< elastic energy that was there when the simulation began [J]
+  double most = 0.0;    ///< largest `stored` of this touch [J]
+  double rubbed = 0.0;  ///< put into bristles by sliding, and not given back [J]
+  // Of an explicit step, whose work is known at its end: force, and its power at the begin.
+  double force = 0.0;  ///< f_n of all sites [N]
+  double power = 0.0;  ///< sum of f_n v_n, > 0 while approaching [W]
+
+  bool is_solved = false;  ///< by an implicit step, whose work is in already; not kept
+
+  /// The sites of a pair at the present evaluation, together.
+  struct Now {
+    double elastic = 0.0;    ///< of the volumes [J]
+    double bristle = 0.0;    ///< of the bristles [J]
+    double force = 0.0;      ///< [N]
+    double power = 0.0;      ///< [W]
+    double stiffness = 0.0;  ///< against an approach, about [N/m]
+    double volume = 0.0, swept = 0.0;
+    bool is_within = false;  ///< one body lies in the other: no law holds what went in
+
+    void add(const SiteReport& site) noexcept {
+      bristle += site.bristle_energy.sum();
+      elastic += site.elastic_energy - site.bristle_energy.sum();
+      force += site.normal_force;
+      power += site.normal_force * site.approach_speed;
+      volume += site.metrics.volume;
+      stiffness += site.normal_force * site.metrics.area_vector.norm() / site.metrics.volume;
+      swept += site.metrics.volume * site.approach_speed;
+      is_within = is_within || site.normal.isZero(0.0);
+    }
+    double approach() const noexcept {  // [m/s]
+      return force > 0.0 ? power / force : volume > 0.0 ? swept / volume : 0.0;
+    }
+  };
+
+  /// The end of a step of `elapsed` seconds.
+  void take_in(double elapsed, const Now& now) noexcept {
+    // Explicit steps know velocities half a step before positions: on the way out the law holds
+    // less by the work of half a step.
+    const double ahead = force > 0.0 ? 0.5 * elapsed * std::max(0.0, -now.power) : 0.0;
+    put(0.5 * elapsed * (power + force * now.approach()), kStiffNumber * most);
+    force = power = 0.0;
+    rubbed = std::min(rubbed, now.bristle);
+    if (!now.is_within) keep_within(now.elastic + ahead);
+  }
+
+  /// An implicit step that does `work` on the bodies, of which friction does `friction_work`.
+  void solve(double work, double friction_work = 0.0) noexcept {
+    is_solved = true;
+    rubbed = std::max(0.0, rubbed - friction_work);
+    put(-work);
+    most = std::max(most, stored);
+  }
+
+  void write(double* row) const noexcept {
+    const double numbers[kNumbers] = {stored, found, most, rubbed, force, power};
+    std::copy(std::begin(numbers), std::end(numbers), row);
+  }
+  static PairEnergy from(const double* row) noexcept {
+    return {row[0], row[1], row[2], row[3], row[4], row[5]};
+  }
+
+  /// Work done on the contact. What it gives back at a slow exit was found; the rest of that had
+  /// been dissipated, and is so no more. Explicit steps may owe what they err by.
+  void put(double work, double owed = 0.0) noexcept {
+    stored += work;
+    const double given = std::clamp(-stored, 0.0, found);
+    stored += given;
+    found -= given;
+    stored = std::max(stored, -owed);
+  }
+
+  /// No more can be stored than the law holds at the present pose.
+  void keep_within(double elastic) noexcept {
+    found = std::min(found, elastic);
+    const double lost = stored + found - elastic;
+    if (lost > 0.0) stored -= lost;
+    most = std::max(most, stored);
+  }
+};
+
+/// What the contacts of one pair may do on the bodies in one step, and what they do.
+struct WorkLimit {
+  double stored = 0.0;      ///< at any speed [J]
+  double slow = 0.0;        ///< besides, while the bodies part slower than `exit_speed` [J]
+  double exit_speed = 0.0;  ///< [m/s]
+  double rubbed = 0.0;      ///< by friction, from its bristles [J]
+
+  double share = 1.0;          ///< of the elastic force that acts
+  bool is_solved = false;      ///< by an implicit step
+  double normal_work = 0.0;    ///< of the normal forces on the bodies over the step [J]
+  double friction_work = 0.0;  ///< of friction [J]
+  double from_free = 0.0;      ///< of the normal forces, from the motion without contact [J]
+  double slack = 0.0;  ///< what other forces do meanwhile, which a finite step cannot tell [J]
+  double exit = 0.0;   ///< fastest parting at the end of the step [m/s]
+
+  // Shares between which the one sought lies, and the work under them.
+  double low = 0.0, high = 1.0;
+  double work_low = 0.0, work_high = 0.0;
+
+  /// `dissipated`: by all contacts of the scene so far [J].
+  static WorkLimit of(const PairEnergy& energy, double dissipated, double exit_speed,
+                      double overdraft = PairEnergy::kOverdraft) noexcept {
+    WorkLimit limit;
+    limit.stored = energy.stored + overdraft * energy.most;
+    limit.slow = energy.found + std::max(0.0, dissipated);
+    limit.exit_speed = exit_speed;
+    limit.rubbed = energy.rubbed;
+    return limit;
+  }
+
+  /// No more a step than bodies of that inverse mass need to get as fast as that, and to be lifted
+  /// where free motion changes speeds by `fall`.
+  WorkLimit& for_bodies(double mobility, double fall) noexcept {
+    slow = std::min(slow, exit_speed * (0.5 * exit_speed + fall) / mobility);
+    return *this;
+  }
+
+  double allowed() const noexcept { return stored + slack + (exit <= exit_speed ? slow : 0.0); }
+  /// What is drawn from the pair: what friction dissipates pays for nothing else.
+  double work() const noexcept { return normal_work + std::max(0.0, friction_work - rubbed); }
+  bool is_kept() const noexcept { return work() <= allowed(); }
+
+  void start() noexcept {
+    low = 0.0;
+    high = 1.0;
+    work_low = 0.0;
+    work_high = HUGE_VAL;
+  }
+
+  /// Chooses the next share to try; false when the present one will do.
+  bool search() noexcept {
+    constexpr double kEnough = 0.8, kNarrow = 0.05, kNothing = 1e-3;
+    if (is_kept()) {
+      low = share;
+      work_low = work();
+      if (share >= 1.0 || work_low >= kEnough * allowed() || high - low < kNarrow) return false;
+    } else {
+      high = share;
+      work_high = work();
+      if (allowed() < kNothing * work_high) {
+        share = 0.0;
+        return true;
+      }
+    }
+    double at = 0.5;
+    if (work_high < HUGE_VAL && work_high > work_low) {
+      at = (0.9 * allowed() - work_low) / (work_high - work_low);
+    }
+    share = low + std::clamp(at, 0.1, 0.9) * (high - low);
+    return true;
+  }
+};
+
+/// The part of the explicit normal force of a pair that keeps the limit, when `force` acts for
+/// `step` at the parting speed `parting`, `mobility` is the inverse mass and free motion changes
+/// speeds by `fall`.
+inline double explicit_share(const WorkLimit& limit, double force, double parting, double mobility,
+                             double fall, double step) noexcept {
+  const double impulse = step * force;
+  if (!(impulse > 0.0)) return 1.0;
+  // Work of a share s: a s^2 + b s.
+  const double a = 0.5 * impulse * impulse * mobility, b = impulse * (parting - 0.5 * fall);
+  const auto share_for = [&](double allowed) {
+    if (a + b <= allowed) return 1.0;
+    if (!(allowed > 0.0)) return b < 0.0 && a > 0.0 ? std::min(1.0, -b / a) : 0.0;
+    return 2.0 * allowed / (b + std::sqrt(b * b + 4.0 * a * allowed));
+  };
+  const double fast = share_for(limit.stored);
+  if (fast >= 1.0 || !(limit.slow > 0.0)) return fast;
+  const double room = limit.exit_speed - parting;
+  const double slow = mobility > 0.0 ? std::max(0.0, room) / (impulse * mobility) : 1.0;
+  return std::max(fast, std::min({slow, share_for(limit.stored + limit.slow), 1.0}));
+}
+
+}  // namespace volcontact::adaptor

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "volcontact/shape/shapes.h"
+
+namespace volcontact {
+
+/// What no overlap with a solid can go beyond, in the solid's frame.
+struct OverlapLimits {
+  double volume = kInfinity;  ///< V is no larger [m^3]
+  Aabb bounds;                ///< the centroid lies within
+  double parts = 1.0;         ///< most parts of a straight line within the solid
+};
+
+template <typename S>
+OverlapLimits limits_of(const S& solid) {
+  return {solid.own_metrics().volume, solid.bounds()};
+}
+inline OverlapLimits limits_of(const Torus& torus) {
+  return {torus.own_metrics().volume, torus.bounds(), 2.0};
+}
+inline OverlapLimits limits_of(const Csg& solid) {
+  return {solid.most_volume(), solid.bounds(), static_cast<double>(solid.most_parts())};
+}
+inline OverlapLimits limits_of(const SignedDistance& solid) {
+  return {kInfinity, solid.bounds(), kInfinity};
+}
+inline OverlapLimits limits_of(const Mesh& mesh) {
+  return {mesh.own_metrics().volume, mesh.bounds(),
+          static_cast<double>(mesh.topology().triangles.size())};
+}
+
+namespace overlap_limits {
+inline constexpr double kRounding = 1e-6;   ///< of V, and of lengths, per the size of the solid
+inline constexpr double kMostError = 0.1;   ///< share of V that counts of the error claimed
+inline constexpr double kAreaError = 1e-2;  ///< of S; less well known than V
+inline constexpr double kSpeck = 1e-9;  ///< of a solid: where less is, and its S, may be rounding
+}  // namespace overlap_limits
+
+/// Whether the centroid `at` and the area vector, in the frame of a solid, can be those of an
+/// overlap with it. What is no number cannot.
+inline bool is_possible(const OverlapLimits& limits, double parts, const Vec3& at,
+                        const Vec3& area_vector) {
+  const Vec3 extent = limits.bounds.max - limits.bounds.min;
+  const double slack = overlap_limits::kRounding * (extent.sum() + at.cwiseAbs().sum());
+  // Each part of a line in the overlap ends on A once, or twice, and then the two cancel.
+  const double most = parts * (1.0 + overlap_limits::kAreaError);
+  const auto within = [&](int i, int j, int k) {
+    return at[i] - limits.bounds.max[i] <= slack && limits.bounds.min[i] - at[i] <= slack &&
+           std::abs(area_vector[i]) <= most * extent[j] * extent[k];
+  };
+  return within(0, 1, 2) && within(1, 2, 0) && within(2, 0, 1);
+}
+
+/// The same where it is plain without turning the two into the frame of the solid: `at` and the
+/// area vector count from its origin, in any axes.
+inline bool is_plainly_possible(const OverlapLimits& limits, const Vec3& at,
+                                const Vec3& area_vector) {
+  const double inner = std::min(limits.bounds.max.minCoeff(), -limits.bounds.min.maxCoeff());
+  return inner > 0.0 && at.squaredNorm() <= inner * inner &&
+         area_vector.squaredNorm() <= 16.0 * (inner * inner) * (inner * inner);
+}
+
+/// Whether V is a number, and not beyond the volume of either solid.
+inline bool is_possible_volume(const VolumeMetrics& m, const OverlapLimits& a,
+                               const OverlapLimits& b) {
+  using namespace overlap_limits;
+  const double least = std::min(a.volume, b.volume);
+  const double error = std::min(m.volume_error, kMostError * least);
+  return m.volume >= 0.0 && m.volume <= (1.0 + kRounding) * least + error;
+}
+
+/// Whether metrics in A's frame can be those of an overlap of A and B at X_AB: all numbers finite,
+/// V not beyond either solid, the centroid in both bounds, and S not beyond what the bounds show of
+/// a solid from any side. Tells what is wrong by far; no more. docs/theory.md, "Engines".
+inline bool is_possible(const VolumeMetrics& metrics, const OverlapLimits& a,
+                        const OverlapLimits& b, const Pose& X_AB) {
+  using namespace overlap_limits;
+  const VolumeMetrics& m = metrics;
+  const double others = (m.inertia.col(0).sum() + m.inertia.col(1).sum()) +
+                        (m.inertia.col(2).sum() + m.area_moment.sum()) +
+                        ((m.area + m.counter_area) + (m.depth_moment + m.depth));
+  if (!(std::abs(others) < kInfinity && m.volume_error < kInfinity)) return false;
+  if (!is_possible_volume(m, a, b)) return false;
+  const double least = std::min(a.volume, b.volume);
+  if (least < kInfinity && m.volume <= kSpeck * least) return is_finite(m);
+  // Of a line in both solids there are no more parts than in either, but for one.
+  const double parts = a.parts + b.parts - 1.0;
+  if (!is_possible(a, parts, m.centroid, m.area_vector)) return false;
+  const Vec3 p_BC_A = m.centroid - X_AB.translation;
+  if (is_plainly_possible(b, p_BC_A, m.area_vector)) return true;
+  const Mat3 R_BA = X_AB.rotation.transpose();
+  return is_possible(b, parts, R_BA * p_BC_A, R_BA * m.area_vector);
+}
+
+}  // namespace volcontact

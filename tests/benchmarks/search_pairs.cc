@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Random search for wrong answers: search_pairs FAMILY SEED FIRST COUNT
+// Prints lines of JSON that tests/benchmarks/search_for_failures.py adds up: one of every failure,
+// and at the end one with the counts. After a crash the last line names the case.
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include "core/support/pair_search.h"
+
+namespace {
+
+using namespace volcontact;
+using namespace volcontact::test;
+
+constexpr unsigned kPatience = 120;  // [s] of one case
+
+volatile std::sig_atomic_t current = 0;
+
+// What is left of a case that ends the program: its number.
+extern "C" void on_signal(int signal) {
+  char text[80];
+  const int length = std::snprintf(text, sizeof text, "{\"crash\": %d, \"index\": %ld}\n", signal,
+                                   static_cast<long>(current));
+  if (write(STDOUT_FILENO, text, static_cast<std::size_t>(length)) < 0) _exit(4);
+  _exit(3);
+}
+
+SearchFamily family_of(const char* name) {
+  for (const SearchFamily family : kSearchFamilies) {
+    if (std::strcmp(name, to_string(family)) == 0) return family;
+  }
+  throw std::invalid_argument(std::string("no family of cases is named ") + name);
+}
+
+// The judge looks closely at one case in twenty, and more closely at one in 500.
+int level_of(std::uint64_t index) { return index % 500 == 499 ? 3 : index % 20 == 19 ? 2 : 1; }
+
+struct Count {
+  int cases = 0, overlapping = 0, undecided = 0;
+  int known[4] = {};  // overlaps of which the judge knew V to 1e-2, 1e-3, 1e-4, 1e-5
+  double slowest = 0.0;
+};
+
+// JSON has no infinity.
+double finite(double x) {
+  return std::isfinite(x) ? x : std::copysign(std::numeric_limits<double>::max(), x);
+}
+
+void print(const SearchFailure& f, SearchFamily family, std::uint64_t index) {
+  std::printf(
+      "{\"what\": \"%s\", \"family\": \"%s\", \"index\": %llu, \"engine\": \"%s\", "
+      "\"status\": \"%s\", \"volume\": %.17g, \"volume_error\": %.4g, \"expected\": %.17g, "
+      "\"doubt\": %.4g, \"a\": \"%s\", \"b\": \"%s\", \"X_AB\": \"%s\"}\n",
+      f.what.c_str(), to_string(family), static_cast<unsigned long long>(index),
+      to_string(f.engine), to_string(f.status), finite(f.volume), finite(f.volume_error),
+      finite(f.expected), finite(f.doubt), f.a.c_str(), f.b.c_str(), f.X_AB.c_str());
+}
+
+int search(SearchFamily family, std::uint64_t seed, std::uint64_t first, std::uint64_t count) {
+  PairSearch search;
+  SearchCases cases(family, seed);
+  std::map<std::string, Count> counts;
+  int refused = 0;
+  for (std::uint64_t index = first; index < first + count; ++index) {
+    current = static_cast<std::sig_atomic_t>(index);
+    alarm(kPatience);
+    SearchCase c;
+    try {
+      c = cases[index];
+    } catch (const std::invalid_argument&) {
+      ++refused;  // solids that are none
+      continue;
+    }
+    const SearchOutcome outcome = search.run(c, level_of(index), seed + 1000003 * index);
+    Count& tally = counts[to_string(outcome.engine)];
+    ++tally.cases;
+    tally.overlapping += outcome.overlapping;
+    tally.undecided += outcome.undecided;
+    tally.slowest = std::max(tally.slowest, outcome.seconds);
+    double least = 1e-2;
+    for (int& known : tally.known) {
+      known += outcome.overlapping && !outcome.undecided && outcome.doubt < least;
+      least *= 0.1;
+    }
+    for (const SearchFailure& failure : outcome.failures) print(failure, family, index);
+    if (!outcome.failures.empty()) std::fflush(stdout);
+  }
+  for (const auto& [engine, tally] : counts) {
+    std::printf(
+        "{\"count\": \"%s\", \"family\": \"%s\", \"cases\": %d, \"overlapping\": %d, "
+        "\"undecided\": %d, \"slowest\": %.3g, \"known\": [%d, %d, %d, %d]}\n",
+        engine.c_str(), to_string(family), tally.cases, tally.overlapping, tally.undecided,
+        tally.slowest, tally.known[0], tally.known[1], tally.known[2], tally.known[3]);
+  }
+  std::printf("{\"refused\": %d, \"seconds\": %.2f}\n", refused,
+              static_cast<double>(std::clock()) / CLOCKS_PER_SEC);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 5) {
+    std::fprintf(stderr, "usage: search_pairs FAMILY SEED FIRST COUNT\n");
+    return 2;
+  }
+  for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGALRM}) std::signal(signal, on_signal);
+  try {
+    return search(family_of(argv[1]), std::strtoull(argv[2], nullptr, 10),
+                  std::strtoull(argv[3], nullptr, 10), std::strtoull(argv[4], nullptr, 10));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "search_pairs: %s\n", error.what());
+    return 2;
+  }
+}

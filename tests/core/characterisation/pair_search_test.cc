@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/support/pair_search.h"
+
+#include <gtest/gtest.h>
+
+namespace volcontact::test::pair_search_test {
+namespace {
+
+SearchOutcome judged(const SearchSolid& a, const SearchSolid& b, const Pose& X_AB) {
+  PairSearch search;
+  return search.run({.a = a, .b = b, .X_AB = X_AB, .special = true}, 0, 1);
+}
+
+// A solid that is told wrongly to the judge stands for an engine that is wrong.
+TEST(PairSearch, SeesAWrongVolume) {
+  const Pose X{Mat3::Identity(), Vec3(0.1, 0.05, 0.12)};
+  const SearchSolid box = search_box(Vec3(0.3, 0.2, 0.1)), ball = search_sphere(0.2);
+  EXPECT_TRUE(judged(box, ball, X).failures.empty());
+  SearchSolid larger = ball;
+  larger.shape = Sphere({.radius = 0.2006});  // 0.3 % of the radius, about 1 % of the volume
+  const SearchOutcome outcome = judged(box, larger, X);
+  ASSERT_EQ(outcome.failures.size(), 1u);
+  EXPECT_EQ(outcome.failures[0].what, "wrong volume");
+  EXPECT_GT(outcome.failures[0].volume, outcome.failures[0].expected);
+}
+
+TEST(PairSearch, SeesAnOverlapThatIsMissedOrNone) {
+  const SearchSolid ball = search_sphere(0.2);
+  SearchSolid smaller = ball, larger = ball;
+  smaller.shape = Sphere({.radius = 0.19});
+  larger.shape = Sphere({.radius = 0.21});
+  const auto what = [&](const SearchSolid& b, double distance) {
+    const SearchOutcome outcome = judged(ball, b, {Mat3::Identity(), Vec3(0.0, distance, 0.0)});
+    return outcome.failures.empty() ? "" : outcome.failures[0].what;
+  };
+  EXPECT_EQ(what(ball, 0.395), "");
+  EXPECT_EQ(what(smaller, 0.395), "missed");
+  EXPECT_EQ(what(larger, 0.405), "overlap where none is");
+}
+
+// A sample of what `./run search` does, of the families that all answers are right in.
+TEST(PairSearch, FindsNothing) {
+  PairSearch search;
+  for (const SearchFamily family : {SearchFamily::kRandom, SearchFamily::kMeshes}) {
+    SearchCases cases(family, 1);
+    int overlapping = 0, judged = 0;
+    for (std::uint64_t index = 0; index < 60; ++index) {
+      const SearchCase c = cases[index];
+      const SearchOutcome outcome = search.run(c, 0, index);
+      overlapping += outcome.overlapping;
+      judged += outcome.level >= 0 && !outcome.undecided;
+      for (const SearchFailure& f : outcome.failures) {
+        if (f.what != "wrong volume" && f.what != "missed" && f.what != "not finite") continue;
+        ADD_FAILURE() << f.what << ", V = " << f.volume << " +- " << f.volume_error << ", expected "
+                      << f.expected << " +- " << f.doubt << ": interference(" << f.a << ", " << f.b
+                      << ", " << f.X_AB << ")";
+      }
+    }
+    EXPECT_GT(overlapping, 20) << to_string(family);
+    EXPECT_GT(judged, 50) << to_string(family);
+  }
+}
+
+// A case is what its number says, so that it can be seen again.
+TEST(PairSearch, CasesAreTheSameAgain) {
+  for (const SearchFamily family : kSearchFamilies) {
+    SearchCases cases(family, 3);
+    const SearchCase last = cases[31], first = cases[11], again = SearchCases(family, 3)[11];
+    EXPECT_EQ(first.a.text, again.a.text);
+    EXPECT_EQ(first.b.text, again.b.text);
+    EXPECT_EQ(python_pose(first.X_AB), python_pose(again.X_AB));
+    EXPECT_NE(first.a.text + first.b.text, last.a.text + last.b.text);
+  }
+}
+
+}  // namespace
+}  // namespace volcontact::test::pair_search_test

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Contact makes no energy: what bodies have at any time is at most what they started with."""
+
+import itertools
+
+import mujoco
+import numpy as np
+import pytest
+
+import volcontact as vc
+
+ROUNDING = 1.001  # what any cell may have more than at its start
+
+
+def scene(bodies, step, gravity=0.0, options=""):
+    return mujoco.MjModel.from_xml_string(
+        f'<mujoco><option timestep="{step}" gravity="0 0 {-gravity}" {options}>'
+        "</option><worldbody>"
+        f'<geom type="plane" size="1 1 1"/>{bodies}</worldbody></mujoco>'
+    )
+
+
+def free_box(height, step, **more):
+    body = (
+        f'<body pos="0 0 {height}"><freejoint/><geom type="box" size=".1 .1 .1" mass="2"/></body>'
+    )
+    return scene(body, step, **more)
+
+
+def kinetic(model, data):
+    """v' M v/2 [J]."""
+    momentum = np.zeros(model.nv)
+    mujoco.mj_mulM(model, data, momentum, data.qvel)
+    return 0.5 * momentum @ data.qvel
+
+
+def largest_kinetic(model, data, steps, **material):
+    """The largest kinetic energy of a run over that of its start."""
+    with vc.attach(model, material=material):
+        mujoco.mj_forward(model, data)
+        start = largest = kinetic(model, data)
+        for _ in range(steps):
+            mujoco.mj_step(model, data)
+            largest = max(largest, kinetic(model, data))
+    assert np.isfinite(data.qvel).all()
+    return largest / start
+
+
+@pytest.mark.parametrize(
+    ("speed", "damping", "step"),
+    [(10.0, 1.0, 2e-3), (10.0, 5.0, 2e-3), (3.0, 3.0, 2e-3), (30.0, 10.0, 5e-3)],
+)
+def test_stiff_damping_does_not_throw_back(speed, damping, step):
+    model = free_box(0.1001, step)
+    data = mujoco.MjData(model)
+    data.qvel[2] = -speed
+    assert largest_kinetic(model, data, 20, stiffness=1e7, damping=damping) <= ROUNDING
+
+
+def test_box_on_a_plane_at_any_speed_damping_stiffness_and_step():
+    worst = {}
+    random = np.random.default_rng(1)
+    for speed, damping, stiffness, step in itertools.product(
+        (0.1, 1.0, 30.0), (0.0, 0.3, 10.0), (1e5, 1e7, 1e9, 1e12), (2e-4, 2e-3, 1e-2)
+    ):
+        model = free_box(0.1 + random.uniform() * speed * step, step)
+        data = mujoco.MjData(model)
+        data.qvel[2] = -speed
+        cell = speed, damping, stiffness, step
+        worst[cell] = largest_kinetic(model, data, 200, stiffness=stiffness, damping=damping)
+    assert max(worst.values()) <= ROUNDING, max(worst, key=worst.get)
+
+
+def grazing(step, speed, depth, heavy, light):
+    """A small block that flies past the edge of a large one, into which it has sunk by `depth`."""
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><option timestep="{step}" gravity="0 0 0"></option>'
+        '<worldbody><body><joint type="slide" axis="0 0 1"/>'
+        f'<geom type="box" size=".1 .1 .1" mass="{heavy}"/></body>'
+        f'<body pos="-.1201 0 {0.12 - depth}"><joint type="slide" axis="1 0 0"/>'
+        f'<geom type="box" size=".02 .02 .02" mass="{light}"/></body></worldbody></mujoco>'
+    )
+    data = mujoco.MjData(model)
+    data.qvel[1] = speed
+    return model, data
+
+
+@pytest.mark.parametrize("stiffness", [1e8, 1e9, 1e10])
+@pytest.mark.parametrize("ratio", [1.0, 1e3, 1e6])
+@pytest.mark.parametrize(
+    ("step", "speed", "depth", "friction", "damping"),
+    [(5e-3, 10.0, 0.01, 0.0, 0.0), (2e-3, 2.0, 1e-3, 0.5, 1.0)],
+)
+def test_a_heavy_body_is_not_thrown_by_a_light_one_in_it(
+    stiffness, ratio, step, speed, depth, friction, damping
+):
+    model, data = grazing(step, speed, depth, 10.0, 10.0 / ratio)
+    energy = largest_kinetic(
+        model, data, 80, stiffness=stiffness, friction=friction, damping=damping
+    )
+    assert energy <= ROUNDING
+
+
+@pytest.mark.parametrize("depth", [0.001, 0.02, 0.15])
+def test_an_overlap_at_the_start_comes_out_slowly(depth):
+    model = free_box(0.1 - depth, 2e-3, gravity=9.81)
+    data = mujoco.MjData(model)
+    fastest = 0.0
+    with vc.attach(model, material={"stiffness": 1e9, "damping": 1.0}) as contact:
+        for _ in range(3000):
+            mujoco.mj_step(model, data)
+            fastest = max(fastest, data.qvel[2])
+        weight = contact.sites(data)["normal_force"].sum()
+    # 0.1 m/s are the default of volcontact/option/exit_speed.
+    assert fastest < 0.11
+    assert weight == pytest.approx(2 * 9.81, rel=1e-6)
+    # m g / (k A), the two layers in series.
+    assert 0.1 - data.qpos[2] == pytest.approx(2 * 9.81 / (0.5e9 * 0.04), rel=1e-3)
+
+
+def test_exit_speed_is_an_option():
+    model = free_box(0.08, 2e-3, gravity=9.81)
+    heights = []
+    for speed in (0.02, 0.1, 0.5):
+        data = mujoco.MjData(model)
+        with vc.attach(model, material={"stiffness": 1e9}, options={"exit_speed": speed}):
+            for _ in range(10):
+                mujoco.mj_step(model, data)
+        assert data.qvel[2] < 1.1 * speed
+        heights.append(data.qpos[2])
+    assert heights == sorted(heights)
+    assert heights[0] < heights[-1]
+
+
+@pytest.mark.skipif(not hasattr(mujoco.mjtIntegrator, "mjINT_DISCRETE"), reason="no `discrete`")
+def test_discrete_integrator_knows_native_constraints():
+    """A box with friction in its joint and a limit rests on stiff contact, the same each time."""
+    body = (
+        '<body pos="0 0 .1001"><joint type="slide" axis="0 0 1" range="-.0005 1" '
+        'frictionloss=".5"/><geom type="box" size=".1 .1 .1" mass="8"/></body>'
+    )
+    model = scene(body, 2e-3, 9.81, 'integrator="discrete"')
+    ends = set()
+    data = mujoco.MjData(model)
+    with vc.attach(model, material={"stiffness": 1e9, "damping": 1, "friction": 0.5}) as contact:
+        for _ in range(3):
+            mujoco.mj_resetData(model, data)
+            data.qvel[0] = -1.0
+            for _ in range(300):
+                mujoco.mj_step(model, data)
+            ends.add((data.qpos[0], data.qvel[0]))
+            assert contact.dropped(data) == 0
+            assert contact.sites(data)["normal_force"].sum() == pytest.approx(8 * 9.81, rel=1e-2)
+    assert len(ends) == 1
+
+
+@pytest.mark.parametrize("flag", ["contact", "constraint"])
+def test_a_model_that_has_no_contact_is_left_without(flag):
+    body = '<body pos="0 0 .09"><freejoint/><geom type="box" size=".1 .1 .1" mass="2"/></body>'
+    text = (
+        f'<mujoco><option><flag {flag}="disable"/></option><worldbody>'
+        f'<geom type="plane" size="1 1 1"/>{body}</worldbody></mujoco>'
+    )
+    for options, touches in (({}, False), ({"disabled": "ignore"}, True)):
+        model = mujoco.MjModel.from_xml_string(text)
+        data = mujoco.MjData(model)
+        with vc.attach(model, options=options) as contact:
+            told = " ".join(contact.description["warnings"])
+            mujoco.mj_step(model, data)
+            assert bool(len(contact.sites(data))) == touches
+        assert (f'<flag {flag}="disable"/>' in told) != touches
+
+
+def test_runge_kutta_bounds_what_is_too_stiff_for_it():
+    body = '<body pos="0 0 .1001"><freejoint/><geom type="box" size=".1 .1 .1" mass="2"/></body>'
+    model = scene(body, 1e-2, 9.81, 'integrator="RK4"')
+    data = mujoco.MjData(model)
+    data.qvel[2] = -3.0
+    with vc.attach(model, material={"stiffness": 1e9, "damping": 1.0}) as contact:
+        assert any("too stiffly" in text for text in contact.description["warnings"])
+        fastest = 0.0
+        for _ in range(500):
+            mujoco.mj_step(model, data)
+            fastest = max(fastest, data.qvel[2])
+    assert fastest < 0.3
+    assert abs(data.qpos[2] - 0.1) < 0.05
