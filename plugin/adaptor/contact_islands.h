@@ -17,6 +17,8 @@ struct ContactPlace {
   int body_b = 0;
   Vec3 point = Vec3::Zero();     ///< of the world [m]
   Mat3 axes = Mat3::Identity();  ///< t_1, t_2, n by columns, in the world
+  /// Of a against b, the motion at the point that no degree of freedom makes.
+  Twist driven = {};
 };
 
 /// A kinematic tree: its degrees of freedom, which stand together.

@@ -51,6 +51,13 @@ void ContactSpace::add_place(const mjModel* m, const mjData* d, const ContactPla
   side_count_.push_back(count);
 }
 
+// What moves at the place without any degree of freedom.
+void ContactSpace::add_driven(const ContactPlace& place) noexcept {
+  const Vec3 way = place.axes.transpose() * place.driven.linear;
+  const Vec3 turn = place.axes.transpose() * place.driven.angular;
+  velocity_.insert(velocity_.end(), {way[2], turn[0], turn[1], way[0], way[1], turn[2]});
+}
+
 // All that a place moves has to do with each other.
 void ContactSpace::widen_envelope(std::size_t place) noexcept {
   int least = dofs();
@@ -194,7 +201,8 @@ void ContactSpace::build(const mjModel* m, mjData* d, Damping damping,
     known_[i] = known[dof] + matrix_.load()[i];
     generalized_[i] = d->qvel[dof];
   }
-  velocity_.assign(size(rows()), 0.0);
+  velocity_.clear();
+  for (const int place : islands.places(island)) add_driven(places[size(place)]);
   add_motion(generalized_.data(), velocity_.data());
   for (std::size_t i = 0; i < known_.size(); ++i) generalized_[i] = step_ * known_[i];
   matrix_.factor().solve(generalized_.data(), 0, dofs());

@@ -14,8 +14,8 @@ namespace volcontact::adaptor {
 inline constexpr int kRows = 6;  ///< of a contact place: along and about its three axes
 
 /// What one step of MuJoCo makes of forces at the contact places of an island: u' = u_free + h
-/// Lambda f, with u = J v, Lambda = J H^-1 J' and u_free = u + h J H^-1 t. H is the matrix of the
-/// step: step_matrix.h. Memory is reused from step to step.
+/// Lambda f, with u = J v + w, Lambda = J H^-1 J' and u_free = u + h J H^-1 t; w is the motion of
+/// mocap bodies. H is the matrix of the step: step_matrix.h. Memory is reused from step to step.
 class ContactSpace {
  public:
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -81,6 +81,7 @@ class ContactSpace {
   Side add_side(int tree) noexcept;
   void add_body(const mjModel* m, const mjData* d, const ContactPlace& place, int body, double sign,
                 const Side& side) noexcept;
+  void add_driven(const ContactPlace& place) noexcept;
   void widen_envelope(std::size_t place) noexcept;
   void respond(int place) noexcept;
 

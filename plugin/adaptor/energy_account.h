@@ -45,11 +45,14 @@ inline double least_dissipated(const EnergyAccount& before, double elapsed, doub
   return before.dissipated.sum() + std::min(0.0, since);
 }
 
-/// Completes `now`, whose `dissipated` is there, by the `work` done since `before` [J].
-inline void add_work(const EnergyAccount& before, double work, EnergyAccount& now) {
+/// Completes `now`, whose `dissipated` is there, by the `work` done and what mocap bodies have
+/// `driven` since `before` [J].
+inline void add_work(const EnergyAccount& before, double work, double driven, EnergyAccount& now) {
   const double spent = now.dissipated.sum() - before.dissipated.sum();
   now.work = before.work + work;
-  now.numerical = before.numerical - work - (now.elastic - before.elastic) - spent;
+  now.driven = before.driven + driven;
+  now.made = work + (now.elastic - before.elastic) - driven;
+  now.numerical = before.numerical - now.made - spent;
 }
 
 /// (1 - weight) a + weight b
@@ -71,10 +74,12 @@ class AccountKeeper {
     has_last_ = redone && block.count() > 1 && block.slot(1).stage() == Stage::kSecondMiddle;
     if (has_last_) last_power_ = block.slot(0).energy().last_power;
     elapsed_ = open_slot(block, time, step);
+    is_within_step_ = runge_kutta && !redone;
     const bool half = runge_kutta && continues() && std::abs(2.0 * elapsed_ / step - 1.0) < 1e-6;
     if (!half) return;
     if (block.slot(1).stage() == Stage::kWhole) {
       block.slot(0).set_stage(again ? Stage::kSecondMiddle : Stage::kMiddle);
+      is_within_step_ = true;
     } else {
       completes_ = block.count() > 2;
     }
@@ -82,13 +87,16 @@ class AccountKeeper {
 
   bool continues() const { return block_.count() > 1; }
   double elapsed() const { return elapsed_; }
+  /// Whether a step of Runge-Kutta goes on here, rather than begins.
+  bool is_within_step() const { return is_within_step_; }
 
   /// Writes the account of this evaluation: a whole Runge-Kutta step by its own rule, which is
   /// Simpson's (work with the powers of its four stages), all else by the trapezoidal rule.
   /// `later`: power of the forces of the evaluation before at the velocities of this one [W]. They
   /// act over all of a step, so the mean of it and of their power then is the change of kinetic
   /// energy that they make.
-  void write(EnergyAccount now, double later) const {
+  /// `driven`: the work of mocap bodies since then [J].
+  void write(EnergyAccount now, double later, double driven) const {
     const Slot slot = block_.slot(0);
     if (slot.stage() == Stage::kSecondMiddle) {
       now.taken = between(first_middle_.taken, now.taken, 0.5);
@@ -102,13 +110,13 @@ class AccountKeeper {
       now = accounted(start, between(ends, middle.taken, 2.0 / 3.0), 2.0 * elapsed_, now);
       now.last_power = has_last_ ? last_power_ : now.force_power;
       const double mean = (start.force_power + 4.0 * middle.force_power + now.last_power) / 6.0;
-      add_work(start, 2.0 * elapsed_ * mean, now);
+      add_work(start, 2.0 * elapsed_ * mean, driven, now);
     } else {
       const EnergyAccount before = block_.slot(1).energy();
       now = before.implicit || now.implicit
                 ? accounted_whole(before, elapsed_, now)
                 : accounted(before, between(before.taken, now.taken, 0.5), elapsed_, now);
-      add_work(before, elapsed_ * std::midpoint(before.force_power, later), now);
+      add_work(before, elapsed_ * std::midpoint(before.force_power, later), driven, now);
     }
     slot.set_energy(now);
   }
@@ -117,6 +125,7 @@ class AccountKeeper {
   UserdataBlock block_;
   double elapsed_ = 0.0;
   bool completes_ = false;  // this evaluation ends a Runge-Kutta step
+  bool is_within_step_ = false;
   EnergyAccount first_middle_;
   bool has_last_ = false;
   double last_power_ = 0.0;

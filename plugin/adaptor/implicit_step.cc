@@ -36,13 +36,13 @@ void ImplicitStep::clear() noexcept {
 }
 
 void ImplicitStep::add(const ContactModel& model, ContactReport& report, std::size_t site,
-                       int body_a, int body_b, bool is_stiff) noexcept {
+                       int body_a, int body_b, const Twist& driven, bool is_stiff) noexcept {
   const SiteLaws laws(model, report, site);
   sites_.push_back({laws, &model, &report, site, laws.tangent()});
   sites_.back().is_stiff = is_stiff;
   sites_.back().pair = limits_.size() - 1;
   places_.push_back(
-      {body_a, body_b, report.sites[site].metrics.centroid, sites_.back().tangent.axes});
+      {body_a, body_b, report.sites[site].metrics.centroid, sites_.back().tangent.axes, driven});
 }
 
 // The points of a patch and what each bears: f = f_0 - D (u' - u) - h K u', with the damping's

@@ -46,10 +46,10 @@ class ImplicitStep {
   /// The sites that follow are of another pair of geoms, whose work is limited.
   void begin_pair(const WorkLimit& limit) noexcept { limits_.push_back(limit); }
 
-  /// A site of the last pair. The report keeps its inputs. `is_stiff`: an explicit step could not
-  /// hold it.
+  /// A site of the last pair. The report keeps its inputs. `driven`: of a against b, the motion at
+  /// the site that no degree of freedom makes. `is_stiff`: an explicit step could not hold it.
   void add(const ContactModel& model, ContactReport& report, std::size_t site, int body_a,
-           int body_b, bool is_stiff) noexcept;
+           int body_b, const Twist& driven, bool is_stiff) noexcept;
 
   bool empty() const noexcept { return sites_.empty(); }
 

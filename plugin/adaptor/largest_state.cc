@@ -2,6 +2,7 @@
 #include "adaptor/largest_state.h"
 
 #include "adaptor/law_tables.h"
+#include "adaptor/mocap_motion.h"
 #include "adaptor/site_pool.h"
 #include "adaptor/userdata_layout.h"
 #include "adaptor/work_limit.h"
@@ -36,7 +37,13 @@ int largest_state(const mjModel* m) {
   const int states = SitePoolLayout{rows, largest_row()}.size() +
                      SitePoolLayout{rows, PairEnergy::kNumbers}.size();
   const auto nv = static_cast<int>(m->nv);
-  return UserdataLayout{states, channels, rows, nv, static_cast<int>(m->nq) + nv}.size();
+  return UserdataLayout{states,
+                        channels,
+                        rows,
+                        nv,
+                        static_cast<int>(m->nq) + nv,
+                        static_cast<int>(m->nmocap) * MocapRow::kNumbers}
+      .size();
 }
 
 }  // namespace volcontact::adaptor

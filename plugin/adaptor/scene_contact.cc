@@ -71,8 +71,12 @@ UserdataLayout SceneContact::layout(const mjModel* m) const {
                        : keys_.options.target == Target::kXfrc  ? 6 * static_cast<int>(m->nbody)
                                                                 : 0;
   const auto dofs = static_cast<int>(m->nv);
-  return {sites_.size() + energies_.size(), channels, solved_rows_, dofs,
-          static_cast<int>(m->nq) + dofs};
+  return {sites_.size() + energies_.size(),
+          channels,
+          solved_rows_,
+          dofs,
+          static_cast<int>(m->nq) + dofs,
+          static_cast<int>(m->nmocap) * MocapRow::kNumbers};
 }
 
 UserdataBlock SceneContact::block(const mjModel* m, const mjData* d) const {
@@ -114,8 +118,13 @@ void SceneContact::evaluate_one(const mjModel* m, const mjData* d, const Before&
   const std::size_t index = static_cast<std::size_t>(k);
   const int pair_index = scratch.cull.near[index];
   const PairContact& pair = pairs_[static_cast<std::size_t>(pair_index)];
+  const auto twist_of = [&](int geom) {
+    const Twist own = twist_of_geom(m, d, geom);
+    const Twist driven = scratch.mocaps.at(m, d, m->geom_bodyid[geom], vec3_at(d->geom_xpos, geom));
+    return Twist{own.angular + driven.angular, own.linear + driven.linear};
+  };
   const BodyMotion motion{pose_of_geom(d, pair.geoms.a), pose_of_geom(d, pair.geoms.b),
-                          twist_of_geom(m, d, pair.geoms.a), twist_of_geom(m, d, pair.geoms.b)};
+                          twist_of(pair.geoms.a), twist_of(pair.geoms.b)};
   SiteMemory memory;
   memory.elapsed = before.elapsed;
   if (before.committed && pair.model.row_size() > 0) {
@@ -194,8 +203,11 @@ void SceneContact::write_forces(const mjModel* m, mjData* d, Scratch& scratch) c
     const GeomPair& geoms = pairs_[static_cast<std::size_t>(scratch.cull.near[k])].geoms;
     for (const SiteReport& site : scratch.reports[k].sites) {
       const Vec3& c = site.metrics.centroid;
-      forces.add(m, d, m->geom_bodyid[geoms.a], c, site.force_on_A, site.torque_on_A);
-      forces.add(m, d, m->geom_bodyid[geoms.b], c, -site.force_on_A, -site.torque_on_A);
+      const int a = m->geom_bodyid[geoms.a], b = m->geom_bodyid[geoms.b];
+      forces.add(m, d, a, c, site.force_on_A, site.torque_on_A);
+      forces.add(m, d, b, c, -site.force_on_A, -site.torque_on_A);
+      scratch.mocaps.add_load(m, d, a, c, site.force_on_A, site.torque_on_A);
+      scratch.mocaps.add_load(m, d, b, c, -site.force_on_A, -site.torque_on_A);
     }
   }
   const UserdataBlock our = block(m, d);
@@ -222,6 +234,23 @@ void SceneContact::write_forces(const mjModel* m, mjData* d, Scratch& scratch) c
   std::copy(acting.begin(), acting.end(), our.slot(0).forces());
 }
 
+// How the mocap bodies move, into the slot of this evaluation. Returns the work that they did on
+// the contacts since the last [J].
+double SceneContact::follow_mocaps(const mjModel* m, const mjData* d, const UserdataBlock& our,
+                                   const AccountKeeper& account, Scratch& scratch) const noexcept {
+  scratch.mocaps = MocapMotion(our.slot(0).mocaps());
+  if (m->nmocap == 0) return 0.0;
+  if (!account.continues()) {
+    scratch.mocaps.read(m, d, nullptr, 0.0, false);
+    return 0.0;
+  }
+  const MocapMotion before(our.slot(1).mocaps());
+  // They are moved between steps. The evaluation before lies within Runge-Kutta's step.
+  const double elapsed = m->opt.integrator == mjINT_RK4 ? m->opt.timestep : account.elapsed();
+  scratch.mocaps.read(m, d, &before, elapsed, account.is_within_step());
+  return account.is_within_step() ? 0.0 : scratch.mocaps.work_since(m, before, elapsed);
+}
+
 void SceneContact::step(const mjModel* m, mjData* d, Scratch& scratch) const noexcept {
   if (!has_room(m)) return;
   const UserdataBlock our = block(m, d);
@@ -231,6 +260,7 @@ void SceneContact::step(const mjModel* m, mjData* d, Scratch& scratch) const noe
   const AccountKeeper account(our, d->time, m->opt.timestep, m->opt.integrator == mjINT_RK4);
   const double* committed = account.continues() ? our.slot(1).states() : nullptr;
   const bool may_be_implicit = this->may_be_implicit(m);
+  const double driven = follow_mocaps(m, d, our, account, scratch);
   evaluate(m, d, {committed, account.elapsed(), may_be_implicit}, scratch);
   EnergyAccount now;
   our.set_solved(0);
@@ -270,7 +300,8 @@ void SceneContact::step(const mjModel* m, mjData* d, Scratch& scratch) const noe
   write_forces(m, d, scratch);
   now.force_power = power_of(our.slot(0).forces(), d->qvel, m->nv);
   keep_motion(m, d, our);
-  account.write(now, account.continues() ? power_of(our.slot(1).forces(), d->qvel, m->nv) : 0.0);
+  account.write(now, account.continues() ? power_of(our.slot(1).forces(), d->qvel, m->nv) : 0.0,
+                driven);
 }
 
 bool SceneContact::revisit(const mjModel* m, const mjData* d, Scratch& scratch) const noexcept {
@@ -281,6 +312,7 @@ bool SceneContact::revisit(const mjModel* m, const mjData* d, Scratch& scratch) 
   if (our.count() > 1) {
     before = {our.slot(1).states(), our.slot(0).time() - our.slot(1).time()};
   }
+  scratch.mocaps = MocapMotion(our.slot(0).mocaps());
   evaluate(m, d, before, scratch);
   recall_solved(our, scratch);
   return true;

@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "adaptor/body_forces.h"
+#include "adaptor/energy_account.h"
 #include "adaptor/engine_plugin.h"
 #include "adaptor/implicit_step.h"
+#include "adaptor/mocap_motion.h"
 #include "adaptor/pair_list.h"
 #include "adaptor/scene_keys.h"
 #include "adaptor/side_states.h"
@@ -53,6 +55,7 @@ class SceneContact {
     double dissipated = 0.0;           ///< by the contacts up to the evaluation before [J]
     std::vector<PairEnergy> energies;  ///< of the pairs in `near`
     std::vector<double> user_qfrc, user_xfrc, known, row;
+    MocapMotion mocaps;
     std::vector<double> way;  ///< of the dofs since the evaluation before
   };
 
@@ -148,6 +151,8 @@ class SceneContact {
   };
   void evaluate(const mjModel* m, const mjData* d, const Before& before,
                 Scratch& scratch) const noexcept;
+  double follow_mocaps(const mjModel* m, const mjData* d, const UserdataBlock& our,
+                       const AccountKeeper& account, Scratch& scratch) const noexcept;
   void evaluate_one(const mjModel* m, const mjData* d, const Before& before, int k,
                     ContactModel::Workspace& workspace, Scratch& scratch) const noexcept;
   bool may_be_implicit(const mjModel* m) const noexcept;

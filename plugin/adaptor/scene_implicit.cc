@@ -284,8 +284,12 @@ void SceneContact::solve_implicit(const mjModel* m, mjData* d, Scratch& scratch)
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
       const bool is_stiff = scratch.stiff[site++] != 0;
       if (report.sites[i].normal.isZero(0.0)) continue;
-      implicit.add(pair.model, report, i, m->geom_bodyid[pair.geoms.a],
-                   m->geom_bodyid[pair.geoms.b], is_stiff);
+      const int a = m->geom_bodyid[pair.geoms.a], b = m->geom_bodyid[pair.geoms.b];
+      const Vec3& point = report.sites[i].metrics.centroid;
+      const Twist of_a = scratch.mocaps.at(m, d, a, point),
+                  of_b = scratch.mocaps.at(m, d, b, point);
+      const Twist driven{of_a.angular - of_b.angular, of_a.linear - of_b.linear};
+      implicit.add(pair.model, report, i, a, b, driven, is_stiff);
     }
   }
   if (implicit.empty()) return;

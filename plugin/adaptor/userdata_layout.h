@@ -20,15 +20,16 @@ namespace volcontact::adaptor {
 
 /// Sizes of the block, in numbers.
 struct UserdataLayout {
-  static constexpr int kVersion = 5;
+  static constexpr int kVersion = 6;
   static constexpr int kHeader = 9;
   /// A Runge-Kutta step and the one before it, which a step that is redone needs.
   static constexpr int kSlots = 5;
   /// Time, step, stage, elastic energy, dissipated x4, power x4, taken x4, bristle energy x2,
   /// power into the elastic energy, whether the step is implicit, work, numerical, power of the
-  /// forces x2, elastic energy that nobody paid. Behind it the generalized forces, the law states
-  /// and the energies of the pairs.
-  static constexpr int kSlotHead = 25;
+  /// forces x2, elastic energy that nobody paid, work of mocap bodies, energy made in the step.
+  /// Behind it the generalized forces, the mocap bodies, the law states and the energies of the
+  /// pairs.
+  static constexpr int kSlotHead = 27;
   /// Of a site that an implicit step solved: normal force, force, torque.
   static constexpr int kSolvedRow = 7;
 
@@ -37,8 +38,9 @@ struct UserdataLayout {
   int solved_rows = 0;  ///< sites whose solved forces are kept, of the newest evaluation
   int dofs = 0;         ///< nv: generalized forces in a slot
   int motion = 0;       ///< nq + nv: positions and velocities of the newest evaluation
+  int mocaps = 0;       ///< numbers of the mocap bodies in a slot: mocap_motion.h
 
-  int slot_size() const { return kSlotHead + dofs + states; }
+  int slot_size() const { return kSlotHead + dofs + mocaps + states; }
   int ledger_size() const { return 2 * channels; }
   int solved_size() const { return solved_rows > 0 ? 1 + kSolvedRow * solved_rows : 0; }
   int size() const {
@@ -65,6 +67,9 @@ struct EnergyAccount {
   double last_power = 0.0;  ///< the same of the last stage of the Runge-Kutta step that ends here,
                             ///< which the evaluation replaces [W]
   double unpaid = 0.0;      ///< what the laws hold besides `elastic`, which no motion put in [J]
+  double driven = 0.0;      ///< work of mocap bodies on the contacts, since the start [J]
+  double made = 0.0;  ///< by the contacts in the step that ends here: work and what is stored more,
+                      ///< less what mocap bodies did [J]
 };
 
 /// What an evaluation was for the integrator.
@@ -77,19 +82,20 @@ enum class Stage : int {
 /// What one evaluation left: its time, its energies, its forces, its law states.
 class Slot {
  public:
-  Slot(double* numbers, int dofs) : p_(numbers), dofs_(dofs) {}
+  Slot(double* numbers, int dofs, int mocaps) : p_(numbers), dofs_(dofs), mocaps_(mocaps) {}
 
   double& time() const { return p_[0]; }
   double& step() const { return p_[1]; }
   double* forces() const { return p_ + UserdataLayout::kSlotHead; }
-  double* states() const { return forces() + dofs_; }
+  double* mocaps() const { return forces() + dofs_; }
+  double* states() const { return mocaps() + mocaps_; }
 
   Stage stage() const { return static_cast<Stage>(static_cast<int>(p_[2])); }
   void set_stage(Stage stage) const { p_[2] = static_cast<int>(stage); }
 
   EnergyAccount energy() const {
-    return {p_[3],         channels(4), channels(8), channels(12), p_[16], p_[17], p_[18],
-            p_[19] != 0.0, p_[20],      p_[21],      p_[22],       p_[23], p_[24]};
+    return {p_[3],  channels(4), channels(8), channels(12), p_[16], p_[17], p_[18], p_[19] != 0.0,
+            p_[20], p_[21],      p_[22],      p_[23],       p_[24], p_[25], p_[26]};
   }
   void set_energy(const EnergyAccount& e) const {
     p_[3] = e.elastic;
@@ -105,6 +111,8 @@ class Slot {
     p_[22] = e.force_power;
     p_[23] = e.last_power;
     p_[24] = e.unpaid;
+    p_[25] = e.driven;
+    p_[26] = e.made;
   }
 
  private:
@@ -115,7 +123,7 @@ class Slot {
   }
 
   double* p_;
-  int dofs_;
+  int dofs_, mocaps_;
 };
 
 /// Our block in one mjData.
@@ -155,7 +163,7 @@ class UserdataBlock {
     const int index = (newest() + UserdataLayout::kSlots - age) % UserdataLayout::kSlots;
     return Slot(
         header_ - layout_.ledger_size() - (UserdataLayout::kSlots - index) * layout_.slot_size(),
-        layout_.dofs);
+        layout_.dofs, layout_.mocaps);
   }
 
   void drop_newest() const {

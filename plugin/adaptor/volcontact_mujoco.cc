@@ -321,6 +321,8 @@ int volcontact_get_energy(const mjModel* m, const mjData* d, volcontact_energy* 
     energy->work = account.work;
     energy->numerical = account.numerical;
     energy->unpaid = account.unpaid;
+    energy->driven = account.driven;
+    energy->made = account.made;
     energy->dropped = contact->dropped(m, d);
     energy->forgotten = contact->forgotten(m, d);
     return 0;

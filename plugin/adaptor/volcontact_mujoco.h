@@ -76,8 +76,10 @@ typedef struct volcontact_energy_ {
   double dropped;        // evaluations in which a force was no number and was left out
   double forgotten;      // evaluations with more contact sites than userdata keeps
   double work;           // done by the contact forces on the scene since the start [J]
-  double numerical;      // -work - dissipated - change of elastic: made by the finite step [J]
+  double numerical;      // driven - work - dissipated - change of elastic [J]
   double unpaid;         // what the laws hold besides `elastic`, which no motion put in [J]
+  double driven;         // work of mocap bodies on the contacts since the start [J]
+  double made;           // work + change of elastic - driven, of the last step [J]
 } volcontact_energy;
 
 // mjVERSION_HEADER of the MuJoCo this library was compiled for.

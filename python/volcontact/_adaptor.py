@@ -77,6 +77,8 @@ class RawEnergy(ctypes.Structure):
         ("work", ctypes.c_double),
         ("numerical", ctypes.c_double),
         ("unpaid", ctypes.c_double),
+        ("driven", ctypes.c_double),
+        ("made", ctypes.c_double),
     )
 
 

@@ -31,9 +31,9 @@ class Channels(NamedTuple):
 class Energy(NamedTuple):
     """Energies of a scene at the last evaluation.
 
-    `work + elastic + dissipated + numerical` keeps the value that `elastic` had at the start, and
-    kinetic + potential energy less `work` keeps its value where nothing else does work, up to the
-    integrator's error.
+    `work + elastic + dissipated + numerical - driven` keeps the value that `elastic` had at the
+    start, and kinetic + potential energy less `work` keeps its value where nothing else does work,
+    up to the integrator's error.
 
     Attributes:
         elastic: stored in the contacts [J].
@@ -46,6 +46,10 @@ class Energy(NamedTuple):
             vanishes with it. Negative where steps that are too large give energy to the motion.
         unpaid: what the laws would hold besides `elastic`, in overlaps that no motion made [J]; no
             body gets it back.
+        driven: work that mocap bodies did on the contacts since the start [J].
+        made: what the contacts did and stored in the last step, less what mocap bodies did on them
+            [J]: the audit of a step. Contact takes energy, so it is negative, up to what gravity
+            does meanwhile and an explicit step errs by.
     """
 
     elastic: float
@@ -55,6 +59,8 @@ class Energy(NamedTuple):
     work: float
     numerical: float
     unpaid: float
+    driven: float
+    made: float
 
 
 def load(
@@ -305,7 +311,15 @@ class Contact(Closing):
         dissipated = Channels(*raw.dissipated)
         power = Channels(*raw.power)
         return Energy(
-            raw.elastic, sum(dissipated), dissipated, power, raw.work, raw.numerical, raw.unpaid
+            raw.elastic,
+            sum(dissipated),
+            dissipated,
+            power,
+            raw.work,
+            raw.numerical,
+            raw.unpaid,
+            raw.driven,
+            raw.made,
         )
 
     def dropped(self, data: mujoco.MjData) -> int:

@@ -26,7 +26,7 @@ class Simulation {
     now.taken.slide = power(time) + wrong;
     now.slide_energy = stored(time);
     now.force_power = -power(time) - wrong;
-    account.write(now, -power(time));
+    account.write(now, -power(time), 0.0);
     return block().slot(0).energy().dissipated.slide;
   }
   EnergyAccount account() { return block().slot(0).energy(); }
@@ -108,7 +108,7 @@ TEST(EnergyAccount, WhatTheLawsDoNotKnowIsNumerical) {
   before.work = -10.0;
   before.numerical = 0.25;
   EnergyAccount now{0.7, {1.5, 2.0, 3.0, 4.0}, {}, {}, 0.0, 0.0};
-  add_work(before, -1.0, now);  // of 1 J taken 0.2 are stored, 0.5 dissipated
+  add_work(before, -1.0, 0.0, now);  // of 1 J taken 0.2 are stored, 0.5 dissipated
   EXPECT_DOUBLE_EQ(now.work, -11.0);
   EXPECT_DOUBLE_EQ(now.numerical, 0.25 + 0.3);
 }

@@ -184,3 +184,109 @@ def test_runge_kutta_bounds_what_is_too_stiff_for_it():
             fastest = max(fastest, data.qvel[2])
     assert fastest < 0.3
     assert abs(data.qpos[2] - 0.1) < 0.05
+
+
+def run_carried(speed, integrator, material, steps=400, warm=100):
+    """A box on a plate that is lifted by hand: plate and box after it, energies."""
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><option timestep=".002" integrator="{integrator}"/><worldbody>'
+        '<body mocap="true" pos="0 0 -.01"><geom type="box" size=".2 .2 .01"/></body>'
+        '<body pos="0 0 .05"><freejoint/><geom type="box" size=".05 .05 .05" mass="1"/></body>'
+        "</worldbody></mujoco>"
+    )
+    data = mujoco.MjData(model)
+    with vc.attach(model, material=material) as contact:
+        for i in range(warm + steps):
+            if i >= warm:
+                data.mocap_pos[0, 2] += speed * model.opt.timestep
+            mujoco.mj_step(model, data)
+        mujoco.mj_forward(model, data)
+        return data, contact.energy(data)
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "implicitfast"])
+@pytest.mark.parametrize("speed", [0.05, 0.2, 2.0])
+@pytest.mark.parametrize(
+    "material", [{"restitution": 0.5}, {"stiffness": 1e9, "damping": 0.5, "friction": 0.5}]
+)
+@pytest.mark.filterwarnings("ignore:the model has no room")
+def test_a_mocap_body_carries_what_lies_on_it(speed, integrator, material):
+    data, energy = run_carried(speed, integrator, material)
+    top, bottom = data.mocap_pos[0, 2] + 0.01, data.qpos[2] - 0.05
+    assert abs(bottom - top) < 2.5 * speed * 2e-3 + 2e-4  # seen first where it stands, then moving
+    assert data.qvel[2] == pytest.approx(speed, rel=1e-3)
+    # Books: what the hand did is in the height and the speed of the box, or was dissipated.
+    gained = 9.81 * bottom + 0.5 * speed**2
+    assert energy.work == pytest.approx(gained, rel=0.02)
+    assert energy.driven == pytest.approx(energy.work + energy.dissipated, rel=2e-3)
+    assert abs(energy.numerical) < 1e-3 * energy.driven
+    assert 0.0 <= energy.dissipated < 0.51 * speed**2 + 0.01  # the blow at the start
+
+
+@pytest.mark.parametrize("restitution", [0.5, 0.9])
+@pytest.mark.filterwarnings("ignore:the model has no room")
+def test_a_mocap_paddle_hits_as_a_heavy_body_on_a_joint_does(restitution):
+    speeds = []
+    for start in ('mocap="true"', ""):
+        joint = "" if start else '<joint type="slide" axis="1 0 0"/>'
+        model = mujoco.MjModel.from_xml_string(
+            '<mujoco><option timestep=".0005" gravity="0 0 0"/><worldbody>'
+            f'<body {start} pos="-.1 0 0">{joint}<geom type="box" size=".02 .1 .1" mass="1e6"/>'
+            '</body><body><freejoint/><geom type="sphere" size=".05" mass="1"/></body>'
+            "</worldbody></mujoco>"
+        )
+        data = mujoco.MjData(model)
+        if not start:
+            data.qvel[0] = 1.0
+        with vc.attach(model, material={"restitution": restitution}):
+            for _ in range(400):
+                if start:
+                    data.mocap_pos[0, 0] += model.opt.timestep
+                mujoco.mj_step(model, data)
+        speeds.append(data.qvel[-6])
+    assert speeds[0] == pytest.approx(speeds[1], rel=1e-3)
+    assert speeds[0] == pytest.approx(1.0 + restitution, rel=0.02)
+
+
+@pytest.mark.filterwarnings("ignore:the model has no room")
+def test_a_mocap_body_that_is_put_elsewhere_hits_nobody():
+    model = mujoco.MjModel.from_xml_string(
+        '<mujoco><option timestep=".002" gravity="0 0 0"/><worldbody>'
+        '<body mocap="true" pos="0 0 -1"><geom type="box" size=".2 .2 .01"/></body>'
+        '<body><freejoint/><geom type="box" size=".05 .05 .05" mass="1"/></body>'
+        "</worldbody></mujoco>"
+    )
+    data = mujoco.MjData(model)
+    with vc.attach(model) as contact:
+        for _ in range(10):
+            mujoco.mj_step(model, data)
+        data.mocap_pos[0, 2] = -0.055  # 5 mm into the box, 0.5 m from where it was
+        for _ in range(50):
+            mujoco.mj_step(model, data)
+            assert abs(data.qvel[2]) <= 0.11  # exit_speed
+        assert contact.energy(data).driven == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_mocap_body_moves_on_in_copies_of_the_data():
+    scene = (
+        '<mujoco><option timestep=".002"/><worldbody>'
+        '<body mocap="true" pos="0 0 -.01"><geom type="box" size=".2 .2 .01"/></body>'
+        '<body pos="0 0 .05"><freejoint/><geom type="box" size=".05 .05 .05" mass="1"/></body>'
+        "</worldbody></mujoco>"
+    )
+    model = vc.load(scene)
+    data = mujoco.MjData(model)
+    with vc.attach(model):
+
+        def lift(data, steps):
+            for _ in range(steps):
+                data.mocap_pos[0, 2] += 4e-4
+                mujoco.mj_step(model, data)
+
+        lift(data, 50)
+        other = mujoco.MjData(model)
+        mujoco.mj_copyData(other, model, data)
+        lift(data, 20)
+        lift(other, 20)
+        assert (data.qpos == other.qpos).all()
+        assert data.qvel[2] == pytest.approx(0.2, rel=1e-3)
