@@ -15,27 +15,8 @@ constexpr double kSplitShare = 0.4;    // axes with this share of the largest sc
 constexpr double kOthersShare = 0.25;  // weight of the other faces' bend in a face's doubt
 constexpr double kLeastLeft = 1e-2;    // of a polytope, for its faces to stand for the surface
 constexpr double kMostShare = 2.0;     // of the volume sampled, to which it may be corrected
-
-// Where next to nothing is left of the volumes that were added and taken away, their moments need
-// not belong to any body in the box: then what is left is at the point of the box next to them.
-void place_in_box(const Vec3& low, const Vec3& high, CellSums& sums) {
-  if (!(sums.volume > 0.0)) {
-    sums.first.setZero();
-    sums.second.setZero();
-    return;
-  }
-  constexpr double kSlack = 1e-9;  // of the box
-  const Vec3 middle = sums.first / sums.volume, size = high - low;
-  const Vec3 at = middle.cwiseMax(low).cwiseMin(high);
-  const Vec3 spread = sums.second.diagonal() / sums.volume - middle.cwiseAbs2();
-  const double slack = kSlack * size.squaredNorm();
-  if ((at - middle).norm() <= kSlack * size.norm() && spread.minCoeff() >= -slack &&
-      (spread - 0.25 * size.cwiseAbs2()).maxCoeff() <= slack) {
-    return;
-  }
-  sums.first = sums.volume * at;
-  sums.second = sums.volume * at * at.transpose();
-}
+constexpr double kPlaceSlack = 1e-9;   // of the box
+constexpr int kMostSteps = 12;         // to a place behind all faces
 
 }  // namespace
 
@@ -128,7 +109,84 @@ void CellCut::estimate(Cell& cell) {
   }
   // Where the faces leave hardly anything of the polytope, its own faces are not theirs.
   if (sums.volume < kLeastLeft * polytope) sums.surface = {};
-  place_in_box(cell.content_low, cell.content_high, sums);
+  limit_surfaces(cell);
+  place(cell);
+}
+
+// A face shows no more of itself along an axis than the side of the cell. The foot of a sample on a
+// face that bends back within the cell may.
+void CellCut::limit_surfaces(Cell& cell) const {
+  const Vec3& h = cell.half;
+  const Vec3 side = 4.0 * Vec3(h.y() * h.z(), h.z() * h.x(), h.x() * h.y());
+  int faces[2] = {0, 0};
+  for (const Tangent& t : tangents_) faces[t.owner] += t.seam ? 0 : 1;
+  for (int owner = 0; owner < 2; ++owner) {
+    CellSums::Surface& surface = cell.sums.surface[owner];
+    const double share =
+        (faces[owner] * side).cwiseQuotient(surface.area_vector.cwiseAbs()).minCoeff();
+    if (!(share < 1.0)) continue;
+    surface.area_vector *= share;
+    surface.moment *= share;
+    surface.area *= share;
+  }
+}
+
+// Next to `from` in the box and behind every face that is flat or convex: there the centroid of
+// what they hold lies. Step by step, each to the face that `at` is farthest in front of.
+Vec3 CellCut::behind_faces(const Cell& cell, const Vec3& from) const {
+  const double slack = kPlaceSlack * (cell.content_high - cell.content_low).norm();
+  Vec3 at = from.cwiseMax(cell.content_low).cwiseMin(cell.content_high);
+  for (int step = 0; step < kMostSteps; ++step) {
+    double farthest = slack;
+    Vec3 way = Vec3::Zero();
+    for (const Tangent& t : tangents_) {
+      if (t.slack > 0.0 || (t.bend != Bend::kFlat && t.bend != Bend::kConvex)) continue;
+      const Vec3 slope = t.slope + t.hessian * (at - t.touch);
+      const double value = t.plane(at) + t.bend_at(at), size = slope.norm();
+      if (!(value > farthest * size)) continue;
+      farthest = value / size;
+      way = slope / size;
+    }
+    if (farthest == slack) return at;
+    at = (at - farthest * way).cwiseMax(cell.content_low).cwiseMin(cell.content_high);
+  }
+  // Between faces that all but meet the steps are short. The middle of the polytope is behind the
+  // flat ones.
+  if (polytope_.size() == 0) return at;
+  Vec3 behind = Vec3::Zero();
+  for (const Vec3& p : polytope_.points()) behind += p;
+  behind /= polytope_.size();
+  double share = 1.0;  // of the way from there
+  for (const Tangent& t : tangents_) {
+    const double first = t.plane(behind), last = t.plane(at);
+    if (!t.exact() || last <= 0.0 || !(first < last)) continue;
+    share = std::min(share, std::max(0.0, first / (first - last)));
+  }
+  return behind + share * (at - behind);
+}
+
+// Where next to nothing is left of the volumes that were added and taken away, their moments need
+// not belong to any body in the cell: then what is left is put next to them, where it can be.
+void CellCut::place(Cell& cell) const {
+  CellSums& sums = cell.sums;
+  if (!(sums.volume > 0.0)) {
+    sums.first.setZero();
+    sums.second.setZero();
+    return;
+  }
+  const Vec3 middle = sums.first / sums.volume, size = cell.content_high - cell.content_low;
+  const Vec3 at = behind_faces(cell, middle);
+  const Vec3 spread = sums.second.diagonal() / sums.volume - middle.cwiseAbs2();
+  const double slack = kPlaceSlack * size.squaredNorm();
+  const bool spreads =
+      spread.minCoeff() >= -slack && (spread - 0.25 * size.cwiseAbs2()).maxCoeff() <= slack;
+  if ((at - middle).norm() <= kPlaceSlack * size.norm() && spreads) return;
+  if (spreads) {
+    sums.second += sums.volume * (at * at.transpose() - middle * middle.transpose());
+  } else {
+    sums.second = sums.volume * at * at.transpose();
+  }
+  sums.first = sums.volume * at;
 }
 
 // From the corners of the polytope, and as far outside as the faces bend.

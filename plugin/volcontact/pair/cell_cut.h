@@ -151,6 +151,9 @@ class CellCut {
   void estimate(Cell& cell);
   void choose_split(Cell& cell) const;
   void enclose(Cell& cell) const;
+  void limit_surfaces(Cell& cell) const;
+  Vec3 behind_faces(const Cell& cell, const Vec3& from) const;
+  void place(Cell& cell) const;
   bool draw_back(const Vec3& half, const Vec3& e, Vec3& corner) const;
 
   CutPolytope polytope_;
