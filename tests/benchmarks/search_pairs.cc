@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Random search for wrong answers: search_pairs FAMILY SEED FIRST COUNT
+// Random search for wrong answers: search_pairs FAMILY SEED FIRST COUNT [LEVEL]
 // Prints lines of JSON that tests/benchmarks/search_for_failures.py adds up: one of every failure,
-// and at the end one with the counts. After a crash the last line names the case.
+// and at the end one with the counts. After a crash the last line names the case. LEVEL, 0 to 5, is
+// how closely the judge looks at every case, instead of at one in 20 and in 500.
 #include <unistd.h>
 
 #include <csignal>
@@ -14,6 +15,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "core/support/line_oracle.h"
 #include "core/support/pair_search.h"
 
 namespace {
@@ -65,7 +67,8 @@ void print(const SearchFailure& f, SearchFamily family, std::uint64_t index) {
       finite(f.expected), finite(f.doubt), f.a.c_str(), f.b.c_str(), f.X_AB.c_str());
 }
 
-int search(SearchFamily family, std::uint64_t seed, std::uint64_t first, std::uint64_t count) {
+int search(SearchFamily family, std::uint64_t seed, std::uint64_t first, std::uint64_t count,
+           int level) {
   PairSearch search;
   SearchCases cases(family, seed);
   std::map<std::string, Count> counts;
@@ -80,7 +83,8 @@ int search(SearchFamily family, std::uint64_t seed, std::uint64_t first, std::ui
       ++refused;  // solids that are none
       continue;
     }
-    const SearchOutcome outcome = search.run(c, level_of(index), seed + 1000003 * index);
+    const SearchOutcome outcome =
+        search.run(c, level >= 0 ? level : level_of(index), seed + 1000003 * index);
     Count& tally = counts[to_string(outcome.engine)];
     ++tally.cases;
     tally.overlapping += outcome.overlapping;
@@ -109,14 +113,15 @@ int search(SearchFamily family, std::uint64_t seed, std::uint64_t first, std::ui
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 5) {
-    std::fprintf(stderr, "usage: search_pairs FAMILY SEED FIRST COUNT\n");
+  const int level = argc == 6 ? std::atoi(argv[5]) : -1;
+  if (argc < 5 || argc > 6 || level >= LineOracle::kLevels) {
+    std::fprintf(stderr, "usage: search_pairs FAMILY SEED FIRST COUNT [LEVEL]\n");
     return 2;
   }
   for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGALRM}) std::signal(signal, on_signal);
   try {
     return search(family_of(argv[1]), std::strtoull(argv[2], nullptr, 10),
-                  std::strtoull(argv[3], nullptr, 10), std::strtoull(argv[4], nullptr, 10));
+                  std::strtoull(argv[3], nullptr, 10), std::strtoull(argv[4], nullptr, 10), level);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "search_pairs: %s\n", error.what());
     return 2;

@@ -206,6 +206,18 @@ bool are_possible(const A& a, const B& b, const Pose& X_AB, const Interference& 
          (out.sites.size() == 1 || std::all_of(out.sites.begin(), out.sites.end(), possible));
 }
 
+// Of every site and of their sum; see bound_depth_moment.
+template <typename A, typename B>
+void bound_depth_moments(const A& a, const B& b, Interference& out) {
+  const double longest = longest_line(limits_of(a), limits_of(b));
+  double sum = 0.0;
+  for (VolumeMetrics& site : out.sites) {
+    bound_depth_moment(longest, site);
+    sum += site.depth_moment;
+  }
+  out.total.depth_moment = sum;
+}
+
 // The same, or else by the surface of the overlap. False when that fails as well.
 template <typename A, typename B>
 bool lines(const A& a, const B& b, const Shape& shape_a, const Shape& shape_b, const Pose& X_AB,
@@ -329,7 +341,12 @@ void interference(const Shape& a, const Shape& b, const Pose& X_AB,
     octree_interference(a, b, X_AB, options, workspace.scratch().octree, out);
     if (!possible()) set_status(Status::kInvalid, out);
   };
-  std::visit(run, a, b);
+  std::visit(
+      [&](const auto& solid_a, const auto& solid_b) {
+        run(solid_a, solid_b);
+        if (out.engine != Engine::kClosedForm) bound_depth_moments(solid_a, solid_b, out);
+      },
+      a, b);
 }
 
 }  // namespace volcontact

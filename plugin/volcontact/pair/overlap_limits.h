@@ -96,4 +96,17 @@ inline bool is_possible(const VolumeMetrics& metrics, const OverlapLimits& a,
   return is_possible(b, parts, R_BA * p_BC_A, R_BA * m.area_vector);
 }
 
+/// The longest line that both bounds hold [m]; infinite where neither ends.
+inline double longest_line(const OverlapLimits& a, const OverlapLimits& b) {
+  return std::min((a.bounds.max - a.bounds.min).norm(), (b.bounds.max - b.bounds.min).norm());
+}
+
+/// No part of V has more depth than the longest line: keeps the depth moment, int depth dV, within
+/// that. Where a touch has no volume but by rounding, its depth comes out as anything.
+inline void bound_depth_moment(double longest, VolumeMetrics& m) {
+  const double most = longest * m.volume;
+  if (!(m.depth_moment <= most)) m.depth_moment = most;
+  if (m.depth_moment < 0.0) m.depth_moment = 0.0;
+}
+
 }  // namespace volcontact

@@ -6,6 +6,7 @@
 #include "core/support/csg_solids.h"
 #include "core/support/evaluated.h"
 #include "core/support/random.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::overlap_limits_test {
 namespace {
@@ -93,6 +94,54 @@ TEST(OverlapLimits, HoldForUnboundedSolidsAndForAnyPose) {
     const Interference out = test::evaluated(ground, kBall, X);
     EXPECT_EQ(out.engine, Engine::kClosedForm);
     EXPECT_TRUE(is_possible(out.total, limits_of(ground), limits_of(kBall), X));
+  }
+}
+
+TEST(OverlapLimits, ADepthMomentIsBoundedByTheVolume) {
+  const double longest = longest_line(limits_of(kBall), limits_of(HalfSpace()));
+  EXPECT_NEAR(longest, std::sqrt(12.0), 1e-12);
+  VolumeMetrics m = cap();
+  m.depth_moment = .05 * m.volume;
+  bound_depth_moment(longest, m);
+  EXPECT_EQ(m.depth_moment, .05 * m.volume);
+  for (const double wrong : {std::numeric_limits<double>::quiet_NaN(), kInfinity, 1e10}) {
+    m.volume = 7e-18;
+    m.depth_moment = wrong;
+    bound_depth_moment(longest, m);
+    EXPECT_EQ(m.depth_moment, longest * 7e-18);
+  }
+  m.depth_moment = -1e-3;
+  bound_depth_moment(longest, m);
+  EXPECT_EQ(m.depth_moment, 0.0);
+}
+
+// Solids that touch, in any order and pose: the energy of a law, k times the moment, is none.
+TEST(OverlapLimits, ATouchHoldsNoEnergy) {
+  test::Random random(8);
+  const Csg bored = box(.3, .3, .2) - tube(.15, .4), pipe = tube(.3, .3) - tube(.15, .4);
+  struct Touch {
+    Shape a, b;
+    Pose X;
+  };
+  const Touch touches[] = {
+      {bored, Cylinder({.radius = .15, .half_length = .3}), at(0, 0, 0)},
+      {pipe, Capsule({.radius = .15, .half_length = .1}), at(0, 0, .05)},
+      {bored, Sphere({.radius = .15}), at(0, 0, .1)},
+      {bored, Box({.half_sizes = {.1, .1, .1}}), at(0, 0, .3)},
+      {pipe, Cylinder({.radius = .1, .half_length = .2}), at(.4, 0, 0)},
+      {Cylinder({.radius = .1, .half_length = .2}), Frustum({.bottom_radius = .2}), at(0, 0, .3)},
+      {Sphere({.radius = .1}), Ellipsoid({.semi_axes = {.1, .2, .3}}), at(0, .3, 0)},
+      {Torus({.major_radius = .3, .minor_radius = .1}), Sphere({.radius = .2}), at(0, 0, 0)},
+      {Torus({.major_radius = .3, .minor_radius = .1}), Torus({.major_radius = .3}), at(.9, 0, 0)},
+  };
+  for (const Touch& touch : touches) {
+    for (int i = 0; i < 20; i += test::cases(1, 7)) {
+      Pose X = touch.X;
+      if (i > 0) X.translation += random.in_box(std::pow(10.0, i - 18));
+      const Interference out = test::evaluated(touch.a, touch.b, X);
+      EXPECT_LE(out.total.depth_moment, 2.0 * out.total.volume) << name_of(touch.b) << " " << i;
+      EXPECT_GE(out.total.depth_moment, 0.0);
+    }
   }
 }
 

@@ -87,6 +87,10 @@ class Judge {
       fail(what, answer, body_, 0.0);
       return true;
     }
+    const double deepest = 10.0 * std::min(c_.a.size, c_.b.size);
+    if (m.depth_moment < 0.0 || m.depth_moment > deepest * m.volume) {
+      fail("impossible depth moment", answer, m.depth_moment, 0.0);
+    }
     double sum = 0.0;
     for (const VolumeMetrics& site : answer.sites) sum += site.volume;
     if (std::abs(sum - m.volume) > kSiteSum * m.volume) {
