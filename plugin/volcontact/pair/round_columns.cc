@@ -18,6 +18,10 @@ using Sliver = RoundPieces::Sliver;
 constexpr double kAlmostWhole = 1e-4;  // of B's volume
 constexpr double kTipDepth = 1e-4;     // of the depth of a patch: B looks down at its outline
 constexpr double kDoubtShare = 0.03;   // of the tolerance, left to the rule on the triangles
+// The rule may err by this much of what it differs by from the rough one, where the end of the
+// columns has a kink or a vertical tangent within a triangle; 0.03 of it is the median.
+constexpr double kRoughError = 5.0;
+constexpr double kRoughShare = 0.8;    // of the tolerance, left to that
 constexpr double kSliverError = 0.25;  // of their volume; as measured
 constexpr double kRestError = 1e-7;    // of V; as measured
 constexpr double kSeamError = 1e-4;    // the same where faces of B meet
@@ -284,11 +288,12 @@ class RoundColumns {
   double error_of(const RoundSum& sum) const {
     const double volume = std::abs(sum.volume);
     const double rest = solid_.has_axis ? kSeamError : kRestError;
-    return sum.doubt + kSliverError * sum.slivers + rest * volume;
+    return kRoughError * sum.difference + kSliverError * sum.slivers + rest * volume;
   }
   bool precise(const RoundSum& sum) const {
     const double volume = std::abs(sum.volume);
-    return sum.doubt <= kDoubtShare * options_.tolerance * volume;
+    return sum.doubt <= kDoubtShare * options_.tolerance * volume &&
+           kRoughError * sum.difference <= kRoughShare * options_.tolerance * volume;
   }
 
   RoundSum sum_parts(const Vec3& up) {

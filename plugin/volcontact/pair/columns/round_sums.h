@@ -32,9 +32,10 @@ struct RoundSum {
   Mat3 second = Mat3::Zero();
   double energy = 0.0;  ///< int L^2/2 over the columns' cross-section [m^4]
   double counter_area = 0.0;
-  double longest = 0.0;  ///< of the columns that were looked at [m]
-  double doubt = 0.0;    ///< of the volume, by the rule on the triangles
-  double slivers = 0.0;  ///< volume of the slivers
+  double longest = 0.0;     ///< of the columns that were looked at [m]
+  double doubt = 0.0;       ///< of the volume, by the rule on the triangles, if it is smooth there
+  double difference = 0.0;  ///< between that rule and the rough one, each triangle's own size
+  double slivers = 0.0;     ///< volume of the slivers
 };
 
 /// Columns run against the unit vector `up`. `triangles` and `points` are multiples of eight; their
