@@ -11,6 +11,7 @@
 #include "core/support/matchers.h"
 #include "core/support/meshes.h"
 #include "core/support/overlapping.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::torus_columns_test {
 namespace {
@@ -29,11 +30,12 @@ const Torus kRing({.major_radius = kMajor, .minor_radius = kMinor});
 TEST(TorusColumns, AMeshOfABoxMeetsARingAsTheBox) {
   const Vec3 half(0.5, 0.4, 0.3);
   const Box box({.half_sizes = half});
+  constexpr int kPoses = test::cases(40, 6);
   Random random(1);
   for (const double minor : {0.05, 0.2, 0.29}) {
     const Torus ring({.major_radius = kMajor, .minor_radius = minor});
     std::vector<double> errors;
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < kPoses; ++i) {
       const Mesh mesh = mesh_of(box_soup(half, 1 + 5 * (i % 3)));
       const Pose X_AB = overlapping(box, ring, random, std::pow(10.0, random.uniform(-4.0, -1.0)));
       const Interference out = evaluated(mesh, ring, X_AB);
@@ -51,9 +53,11 @@ TEST(TorusColumns, AMeshOfABoxMeetsARingAsTheBox) {
       EXPECT_LE((m.inertia - expected.inertia).norm(), 1e-3 * expected.inertia.norm());
     }
     std::sort(errors.begin(), errors.end());
-    EXPECT_GE(errors.size(), 38u);
+    EXPECT_GE(errors.size() + 2, static_cast<std::size_t>(kPoses));
     EXPECT_LE(errors[errors.size() / 2], 1e-5);
-    EXPECT_LE(errors[errors.size() * 9 / 10], 5e-5);
+    if (!test::kSanitized) {
+      EXPECT_LE(errors[errors.size() * 9 / 10], 5e-5);
+    }
   }
 }
 

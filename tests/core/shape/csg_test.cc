@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/support/csg_solids.h"
+#include "core/support/sanitized.h"
 #include "volcontact/shape/csg_metrics.h"
 
 namespace volcontact::csg_test {
@@ -212,21 +213,33 @@ TEST(Csg, OwnMetricsAndTheQuadratureAgree) {
 
 TEST(Csg, VolumesOfUnionAndIntersectionAddUp) {
   constexpr double kQuadrature = 1e-8;  // of the volume
-  const auto volume = [](const Csg& solid) { return solid.own_metrics().volume; };
+  constexpr double kWork = 1e5;         // under sanitizers, with an error then
+  const auto metrics = [](const Csg& solid) {
+    VolumeMetrics m = test::kSanitized ? csg_metrics_by_lines(solid, kWork) : solid.own_metrics();
+    if (!test::kSanitized) m.volume_error = 0.0;
+    return m;
+  };
   const Csg a = ball(.2), b = tube(.1, .3, turned({1, 2, 3}, 0.7, {.05, .02, -.03}));
-  const double both = volume(a & b);
-  EXPECT_NEAR(volume(a + b) + both, volume(a) + volume(b), kQuadrature * volume(a + b));
-  EXPECT_NEAR(volume(a - b) + both, volume(a), kQuadrature * volume(a));
-  const Csg ring(Torus({.major_radius = .2, .minor_radius = .05}));
-  const Csg half = box(.3, .3, .3, at(.3, 0, 0));
-  EXPECT_NEAR(volume(ring - half), 0.5 * volume(ring), kQuadrature * volume(ring));
+  const double of_a = a.own_metrics().volume, of_b = b.own_metrics().volume;
+  const VolumeMetrics both = metrics(a & b), all = metrics(a + b), rest = metrics(a - b);
+  EXPECT_NEAR(all.volume + both.volume, of_a + of_b,
+              kQuadrature * all.volume + all.volume_error + both.volume_error);
+  EXPECT_NEAR(rest.volume + both.volume, of_a,
+              kQuadrature * of_a + rest.volume_error + both.volume_error);
+  const Torus ring({.major_radius = .2, .minor_radius = .05});
+  const VolumeMetrics halved = metrics(Csg(ring) - box(.3, .3, .3, at(.3, 0, 0)));
+  const double of_ring = ring.own_metrics().volume;
+  EXPECT_NEAR(halved.volume, 0.5 * of_ring, kQuadrature * of_ring + halved.volume_error);
 }
 
 // Where the budget ends the volume is an estimate that says so, within its error of the full
 // quadrature; the same bits each time. More work, less error.
 TEST(Csg, OwnMetricsWithinABudgetAreAnEstimateThatSaysSo) {
   int approximate = 0;
-  for (const NamedSolid& named : kinds_of_solids()) {
+  const std::vector<NamedSolid> kinds = kinds_of_solids();
+  constexpr int kEvery = test::cases(1, 8);
+  for (std::size_t i = 0; i < kinds.size(); i += kEvery) {
+    const NamedSolid& named = kinds[i];
     const VolumeMetrics exact = named.solid.own_metrics();
     for (const double work : {1e3, 1e4, 1e5}) {
       const VolumeMetrics m = csg_metrics_by_lines(named.solid, work);
@@ -242,7 +255,7 @@ TEST(Csg, OwnMetricsWithinABudgetAreAnEstimateThatSaysSo) {
       ++approximate;
     }
   }
-  EXPECT_GT(approximate, 60);
+  EXPECT_GT(approximate, 60 / kEvery);
 }
 
 // Two tori about different axes, and more than a line can be cut with in any time.
