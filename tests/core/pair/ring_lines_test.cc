@@ -7,6 +7,7 @@
 #include "core/support/gradient.h"
 #include "core/support/matchers.h"
 #include "core/support/random_shapes.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::ring_lines_test {
 namespace {
@@ -136,7 +137,7 @@ TEST(RingLines, AreaVectorAndMomentAreTheGradientOfVolume) {
   test::Random random(5);
   const std::vector<Shape> all = bodies();
   for (const Shape& body : all) {
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < test::cases(6, 1); ++i) {
       const double angle = random.uniform(0.0, 2.0 * kPi);
       const Pose X{random.rotation(),
                    Vec3(0.35 * std::cos(angle), 0.35 * std::sin(angle), random.uniform(0.0, 0.1))};
