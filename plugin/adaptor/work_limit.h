@@ -71,7 +71,7 @@ struct PairEnergy {
   void solve(double work, double friction_work = 0.0) noexcept {
     is_solved = true;
     rubbed = std::max(0.0, rubbed - friction_work);
-    put(-work);
+    put(-work, kOverdraft * most);  // once, and not in every step anew
     most = std::max(most, stored);
   }
 
@@ -84,7 +84,7 @@ struct PairEnergy {
   }
 
   /// Work done on the contact. What it gives back at a slow exit was found; the rest of that had
-  /// been dissipated, and is so no more. Explicit steps may owe what they err by.
+  /// been dissipated, and is so no more. Steps may owe what they err by.
   void put(double work, double owed = 0.0) noexcept {
     stored += work;
     const double given = std::clamp(-stored, 0.0, found);

@@ -61,6 +61,19 @@ TEST(PairEnergy, ExplicitStepOwesWhatItGaveTooMuch) {
   EXPECT_NEAR(energy.stored, -0.02, 1e-12);
 }
 
+// Else a pair that parts slowly makes the rounding of every step into motion.
+TEST(PairEnergy, SolvedStepOverdrawsOnceOnly) {
+  PairEnergy energy;
+  energy.solve(-1.0);
+  double given = 0.0;
+  for (int step = 0; step < 100; ++step) {
+    const double work = WorkLimit::of(energy, 0.0, 0.1).allowed();
+    energy.solve(work);
+    given += work;
+  }
+  EXPECT_NEAR(given, 1.0 + PairEnergy::kOverdraft, 1e-12);
+}
+
 TEST(PairEnergy, RowsAreWhatTheyWere) {
   PairEnergy energy;
   energy.stored = 1.0;
