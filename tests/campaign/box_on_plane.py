@@ -85,8 +85,8 @@ def worst_energy(
     """
 
     def energy() -> float:
-        # The velocities of Euler's steps lag half a step behind the positions. With them at the same
-        # time free flight keeps its energy to the last digit.
+        # The velocities of Euler's steps lag half a step behind the positions. With both at the
+        # same time free flight keeps its energy to the last digit.
         mujoco.mj_subtreeVel(model, data)
         momentum = model.body_subtreemass[0] * data.subtree_linvel[0]
         lag = 0.5 * model.opt.timestep * float(model.opt.gravity @ momentum)
