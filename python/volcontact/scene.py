@@ -59,8 +59,8 @@ class Energy(NamedTuple):
     work: float
     numerical: float
     unpaid: float
-    driven: float
-    made: float
+    driven: float = 0.0
+    made: float = 0.0
 
 
 def load(
