@@ -13,6 +13,7 @@ import numpy as np
 
 from volcontact._adaptor import SITE_DTYPE
 from volcontact._files import appearing_in
+from volcontact.audit import Audit, worst_step
 from volcontact.scene import Channels, Contact
 
 SITE_UNITS = {
@@ -72,6 +73,7 @@ class Recorder:
         self._qpos: list[np.ndarray] = []
         self._qvel: list[np.ndarray] = []
         self._sites: list[np.ndarray] = []
+        self._made: list[tuple[float, float]] = []  # in a step, and the energy at its end [J]
 
     def __len__(self) -> int:
         """How many instants were recorded."""
@@ -89,6 +91,7 @@ class Recorder:
         self._rows.append(
             (float(data.time), energy.elastic, *energy.by_channel, total, float(len(sites)))
         )
+        self._made.append((energy.made, self._kinetic(data) + energy.elastic))
         self._qpos.append(data.qpos.copy())
         self._qvel.append(data.qvel.copy())
         rows = np.zeros(len(sites), _RECORDED_SITE)
@@ -96,6 +99,23 @@ class Recorder:
         for name in SITE_DTYPE.names or ():
             rows[name] = sites[name]
         self._sites.append(rows)
+
+    def audit(self) -> Audit:
+        """The step in which contact made most energy, of those that end at a recorded instant."""
+        model = self._contact.model
+        made, energy = np.array(self._made, np.float64).reshape(len(self), 2).T
+
+        def name_of(geom: int) -> str:
+            kind = int(mujoco.mjtObj.mjOBJ_GEOM)
+            return mujoco.mj_id2name(model, kind, geom) or f"geom {geom}"
+
+        time = np.array([row[0] for row in self._rows])
+        return worst_step(time, made, energy, self._sites.__getitem__, name_of)
+
+    def _kinetic(self, data: mujoco.MjData) -> float:
+        momentum = np.zeros(self._contact.model.nv)
+        mujoco.mj_mulM(self._contact.model, data, momentum, data.qvel)
+        return 0.5 * float(momentum @ data.qvel)
 
     @property
     def sites(self) -> np.ndarray:

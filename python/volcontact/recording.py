@@ -12,6 +12,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from volcontact.audit import Audit, worst_step
 from volcontact.surface import SiteSurface
 
 ContactKind = Literal["volumetric", "native"]
@@ -75,6 +76,8 @@ class Recording:
         work: done on the scene by the contact forces since the start [J], shape (n,).
         numerical: what of -work is neither stored nor dissipated but made by the finite step [J],
             shape (n,).
+        driven: work of mocap bodies on the contacts since the start [J], shape (n,).
+        made: by the contacts in the step that ended there [J], shape (n,); `audit()` has the worst.
         contact_force: sum over the sites of the magnitude of their force [N], shape (n,).
         largest_site_force: [N], shape (n,).
         site_count: shape (n,).
@@ -108,6 +111,8 @@ class Recording:
     dissipated: np.ndarray
     work: np.ndarray
     numerical: np.ndarray
+    driven: np.ndarray
+    made: np.ndarray
     contact_force: np.ndarray
     largest_site_force: np.ndarray
     site_count: np.ndarray
@@ -139,6 +144,16 @@ class Recording:
         """Mechanical energy: kinetic, potential and stored in the contact [J], shape (n,)."""
         energy: np.ndarray = self.kinetic + self.potential + self.elastic
         return energy
+
+    def audit(self) -> Audit:
+        """The step in which contact made most energy."""
+        return worst_step(
+            self.time,
+            self.made,
+            self.kinetic + self.elastic,
+            lambda row: self.sites[self.sites["row"] == row],
+            lambda geom: self.geoms[geom],
+        )
 
     @property
     def microseconds_per_step(self) -> float:

@@ -167,7 +167,7 @@ class _Recorder:
         self._quaternion = np.zeros((rows, bodies, 4))
         self._speed = np.zeros((rows, bodies))
         self._spin = np.zeros((rows, bodies))
-        self._energies = np.zeros((rows, 5))  # kinetic, potential, elastic, work, numerical
+        self._energies = np.zeros((rows, 7))  # kinetic, potential, then of contact
         self._dissipated = np.zeros((rows, len(CHANNELS)))
         self._contact = np.zeros((rows, 4))  # sum and largest of forces, count, depth
         self._sensors = np.zeros((rows, model.nsensordata))
@@ -211,7 +211,7 @@ class _Recorder:
     def recording(self, contact: ContactKind, description: dict[str, Any]) -> Recording:
         """Packs what was recorded."""
         n = self._rows
-        kinetic, potential, elastic, work, numerical = self._energies[:n].T
+        kinetic, potential, elastic, work, numerical, driven, made = self._energies[:n].T
         total, largest, count, depth = self._contact[:n].T
         gravity = np.linalg.norm(self._model.opt.gravity)
         return Recording(
@@ -231,6 +231,8 @@ class _Recorder:
             dissipated=self._dissipated[:n],
             work=work,
             numerical=numerical,
+            driven=driven,
+            made=made,
             contact_force=total,
             largest_site_force=largest,
             site_count=count.astype(np.int64),
@@ -274,7 +276,8 @@ class _Recorder:
         self._sensors[row] = data.sensordata
         energy = self._probe.energy(data)
         potential, kinetic = dense(data.energy)
-        self._energies[row] = kinetic, potential, energy.elastic, energy.work, energy.numerical
+        of_contact = energy.elastic, energy.work, energy.numerical, energy.driven, energy.made
+        self._energies[row] = kinetic, potential, *of_contact
         self._dissipated[row] = energy.by_channel
         sites = self._probe.sites(data)
         if len(sites):

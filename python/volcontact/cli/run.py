@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import mujoco
+import numpy as np
 from rich.markup import escape
 from rich.table import Table
 
@@ -18,15 +19,19 @@ from volcontact._files import appearing_in
 from volcontact.cli.arguments import add_command, add_keys, add_time
 from volcontact.cli.status import report_warnings
 from volcontact.cli.terminal import Terminal
+from volcontact.report.units import digits, quantity
 
 if TYPE_CHECKING:
+    from volcontact.audit import Audit
     from volcontact.cli.arguments import Subparsers
 
 _EXAMPLES = """\
   volcontact run scene.xml
   volcontact run scene.xml --duration 2 --timestep 5e-4 --out results
   volcontact run scene.xml --contact native --json
+  volcontact run scene.xml --audit
 """
+_PAIRS_NAMED = 3
 
 
 def add_to(commands: Subparsers) -> None:
@@ -48,7 +53,25 @@ def add_to(commands: Subparsers) -> None:
         metavar="DIR",
         help="write summary.json, trajectory and sites into this folder, for an earlier report's",
     )
+    parser.add_argument(
+        "--audit",
+        action="store_true",
+        help="say in which step contact made most energy, and where",
+    )
     parser.set_defaults(execute=execute)
+
+
+def _audit_text(audit: Audit) -> str:
+    if not audit.made > 0.0:
+        return "none"
+    text = f"{quantity(audit.made, 'J')} at {digits(audit.time)} s"
+    if np.isfinite(audit.share):
+        text += f", {digits(audit.share)} of what moved"
+    if audit.geoms:
+        named = ", ".join(f"{a} on {b}" for a, b in audit.geoms[:_PAIRS_NAMED])
+        more = len(audit.geoms) - _PAIRS_NAMED
+        text += f"; {named}" + (f" and {more} more pairs" if more > 0 else "")
+    return text
 
 
 def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
@@ -94,6 +117,8 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
         table = Table("", arguments.contact, box=None, pad_edge=False)
         for name, text in key_figures(recording, design):
             table.add_row(escape(name), escape(text))
+        if arguments.audit:
+            table.add_row("Most energy made in a step", escape(_audit_text(recording.audit())))
         terminal.out.print(table)
         if arguments.out is not None:
             terminal.out.print(f"written to {arguments.out}", markup=False)

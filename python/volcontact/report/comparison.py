@@ -148,7 +148,7 @@ def unbalance(run: Recording) -> np.ndarray:
 
     That is the change of kinetic and potential energy that the contact forces did not make.
     """
-    account = run.energy + run.dissipated.sum(axis=1) + run.numerical
+    account = run.energy + run.dissipated.sum(axis=1) + run.numerical - run.driven
     change: np.ndarray = account - account[0]
     return change
 
@@ -175,6 +175,7 @@ def run_summary(run: Recording, design: DesignPose | None) -> dict[str, Any]:
         ),
         "energy_numerical": float(run.numerical[-1]),
         "work_of_contact": float(run.work[-1]),
+        "audit": run.audit().summary(),
         "energy_unbalance": float(np.abs(unbalance(run)).max()),
         "first_touch": first_touch(run),
         "max_site_force": peak(run, "force").value,
