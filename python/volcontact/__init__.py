@@ -39,6 +39,7 @@ from volcontact._volcontact import (
     series_restitution,
     series_stiffness,
 )
+from volcontact.audit import Audit
 from volcontact.own_laws import FrictionLaw, LawField, LawState, NormalLaw
 from volcontact.recorder import Recorder
 from volcontact.scene import Contact, attach, contact_forces, load
@@ -47,6 +48,7 @@ from volcontact.surface import SiteSurface
 __version__ = "0.1.0"
 
 __all__ = [
+    "Audit",
     "Box",
     "Bristle",
     "ByChannel",
