@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Contact makes no energy: what bodies have at any time is at most what they started with."""
 
+import copy
 import itertools
 
 import mujoco
@@ -204,7 +205,7 @@ def run_carried(speed, integrator, material, steps=400, warm=100):
         return data, contact.energy(data)
 
 
-@pytest.mark.parametrize("integrator", ["Euler", "implicitfast"])
+@pytest.mark.parametrize("integrator", ["Euler", "implicit"])
 @pytest.mark.parametrize("speed", [0.05, 0.2, 2.0])
 @pytest.mark.parametrize(
     "material", [{"restitution": 0.5}, {"stiffness": 1e9, "damping": 0.5, "friction": 0.5}]
@@ -284,8 +285,7 @@ def test_a_mocap_body_moves_on_in_copies_of_the_data():
                 mujoco.mj_step(model, data)
 
         lift(data, 50)
-        other = mujoco.MjData(model)
-        mujoco.mj_copyData(other, model, data)
+        other = copy.copy(data)
         lift(data, 20)
         lift(other, 20)
         assert (data.qpos == other.qpos).all()
