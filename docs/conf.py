@@ -41,6 +41,7 @@ SECTIONS = {
         "docs/choosing",
         "docs/python",
         "docs/environment",
+        "docs/studies",
         "python/examples/README",
         "docs/troubleshooting",
         "docs/faq",

@@ -43,6 +43,7 @@ from volcontact.audit import Audit
 from volcontact.own_laws import FrictionLaw, LawField, LawState, NormalLaw
 from volcontact.recorder import Recorder
 from volcontact.scene import Contact, attach, contact_forces, load
+from volcontact.study import Study, StudyError
 from volcontact.surface import SiteSurface
 
 __version__ = "0.1.0"
@@ -82,6 +83,8 @@ __all__ = [
     "SiteReport",
     "SiteSurface",
     "Sphere",
+    "Study",
+    "StudyError",
     "Torus",
     "VolumeMetrics",
     "VolumeSpring",

@@ -12,6 +12,13 @@ EXTRAS = {
     "pyarrow": "report",
     "viser": "view",
     "gymnasium": "gym",
+    "optuna": "study",
+    "SALib": "study",
+    "scipy": "study",
+    "tomli": "study",
+    "ray": "ray",
+    "dask": "dask",
+    "distributed": "dask",
 }
 
 

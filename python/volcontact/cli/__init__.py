@@ -19,12 +19,12 @@ import mujoco
 
 import volcontact
 from volcontact import extras
-from volcontact.cli import check, compare, completion, doctor, mesh, metrics, new, run, view
+from volcontact.cli import check, compare, completion, doctor, mesh, metrics, new, run, study, view
 from volcontact.cli.terminal import Terminal
 
 __all__ = ["main", "make_parser"]
 
-_COMMANDS = (new, check, run, compare, view, metrics, mesh, doctor, completion)
+_COMMANDS = (new, check, run, compare, view, metrics, mesh, study, doctor, completion)
 _ERROR, _INTERRUPTED = 1, 130
 
 _EXAMPLES = """\
@@ -36,6 +36,7 @@ examples:
   volcontact view scene.xml                        watch it, with contact patches and forces
   volcontact metrics scene.xml                     its contact sites in numbers
   volcontact mesh check part.stl                   whether a mesh is a solid
+  volcontact study run study.toml --out results    thousands of trials of a scene
   volcontact doctor                                what is installed and whether it works
 
 exit status:

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One trial again, to the same bits, with everything recorded."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from volcontact.recorder import Recorder
+from volcontact.study.driver import settings_of
+from volcontact.study.results import Folder
+from volcontact.study.settings import StudyError
+from volcontact.study.trial import Runner
+
+
+@dataclass(frozen=True)
+class Replay:
+    """A trial that ran again.
+
+    Attributes:
+        row: as it ran now.
+        recorded: as it is in the folder.
+        differing: columns whose bits differ; none.
+        states: position coordinates at every look, shape (n, nq).
+        times: of these [s], shape (n,).
+        model: of the trial, not attached any more; None of a function.
+    """
+
+    row: dict[str, Any]
+    recorded: dict[str, Any]
+    differing: tuple[str, ...]
+    states: np.ndarray
+    times: np.ndarray
+    model: mujoco.MjModel | None
+
+
+def replay_trial(out: Path, trial: int, trajectory: Path | None = None) -> Replay:
+    """Runs a trial of a folder again.
+
+    Args:
+        out: folder of the study.
+        trial: its number.
+        trajectory: folder for the states, energies and contact sites of every look, as
+            `volcontact.Recorder` writes them.
+
+    Raises:
+        StudyError: there is no such trial, or the scene has changed since.
+    """
+    folder = Folder(out)
+    settings = settings_of(folder)
+    recorded = row_of(folder, trial)
+    runner = Runner(settings)
+    values = {
+        name: recorded[name] for name in (*settings.columns, "level", "weight") if name in recorded
+    }
+    states: list[np.ndarray] = []
+    times: list[float] = []
+    recorder: list[Recorder] = []
+    beside: list[mujoco.MjData] = []
+
+    def watch(model: mujoco.MjModel, data: mujoco.MjData, contact: Any) -> None:
+        states.append(data.qpos.copy())
+        times.append(float(data.time))
+        if trajectory is not None and contact is not None:
+            if not recorder:
+                recorder.append(Recorder(contact))
+                beside.append(mujoco.MjData(model))
+            # Recording evaluates: beside the trial, whose bits stay what they are.
+            mujoco.mj_copyData(beside[0], model, data)
+            recorder[0].record(beside[0])
+
+    row = runner.run(trial, values, watch)
+    if trajectory is not None and recorder:
+        recorder[0].write(trajectory)
+    model = None
+    if settings.scene is not None:
+        model = runner.scene(values).model
+        runner.scene(values).live.write(values)
+    runner.forget()
+    differing = tuple(n for n, value in row.items() if not _same(value, recorded[n]))
+    return Replay(row, recorded, differing, np.array(states), np.array(times), model)
+
+
+def row_of(folder: Folder, trial: int) -> dict[str, Any]:
+    """The row of a trial.
+
+    Raises:
+        StudyError: there is none.
+    """
+    import pyarrow.compute as pc
+    import pyarrow.parquet as pq
+
+    for part in folder.parts():
+        table = pq.read_table(part)
+        found = table.filter(pc.equal(table["trial"], trial))
+        if len(found):
+            row: dict[str, Any] = found.to_pylist()[0]
+            return row
+    raise StudyError(f"{folder.path}: has no trial {trial}")
+
+
+def _same(a: Any, b: Any) -> bool:
+    if isinstance(a, float) and isinstance(b, float):
+        return np.float64(a).tobytes() == np.float64(b).tobytes()
+    return bool(a == b)

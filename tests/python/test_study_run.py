@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs of studies: the same bits however they run, every trial exactly once, faults as rows."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+from study_files import FUNCTION_STUDY, bits, function_study, scene_study
+
+import volcontact as vc
+from volcontact.cli import main
+from volcontact.study.child import Batch, Child, end_children, run_batch
+from volcontact.study.reading import read_study
+from volcontact.study.results import Folder
+
+
+@pytest.fixture(autouse=True)
+def _no_children_left():
+    yield
+    end_children()
+
+
+def rows_of(study: vc.Study, out: Path, **how):
+    study.run(out, **how)
+    return study.rows(out)
+
+
+def test_two_processes_give_the_bits_of_one(tmp_path):
+    study = vc.Study(scene_study(tmp_path))
+    serial = rows_of(study, tmp_path / "serial", engine="serial")
+    both = rows_of(study, tmp_path / "both", engine="processes", workers=2)
+    assert serial["trial"].to_pylist() == list(range(12))
+    assert bits(serial) == bits(both)
+    assert len(set(serial["outcome"].to_pylist())) > 1
+
+
+def test_fates_are_rows_and_touch_no_other_trial(tmp_path):
+    fates = {"none": 0.9, "crash": 0.04, "hang": 0.03, "raise": 0.03}
+    (tmp_path / "with").mkdir()
+    study = vc.Study(function_study(tmp_path / "with", **fates), trials=60, seed=6)
+    rows = rows_of(study, tmp_path / "out", workers=2).to_pylist()
+    assert [row["trial"] for row in rows] == list(range(60))
+    ends = {"crash": "crashed", "hang": "hung", "raise": "error"}
+    for row in rows:
+        assert row["outcome"] == ends.get(row["fate"], row["outcome"])
+        assert bool(row["reason"]) == (row["fate"] != "none")
+    assert {row["fate"] for row in rows} == set(fates)
+    reasons = {row["fate"]: row["reason"] for row in rows}
+    assert "SIGSEGV" in reasons["crash"]
+    assert "time limit of 1 s" in reasons["hang"]
+    assert reasons["raise"] == "ValueError: this trial is no good"
+    plain = rows_of(
+        vc.Study(function_study(tmp_path), trials=60, seed=6), tmp_path / "p", engine="serial"
+    )
+    # The inputs of a trial come before those of the fate, whatever the others did.
+    for row, other in zip(rows, plain.to_pylist(), strict=True):
+        if row["fate"] == "none":
+            assert row["noise"] == other["noise"]
+
+
+def test_child_that_somebody_kills_costs_no_trial(tmp_path):
+    settings = read_study(function_study(tmp_path))
+    values = [{"x": float(i), "y": 1.0, "sleep": 0.02} for i in range(40)]
+    import threading
+
+    seen: list[int] = []
+
+    def kill_it() -> None:
+        time.sleep(0.3)
+        for pid in children_of(os.getpid()):
+            seen.append(pid)
+            os.kill(pid, signal.SIGKILL)
+
+    child = Child(settings)  # warm, so that the kill falls into the trials
+    child.kill()
+    run_batch(settings, Batch([0], values[:1]))
+    killer = threading.Thread(target=kill_it)
+    killer.start()
+    rows = run_batch(settings, Batch(list(range(40)), values)).rows
+    killer.join()
+    assert seen
+    assert [row["trial"] for row in rows] == list(range(40))
+    assert {row["outcome"] for row in rows} == {"success", "failure"}
+
+
+def children_of(pid: int) -> list[int]:
+    """Processes of a study that are children of a process."""
+    found = []
+    for folder in Path("/proc").iterdir():
+        if folder.name.isdecimal():
+            try:
+                stat = (folder / "stat").read_text().rpartition(")")[2].split()
+                command = (folder / "cmdline").read_bytes()
+            except OSError:
+                continue
+            if int(stat[1]) == pid and b"volcontact.study.child" in command:
+                found.append(int(folder.name))
+    return found
+
+
+def start(path: Path, out: Path, *more: str) -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-m", "volcontact.cli", "study", "run", str(path), "--out", str(out)]
+    return subprocess.Popen([*command, *more], stdout=subprocess.DEVNULL)
+
+
+SLOW = FUNCTION_STUDY + '[vary.sleep]\ndistribution = "uniform"\nlow = 0.02\nhigh = 0.03\n'
+
+
+def test_driver_that_is_killed_is_resumed_exactly_once(tmp_path):
+    path = function_study(tmp_path, SLOW)
+    out = tmp_path / "out"
+    driver = start(path, out, "--trials", "200", "--workers", "2")
+    try:
+        for _ in range(600):
+            if len(list(out.glob("trials/*.parquet"))) >= 1:
+                break
+            time.sleep(0.05)
+        with pytest.raises(vc.StudyError, match="another run writes to this folder"):
+            Folder(out).lock()
+    finally:
+        driver.kill()
+        driver.wait()
+    before = Folder(out).done(200)
+    assert 0 < before.sum() < 200
+    kept = {part: part.read_bytes() for part in Folder(out).parts()}
+    (out / "trials" / "readme").write_text("not a part")
+    assert main(["study", "resume", str(out), "--workers", "2"]) == 0
+    for part, content in kept.items():
+        assert part.read_bytes() == content
+    table = vc.Study.rows(out)
+    assert table["trial"].to_pylist() == list(range(200))
+    whole = tmp_path / "whole"
+    vc.Study(path, trials=200).run(whole, engine="processes", workers=2)
+    assert bits(table) == bits(vc.Study.rows(whole))
+    assert not list(out.glob(".volcontact-*"))
+
+
+def test_serial_driver_that_its_trial_kills_goes_on_behind_it(tmp_path):
+    path = function_study(tmp_path, none=0.75, crash=0.25)
+    out = tmp_path / "out"
+    driver = start(path, out, "--engine", "serial", "--trials", "6", "--seed", "2")
+    assert driver.wait() == -signal.SIGSEGV
+    for _ in range(6):
+        command = [sys.executable, "-m", "volcontact.cli", "study", "resume", str(out)]
+        done = subprocess.run([*command, "--engine", "serial"], capture_output=True)
+        if done.returncode == 0:
+            break
+    rows = vc.Study.rows(out).to_pylist()
+    assert [row["trial"] for row in rows] == list(range(6))
+    assert all((row["outcome"] == "crashed") == (row["fate"] == "crash") for row in rows)
+
+
+def test_full_disk_ends_the_study_in_one_line(tmp_path):
+    """A limit on the size of files stands for the disk: the first part does not fit."""
+    path = function_study(tmp_path)
+    out = tmp_path / "out"
+    program = (
+        "import resource, signal, sys; from volcontact.cli import main;"
+        "signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000));"
+        f"sys.exit(main(['study', 'run', {str(path)!r}, '--out', {str(out)!r}, '--engine',"
+        " 'serial']))"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert done.returncode == 1
+    said = " ".join(done.stderr.split())
+    assert "File too large" in said and "0 trials are safe" in said
+    assert "volcontact study resume" in said and "Traceback" not in said
+    assert Folder(out).parts() == []
+    assert main(["study", "resume", str(out), "--engine", "serial"]) == 0
+    assert vc.Study.rows(out)["trial"].to_pylist() == list(range(40))
+
+
+def test_resume_refuses_what_has_changed(tmp_path):
+    path = scene_study(tmp_path)
+    out = tmp_path / "out"
+    vc.Study(path, trials=2).run(out, engine="serial")
+    scene = tmp_path / "scene.xml"
+    scene.write_text(scene.read_text().replace('pos="0.3 0 0.05"', 'pos="0.31 0 0.05"'))
+    with pytest.raises(vc.StudyError, match="the scene has changed"):
+        vc.Study.resume(out)
+    with pytest.raises(vc.StudyError, match="has the results of a study; go on with"):
+        vc.Study(path).run(out)
+    with pytest.raises(vc.StudyError, match="is no folder of a study"):
+        vc.Study.resume(tmp_path)
+
+
+def test_replay_gives_the_same_bits(tmp_path, capsys):
+    study = vc.Study(scene_study(tmp_path))
+    out = tmp_path / "out"
+    study.run(out, engine="processes", workers=1)
+    rows = study.rows(out).to_pylist()
+    for trial in (0, 7):
+        assert study.replay(out, trial) == rows[trial]
+    record = tmp_path / "trial7"
+    assert main(["study", "replay", str(out), "7", "--record", str(record)]) == 0
+    assert "friction" in capsys.readouterr().out
+    assert any(record.iterdir())
+    # A row that somebody changed is found out.
+    part = Folder(out).parts()[0]
+    table = pq.read_table(part)
+    place = table.column_names.index("x")
+    table = table.set_column(place, table.field("x"), [np.nextafter(table["x"].to_numpy(), 9.0)])
+    pq.write_table(table, part)
+    assert main(["study", "replay", str(out), "7"]) == 3
+    assert main(["study", "replay", str(out), "99"]) == 1
+
+
+def test_status_from_the_folder(tmp_path, capsys):
+    out = tmp_path / "out"
+    study = vc.Study(function_study(tmp_path))
+    study.run(out, engine="serial")
+    assert main(["study", "status", str(out), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["done"] == said["trials"] == 40 and said["state"] == "finished"
+    good = sum(study.rows(out)["success"].to_pylist())
+    assert said["outcomes"]["success"] == good and said["success"] == good / 40
+    low, high = said["interval"]
+    assert low < good / 40 < high
