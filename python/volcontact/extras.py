@@ -17,7 +17,6 @@ EXTRAS = {
     "scipy": "study",
     "tomli": "study",
     "ray": "ray",
-    "dask": "dask",
     "distributed": "dask",
 }
 

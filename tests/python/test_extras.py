@@ -67,7 +67,9 @@ def test_every_module_of_an_extra_is_of_a_package_of_that_extra():
         for line in importlib.metadata.requires("volcontact") or ()
     ]
     declared = {(found[1].lower(), found[2]) for found in required if found}
-    assert {(packages.get(module, module), extra) for module, extra in EXTRAS.items()} <= declared
+    assert {
+        (packages.get(module, module).lower(), extra) for module, extra in EXTRAS.items()
+    } <= declared
 
 
 def test_record_of_the_wheels_has_every_python():

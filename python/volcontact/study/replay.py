@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import copy
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -25,6 +26,7 @@ class Replay:
         row: as it ran now.
         recorded: as it is in the folder.
         differing: columns whose bits differ; none.
+        del model
         states: position coordinates at every look, shape (n, nq).
         times: of these [s], shape (n,).
         model: of the trial, not attached any more; None of a function.
@@ -60,7 +62,6 @@ def replay_trial(out: Path, trial: int, trajectory: Path | None = None) -> Repla
     states: list[np.ndarray] = []
     times: list[float] = []
     recorder: list[Recorder] = []
-    beside: list[mujoco.MjData] = []
 
     def watch(model: mujoco.MjModel, data: mujoco.MjData, contact: Any) -> None:
         states.append(data.qpos.copy())
@@ -68,10 +69,8 @@ def replay_trial(out: Path, trial: int, trajectory: Path | None = None) -> Repla
         if trajectory is not None and contact is not None:
             if not recorder:
                 recorder.append(Recorder(contact))
-                beside.append(mujoco.MjData(model))
             # Recording evaluates: beside the trial, whose bits stay what they are.
-            mujoco.mj_copyData(beside[0], model, data)
-            recorder[0].record(beside[0])
+            recorder[0].record(copy.copy(data))
 
     row = runner.run(trial, values, watch)
     if trajectory is not None and recorder:
