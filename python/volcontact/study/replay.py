@@ -26,7 +26,6 @@ class Replay:
         row: as it ran now.
         recorded: as it is in the folder.
         differing: columns whose bits differ; none.
-        del model
         states: position coordinates at every look, shape (n, nq).
         times: of these [s], shape (n,).
         model: of the trial, not attached any more; None of a function.
@@ -64,6 +63,7 @@ def replay_trial(out: Path, trial: int, trajectory: Path | None = None) -> Repla
     recorder: list[Recorder] = []
 
     def watch(model: mujoco.MjModel, data: mujoco.MjData, contact: Any) -> None:
+        del model
         states.append(data.qpos.copy())
         times.append(float(data.time))
         if trajectory is not None and contact is not None:
