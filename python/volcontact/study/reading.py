@@ -37,7 +37,6 @@ METHODS: dict[str, tuple[str, ...]] = {
     "saltelli": ("second_order", "response"),
     "optimise": ("response", "direction", "round"),
     "importance": ("response", "threshold", "round"),
-    "subset": ("response", "threshold", "round"),
 }
 OUTCOMES = (
     "success",

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-ADAPTIVE = ("optimise", "importance", "subset")  # methods whose trials follow from earlier ones
+ADAPTIVE = ("optimise", "importance")  # methods whose trials follow from earlier ones
 
 
 class StudyError(ValueError):

@@ -33,7 +33,7 @@ def status_of(out: Path) -> dict[str, Any]:
     state = "running" if running else "finished" if done == total else "stopped"
     if state == "stopped":
         state = f"stopped; go on with: volcontact study resume {out}"
-    weighted = said["method"] in ("importance", "subset", "optimise", "morris", "saltelli")
+    weighted = said["method"] in ("importance", "optimise", "morris", "saltelli")
     return {
         "name": said["name"],
         "trials": total,
