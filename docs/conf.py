@@ -42,6 +42,8 @@ SECTIONS = {
         "docs/python",
         "docs/environment",
         "docs/studies",
+        "docs/studies/peg_in_hole_misalignment",
+        "docs/studies/battery_insert_0g",
         "python/examples/README",
         "docs/troubleshooting",
         "docs/faq",

@@ -133,7 +133,7 @@ def bits(table) -> list[bytes]:
     columns = []
     for name in table.column_names:
         column = table[name]
-        if str(column.type).startswith("dictionary"):
+        if str(column.type) == "string":
             columns.append(repr(column.to_pylist()).encode())
         else:
             columns.append(column.to_numpy().tobytes())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Studies on real local clusters of Ray and Dask: the same bits, also when workers and nodes die."""
+"""Studies on local clusters of Ray and Dask: the same bits, also when workers and nodes die."""
 
 from __future__ import annotations
 

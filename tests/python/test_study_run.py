@@ -161,7 +161,7 @@ def test_serial_driver_that_its_trial_kills_goes_on_behind_it(tmp_path):
 
 def test_full_disk_ends_the_study_in_one_line(tmp_path):
     """A limit on the size of files stands for the disk: the first part does not fit."""
-    path = function_study(tmp_path)
+    path = function_study(tmp_path, FUNCTION_STUDY.replace("trials = 40", "trials = 400"))
     out = tmp_path / "out"
     program = (
         "import resource, signal, sys; from volcontact.cli import main;"
@@ -177,7 +177,7 @@ def test_full_disk_ends_the_study_in_one_line(tmp_path):
     assert "volcontact study resume" in said and "Traceback" not in said
     assert Folder(out).parts() == []
     assert main(["study", "resume", str(out), "--engine", "serial"]) == 0
-    assert vc.Study.rows(out)["trial"].to_pylist() == list(range(40))
+    assert vc.Study.rows(out)["trial"].to_pylist() == list(range(400))
 
 
 def test_resume_refuses_what_has_changed(tmp_path):
@@ -226,3 +226,23 @@ def test_status_from_the_folder(tmp_path, capsys):
     assert said["outcomes"]["success"] == good and said["success"] == good / 40
     low, high = said["interval"]
     assert low < good / 40 < high
+
+
+def test_report_is_one_file_that_can_be_quoted(tmp_path):
+    study = vc.Study(scene_study(tmp_path), trials=160)
+    out = tmp_path / "out"
+    study.run(out, engine="processes", workers=2)
+    file = tmp_path / "report.html"
+    assert main(["study", "report", str(out), "--out", str(file), "--no-pictures"]) == 0
+    page = file.read_text(encoding="utf-8")
+    good = sum(study.rows(out)["success"].to_pylist())
+    assert f"{good} of 160 trials succeeded" in page and "Wilson" in page
+    # Three inputs are three pairs, each with a map; nothing is fetched from elsewhere.
+    assert page.count("<svg") >= 3 + 3
+    assert "<script" not in page and 'src="http' not in page and "<link" not in page
+    assert "The worst trials" not in page
+    few = tmp_path / "few"
+    vc.Study(scene_study(tmp_path), trials=2).run(few, engine="serial")
+    assert main(["study", "report", str(few)]) == 0
+    drawn = (few / "report.html").read_text(encoding="utf-8")
+    assert drawn.count('src="data:image/png;base64,') == 2

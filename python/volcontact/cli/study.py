@@ -42,7 +42,11 @@ _STATUS_EXAMPLES = """\
 """
 _REPLAY_EXAMPLES = """\
   volcontact study replay results 17
-  volcontact study replay results 17 --out trial17 --video
+  volcontact study replay results 17 --record trial17
+"""
+_REPORT_EXAMPLES = """\
+  volcontact study report results
+  volcontact study report results --out report.html --map friction --map angle
 """
 _DIFFERS = 3
 
@@ -58,6 +62,7 @@ def add_to(commands: Subparsers) -> None:
     _add_resume(ways)
     _add_status(ways)
     _add_replay(ways)
+    _add_report(ways)
 
 
 def _whole(text: str) -> int:
@@ -137,6 +142,37 @@ def _add_replay(ways: Subparsers) -> None:
     )
     _add_json(parser)
     parser.set_defaults(execute=replay)
+
+
+def _add_report(ways: Subparsers) -> None:
+    parser = plain_command(
+        ways, "report", "write probabilities, maps, indices and the worst trials", _REPORT_EXAMPLES
+    )
+    parser.add_argument("out", type=Path, metavar="DIR", help="folder of the study")
+    parser.add_argument(
+        "--out", dest="file", type=Path, metavar="FILE", help="(default: DIR/report.html)"
+    )
+    parser.add_argument(
+        "--map",
+        action="append",
+        default=[],
+        metavar="INPUT",
+        help="map over pairs of these inputs (default: the four that decide most)",
+    )
+    parser.add_argument("--no-pictures", action="store_true", help="draw no worst trials")
+    parser.set_defaults(execute=report)
+
+
+def report(arguments: argparse.Namespace, terminal: Terminal) -> int:
+    """Runs `study report`."""
+    from volcontact.study.report import write_study_report
+
+    file = arguments.file or arguments.out / "report.html"
+    write_study_report(
+        arguments.out, file, inputs=tuple(arguments.map), pictures=not arguments.no_pictures
+    )
+    terminal.out.print(f"written to {file}", markup=False)
+    return 0
 
 
 def run(arguments: argparse.Namespace, terminal: Terminal) -> int:

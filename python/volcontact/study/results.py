@@ -136,7 +136,18 @@ class Folder:
         last = self.parts()
         number = int(last[-1].stem.removeprefix("part-")) + 1 if last else 0
         with appearing(self.path / ".next") as file:
-            pq.write_table(table, file, compression="zstd", compression_level=6)
+            # Floats by their bytes, and no statistics: half the size of small parts.
+            floats = [field.name for field in schema if pa.types.is_floating(field.type)]
+            texts = [field.name for field in schema if pa.types.is_dictionary(field.type)]
+            pq.write_table(
+                table,
+                file,
+                compression="zstd",
+                use_dictionary=texts,
+                use_byte_stream_split=floats,
+                write_statistics=False,
+                store_schema=False,
+            )
         os.replace(self.path / ".next", self.trials / f"part-{number:06d}.parquet")
 
     def read(self, columns: Iterable[str] | None = None) -> pa.Table:
@@ -145,7 +156,7 @@ class Folder:
         tables = [pq.read_table(part, columns=wanted) for part in self.parts()]
         if not tables:
             raise StudyError(f"{self.path}: has no trials yet")
-        table = pa.concat_tables(tables, promote_options="default").unify_dictionaries()
+        table = pa.concat_tables(tables)
         return table.sort_by("trial") if "trial" in table.column_names else table
 
     def done(self, total: int) -> np.ndarray:

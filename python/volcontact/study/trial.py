@@ -337,8 +337,9 @@ class _Watch:
         scene.felt["site_force"] = 0.0
         if not len(sites):
             return 0.0, 0.0
-        forces = np.sqrt((sites["force"] ** 2).sum(axis=1))
-        torques = np.sqrt((sites["torque"] ** 2).sum(axis=1))
+        force, torque = sites["force"], sites["torque"]
+        forces = np.sqrt(np.einsum("ij,ij->i", force, force))
+        torques = np.sqrt(np.einsum("ij,ij->i", torque, torque))
         largest = float(forces.max())
         scene.felt["site_force"] = largest
         if math.isnan(row["first_touch"]):
