@@ -112,13 +112,13 @@ def start(path: Path, out: Path, *more: str) -> subprocess.Popen[bytes]:
     return subprocess.Popen([*command, *more], stdout=subprocess.DEVNULL)
 
 
-SLOW = FUNCTION_STUDY + '[vary.sleep]\ndistribution = "uniform"\nlow = 0.02\nhigh = 0.03\n'
+SLOW = FUNCTION_STUDY + '[vary.sleep]\ndistribution = "uniform"\nlow = 0.01\nhigh = 0.02\n'
 
 
 def test_driver_that_is_killed_is_resumed_exactly_once(tmp_path):
     path = function_study(tmp_path, SLOW)
     out = tmp_path / "out"
-    driver = start(path, out, "--trials", "200", "--workers", "2")
+    driver = start(path, out, "--trials", "500", "--workers", "2")
     try:
         for _ in range(600):
             if len(list(out.glob("trials/*.parquet"))) >= 1:
@@ -129,17 +129,17 @@ def test_driver_that_is_killed_is_resumed_exactly_once(tmp_path):
     finally:
         driver.kill()
         driver.wait()
-    before = Folder(out).done(200)
-    assert 0 < before.sum() < 200
+    before = Folder(out).done(500)
+    assert 0 < before.sum() < 500
     kept = {part: part.read_bytes() for part in Folder(out).parts()}
     (out / "trials" / "readme").write_text("not a part")
     assert main(["study", "resume", str(out), "--workers", "2"]) == 0
     for part, content in kept.items():
         assert part.read_bytes() == content
     table = vc.Study.rows(out)
-    assert table["trial"].to_pylist() == list(range(200))
+    assert table["trial"].to_pylist() == list(range(500))
     whole = tmp_path / "whole"
-    vc.Study(path, trials=200).run(whole, engine="processes", workers=2)
+    vc.Study(path, trials=500).run(whole, engine="processes", workers=2)
     assert bits(table) == bits(vc.Study.rows(whole))
     assert not list(out.glob(".volcontact-*"))
 
