@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-from study_files import FUNCTION_STUDY, bits, function_study, scene_study
+from study_files import FUNCTION_STUDY, SCENE_STUDY, bits, function_study, scene_study
 
 import volcontact as vc
 from volcontact.cli import main
@@ -246,3 +246,16 @@ def test_report_is_one_file_that_can_be_quoted(tmp_path):
     assert main(["study", "report", str(few)]) == 0
     drawn = (few / "report.html").read_text(encoding="utf-8")
     assert drawn.count('src="data:image/png;base64,') == 2
+
+
+def test_trajectories_of_the_trials_asked_for(tmp_path):
+    text = SCENE_STUDY + '[record.trajectories]\noutcomes = ["timed_out"]\nevery = 5\nmost = 7\n'
+    study = vc.Study(scene_study(tmp_path, text))
+    out = tmp_path / "out"
+    study.run(out, engine="serial")
+    rows = study.rows(out).to_pylist()
+    wanted = [0, 5, 10] + [row["trial"] for row in rows if row["outcome"] == "timed_out"]
+    names = [f"trial-{trial:08d}" for trial in dict.fromkeys(wanted)][:7]
+    assert sorted(place.name for place in (out / "trajectories").iterdir()) == sorted(names)
+    kept = pq.read_table(next((out / "trajectories" / names[0]).glob("*.parquet")))
+    assert len(kept) > 0

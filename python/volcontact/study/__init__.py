@@ -99,6 +99,7 @@ class Study:
             StudyError: the study cannot be run, or the folder cannot be written to.
         """
         from volcontact.study.driver import run_study
+        from volcontact.study.replay import record_trajectories
 
         run_study(
             self._settings,
@@ -108,6 +109,7 @@ class Study:
             address=address,
             progress=progress,
         )
+        record_trajectories(Path(out))
 
     @staticmethod
     def resume(out: str | os.PathLike[str], **how: Any) -> None:
@@ -117,8 +119,10 @@ class Study:
             StudyError: no folder of a study, or its scene has changed since.
         """
         from volcontact.study.driver import resume_study
+        from volcontact.study.replay import record_trajectories
 
         resume_study(Path(out), **how)
+        record_trajectories(Path(out))
 
     @staticmethod
     def rows(out: str | os.PathLike[str]) -> pa.Table:

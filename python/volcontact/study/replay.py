@@ -84,6 +84,41 @@ def replay_trial(out: Path, trial: int, trajectory: Path | None = None) -> Repla
     return Replay(row, recorded, differing, np.array(states), np.array(times), model)
 
 
+def record_trajectories(out: Path) -> list[int]:
+    """Records everything of the trials that the study asks for, by running these again.
+
+    They go to `DIR/trajectories/trial-NUMBER`; those that are there already stay.
+
+    Returns:
+        The trials that were asked for.
+
+    Raises:
+        StudyError: the scene has changed since.
+    """
+    folder = Folder(out)
+    settings = settings_of(folder)
+    wanted = settings.record.trajectories
+    if settings.scene is None or not (wanted["worst"] or wanted["every"] or wanted["outcomes"]):
+        return []
+    by = settings.sample.options.get("response", "peak_force")
+    rows = folder.read(["trial", "outcome", "success", by])
+    trials, outcomes = rows["trial"].to_numpy(), np.array(rows["outcome"].to_pylist())
+    numbers = np.nan_to_num(rows[by].to_numpy(), nan=-np.inf)
+    success = rows["success"].to_numpy(zero_copy_only=False)
+    worst = np.lexsort((-numbers, success))[: wanted["worst"]]
+    picked = [int(trials[place]) for place in worst]
+    if wanted["every"]:
+        picked += trials[trials % wanted["every"] == 0].tolist()
+    picked += trials[np.isin(outcomes, list(wanted["outcomes"]))].tolist()
+    bad = set(trials[np.isin(outcomes, ["crashed", "hung"])].tolist())  # and would be again
+    chosen = [trial for trial in dict.fromkeys(picked) if trial not in bad][: wanted["most"]]
+    for trial in chosen:
+        place = out / "trajectories" / f"trial-{trial:08d}"
+        if not place.exists():
+            replay_trial(out, trial, place)
+    return chosen
+
+
 def row_of(folder: Folder, trial: int) -> dict[str, Any]:
     """The row of a trial.
 
