@@ -76,6 +76,7 @@ SECTIONS = {
         "Building and loading it </plugin/README>",
         "docs/own_laws",
         "docs/c_container",
+        "docs/hosts",
     ],
     "Measured": [
         "docs/comparison",
