@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The commands of `volcontact` around a simulation: new, metrics, doctor, completion."""
 
+import argparse
 import json
 import math
 import re
@@ -153,8 +154,23 @@ def test_doctor_says_what_is_wrong(monkeypatch, capsys):
 
 
 def commands():
-    (action,) = (a for a in make_parser()._actions if hasattr(a, "choices") and a.choices)
-    return action.choices
+    return subcommands(make_parser())
+
+
+def subcommands(parser):
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            return action.choices
+    return {}
+
+
+def leaf_commands():
+    """Parsers of the commands that do something, by name: "study run", not "study"."""
+    leaves = {}
+    for name, parser in commands().items():
+        inner = subcommands(parser)
+        leaves |= {f"{name} {n}": p for n, p in inner.items()} if inner else {name: parser}
+    return leaves
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
@@ -168,15 +184,15 @@ def test_completion_knows_every_command(shell, tmp_path, capsys):
         subprocess.run([shell, "-n", tmp_path / "script"], check=True)
 
 
-@pytest.mark.parametrize("name", commands())
+@pytest.mark.parametrize("name", sorted({*commands(), *leaf_commands()}))
 def test_every_command_explains_itself_with_examples(name, capsys):
     with pytest.raises(SystemExit):
-        main([name, "--help"])
+        main([*name.split(), "--help"])
     text = capsys.readouterr().out
     assert "examples:" in text and f"volcontact {name}" in text
 
 
 # `view` shows; what `completion` prints is for a shell.
-@pytest.mark.parametrize("name", sorted(set(commands()) - {"mesh", "view", "completion"}))
+@pytest.mark.parametrize("name", sorted(set(leaf_commands()) - {"view", "completion"}))
 def test_every_command_that_tells_speaks_json(name):
-    assert "--json" in commands()[name].format_help()
+    assert "--json" in leaf_commands()[name].format_help()
