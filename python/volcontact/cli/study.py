@@ -160,6 +160,7 @@ def _add_report(ways: Subparsers) -> None:
         help="map over pairs of these inputs (default: the four that decide most)",
     )
     parser.add_argument("--no-pictures", action="store_true", help="draw no worst trials")
+    _add_json(parser)
     parser.set_defaults(execute=report)
 
 
@@ -171,7 +172,10 @@ def report(arguments: argparse.Namespace, terminal: Terminal) -> int:
     write_study_report(
         arguments.out, file, inputs=tuple(arguments.map), pictures=not arguments.no_pictures
     )
-    terminal.out.print(f"written to {file}", markup=False)
+    if terminal.json:
+        terminal.result({"report": str(file)})
+    else:
+        terminal.out.print(f"written to {file}", markup=False)
     return 0
 
 
