@@ -72,9 +72,8 @@ class AccountKeeper {
     if (again) first_middle_ = block.slot(0).energy();
     // The last stage, at the end of a step, is the first evaluation there.
     has_last_ = redone && block.count() > 1 && block.slot(1).stage() == Stage::kSecondMiddle;
-    if (has_last_) last_power_ = block.slot(0).energy().last_power;
+    if (has_last_) last_ = block.slot(0).energy();
     elapsed_ = open_slot(block, time, step);
-    is_within_step_ = runge_kutta && !redone;
     const bool half = runge_kutta && continues() && std::abs(2.0 * elapsed_ / step - 1.0) < 1e-6;
     if (!half) return;
     if (block.slot(1).stage() == Stage::kWhole) {
@@ -82,6 +81,7 @@ class AccountKeeper {
       is_within_step_ = true;
     } else {
       completes_ = block.count() > 2;
+      is_within_step_ = !redone;
     }
   }
 
@@ -89,6 +89,10 @@ class AccountKeeper {
   double elapsed() const { return elapsed_; }
   /// Whether a step of Runge-Kutta goes on here, rather than begins.
   bool is_within_step() const { return is_within_step_; }
+  /// The slot of the evaluation with which the step began that goes on or ends here, and the time
+  /// since then [s]; continues() only.
+  Slot begin() const { return block_.slot(completes_ ? 2 : 1); }
+  double since_begin() const { return completes_ ? 2.0 * elapsed_ : elapsed_; }
 
   /// Writes the account of this evaluation: a whole Runge-Kutta step by its own rule, which is
   /// Simpson's (work with the powers of its four stages), all else by the trapezoidal rule.
@@ -106,9 +110,14 @@ class AccountKeeper {
       now.dissipated = {};
     } else if (completes_) {
       const EnergyAccount start = block_.slot(2).energy(), middle = block_.slot(1).energy();
-      const ByChannel ends = between(start.taken, now.taken, 0.5);
-      now = accounted(start, between(ends, middle.taken, 2.0 / 3.0), 2.0 * elapsed_, now);
-      now.last_power = has_last_ ? last_power_ : now.force_power;
+      if (start.implicit) {
+        now = accounted_whole(start, 2.0 * elapsed_, now);
+      } else {
+        const ByChannel& end = now.implicit && has_last_ ? last_.taken : now.taken;
+        const ByChannel ends = between(start.taken, end, 0.5);
+        now = accounted(start, between(ends, middle.taken, 2.0 / 3.0), 2.0 * elapsed_, now);
+      }
+      now.last_power = has_last_ ? last_.last_power : now.force_power;
       const double mean = (start.force_power + 4.0 * middle.force_power + now.last_power) / 6.0;
       add_work(start, 2.0 * elapsed_ * mean, driven, now);
     } else {
@@ -128,7 +137,7 @@ class AccountKeeper {
   bool is_within_step_ = false;
   EnergyAccount first_middle_;
   bool has_last_ = false;
-  double last_power_ = 0.0;
+  EnergyAccount last_;  // of the last stage
 };
 
 }  // namespace volcontact::adaptor

@@ -27,6 +27,13 @@ double settling(double speed, double fall) {
   return std::clamp((kBounces - speed / fall) / (kBounces - kSettles), 0.0, 1.0);
 }
 
+// The same where the force is held while positions move with the mean of the velocities before and
+// after the step: without it a stiff contact overshoots, and lifts off again and again.
+double holding(double stiffness_number) {
+  constexpr double kMost = 2.0, kHalf = 10.0;
+  return kMost * stiffness_number / (stiffness_number + kHalf);
+}
+
 }  // namespace
 
 void ImplicitStep::clear() noexcept {
@@ -68,7 +75,8 @@ void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& fa
   const Vec2 moment(-torque[1], torque[0]);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal(spread);
   const double number = step * step * k;
-  const double share = parts == ImplicitParts::kAll ? 1.0 : implicit_share(number * mobility(0, 0));
+  const double share =
+      parts == ImplicitParts::kStiff ? implicit_share(number * mobility(0, 0)) : 1.0;
 
   Vec2 place = Vec2::Zero();  // of all points together
   if (force > 0.0) place = moment / force;
@@ -80,7 +88,7 @@ void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& fa
     const Vec2 turn(axis[1], -axis[0]);
     const double turn_number =
         number * square * turn.dot(mobility.bottomRightCorner<2, 2>() * turn);
-    split[i] = square > 0.0 && (parts == ImplicitParts::kAll || turn_number > kSoftNumber);
+    split[i] = square > 0.0 && (parts != ImplicitParts::kStiff || turn_number > kSoftNumber);
     if (!split[i]) continue;
     reach[i] = std::sqrt(square);
     const double at = axis.dot(centre);
@@ -109,8 +117,9 @@ void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& fa
     const double depth = k > 0.0 ? point.constant * count / k : 0.0;
     const double fall = std::max(std::abs(point.motion.dot(falling)), resting);
     point.full = point.constant;
-    point.slope =
-        step * share * (1.0 + settling(depth / step, fall)) * k / count + damping * weight;
+    double extra = settling(depth / step, fall);
+    if (parts == ImplicitParts::kHeld) extra = std::max(extra, holding(number * mobility(0, 0)));
+    point.slope = step * share * (1.0 + extra) * k / count + damping * weight;
   }
   // Damping of turns about the axes along which there is one point only.
   site.rolls.setZero();

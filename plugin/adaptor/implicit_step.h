@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "adaptor/contact_equations.h"
@@ -15,11 +16,24 @@ namespace volcontact::adaptor {
 enum class ImplicitParts : int {
   kStiff = 0,  ///< directions in which the patch is too stiff for an explicit step
   kAll = 1,
+  kHeld = 2,  ///< all, of forces that are held through the stages of a Runge-Kutta step
 };
 
 /// An explicit step holds a damper up to h c/m = 2, and reverses the motion from 1 on: `auto` makes
 /// implicit what lies above this bound.
 inline constexpr double kStiffDamper = 0.5;
+
+/// What a step holds of explicit forces, with room to spare: h^2 k/m of a spring, h c/m of a damper
+/// and of friction.
+struct ExplicitBounds {
+  double spring, damper, slip;
+  static constexpr ExplicitBounds of(bool is_rk4) noexcept {
+    return is_rk4 ? ExplicitBounds{0.5, 0.5, 2.0}
+                  : ExplicitBounds{kStiffNumber, kStiffDamper, 2.0};
+  }
+  /// Of the later stages of Runge-Kutta, for what the first of them held.
+  static constexpr ExplicitBounds of_stage() noexcept { return {1.0, 1.0, HUGE_VAL}; }
+};
 
 /// Pairs whose patch, were it as large as the smaller solid, stays below this are always left to
 /// the explicit force.

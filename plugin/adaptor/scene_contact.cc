@@ -196,21 +196,29 @@ void SceneContact::evaluate(const mjModel* m, const mjData* d, const Before& bef
   }
 }
 
-void SceneContact::write_forces(const mjModel* m, mjData* d, Scratch& scratch) const noexcept {
+void SceneContact::write_forces(const mjModel* m, mjData* d, bool goes_on,
+                                Scratch& scratch) const noexcept {
+  const UserdataBlock our = block(m, d);
   BodyForces& forces = scratch.forces;
   forces.reset(m);
+  const auto add = [&](int pair, const Vec3& point, const Vec3& force, const Vec3& torque) {
+    const GeomPair& geoms = pairs_[static_cast<std::size_t>(pair)].geoms;
+    const int a = m->geom_bodyid[geoms.a], b = m->geom_bodyid[geoms.b];
+    forces.add(m, d, a, point, force, torque);
+    forces.add(m, d, b, point, -force, -torque);
+    scratch.mocaps.add_load(m, d, a, point, force, torque);
+    scratch.mocaps.add_load(m, d, b, point, -force, -torque);
+  };
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    const GeomPair& geoms = pairs_[static_cast<std::size_t>(scratch.cull.near[k])].geoms;
+    if (goes_on && scratch.held[k]) continue;
     for (const SiteReport& site : scratch.reports[k].sites) {
-      const Vec3& c = site.metrics.centroid;
-      const int a = m->geom_bodyid[geoms.a], b = m->geom_bodyid[geoms.b];
-      forces.add(m, d, a, c, site.force_on_A, site.torque_on_A);
-      forces.add(m, d, b, c, -site.force_on_A, -site.torque_on_A);
-      scratch.mocaps.add_load(m, d, a, c, site.force_on_A, site.torque_on_A);
-      scratch.mocaps.add_load(m, d, b, c, -site.force_on_A, -site.torque_on_A);
+      add(scratch.cull.near[k], site.metrics.centroid, site.force_on_A, site.torque_on_A);
     }
   }
-  const UserdataBlock our = block(m, d);
+  for (int i = 0; goes_on && i < our.solved(); ++i) {
+    const HeldSite site = our.solved_site(i);
+    add(site.pair(), site.centroid(), site.force(), site.torque());
+  }
   const bool cartesian = keys_.options.target == Target::kXfrc;
   std::vector<double>& numbers = cartesian ? forces.cartesian(m, d) : forces.generalized(m, d);
   const bool dropped = drop_non_finite(numbers);
@@ -259,32 +267,15 @@ void SceneContact::step(const mjModel* m, mjData* d, Scratch& scratch) const noe
   if (!is_beside()) follow_clock(m, d, our, scratch.way);
   const AccountKeeper account(our, d->time, m->opt.timestep, m->opt.integrator == mjINT_RK4);
   const double* committed = account.continues() ? our.slot(1).states() : nullptr;
-  const bool may_be_implicit = this->may_be_implicit(m);
+  const bool goes_on = account.is_within_step();
   const double driven = follow_mocaps(m, d, our, account, scratch);
-  evaluate(m, d, {committed, account.elapsed(), may_be_implicit}, scratch);
+  evaluate(m, d, {committed, account.elapsed(), is_implicit()}, scratch);
   EnergyAccount now;
-  our.set_solved(0);
-  if (may_be_implicit) {
-    now.unpaid = read_energies(committed, account.elapsed(), scratch);
-    scratch.dissipated = 0.0;
-    if (committed) {
-      double elastic = -now.unpaid;
-      for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-        elastic += scratch.reports[k].elastic_energy;
-      }
-      scratch.dissipated = least_dissipated(our.slot(1).energy(), account.elapsed(), elastic);
-    }
-    now.implicit = find_stiff_sites(m, d, scratch);
-    if (now.implicit) solve_implicit(m, d, scratch);
-    const bool limited = limit_explicit(m, scratch);
-    if (now.implicit || limited) keep_solved(our, scratch);
-  }
-  if (m->opt.integrator == mjINT_RK4 && options().implicit == Implicit::kAuto &&
-      bound_runge_kutta(m, scratch)) {
-    keep_solved(our, scratch);
-  }
+  scratch.held.assign(scratch.cull.near.size(), 0);
+  if (!goes_on) our.set_solved(0);
+  if (is_implicit()) choose_forces(m, d, our, account, now, scratch);
   bool kept = keep_sites(our.slot(0).states(), scratch);
-  if (may_be_implicit) kept = keep_energies(our.slot(0).states(), scratch) && kept;
+  if (is_implicit()) kept = keep_energies(our.slot(0).states(), scratch) && kept;
   if (!kept) our.forgotten() += 1.0;
 
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
@@ -297,7 +288,7 @@ void SceneContact::step(const mjModel* m, mjData* d, Scratch& scratch) const noe
     now.spin_energy += report.bristle_energy.spin;
   }
   now.elastic -= now.unpaid;
-  write_forces(m, d, scratch);
+  write_forces(m, d, goes_on, scratch);
   now.force_power = power_of(our.slot(0).forces(), d->qvel, m->nv);
   keep_motion(m, d, our);
   account.write(now, account.continues() ? power_of(our.slot(1).forces(), d->qvel, m->nv) : 0.0,

@@ -48,7 +48,8 @@ class SceneContact {
     std::vector<ContactReport> reports;  ///< of the pairs in `near`, finite numbers only
     std::vector<char> invalid;           ///< whether a report was left out, having no numbers
     std::vector<char> stiff;             ///< of all sites, whether an explicit step cannot hold it
-    std::vector<int> order;              ///< of `near`, as worked off: the long pairs first
+    std::vector<char> held;  ///< of the pairs in `near`, whether other forces than its laws say act
+    std::vector<int> order;  ///< of `near`, as worked off: the long pairs first
     std::vector<ContactModel::Workspace> workspaces;  ///< one per OpenMP thread
     BodyForces forces;
     ImplicitStep implicit;
@@ -138,7 +139,6 @@ class SceneContact {
   void add_pair(const mjModel* m, const GeomPair& geoms);
   void warn_about_model(const mjModel* m);
   void warn_about_meshes(const mjModel* m);
-  void check_integrator(const mjModel* m);
   void warn_about_friction(const mjModel* m);
   void set_rates(const mjModel* m, PairContact& pair) const;
   void warn_once(const std::string& warning);
@@ -155,19 +155,27 @@ class SceneContact {
                        const AccountKeeper& account, Scratch& scratch) const noexcept;
   void evaluate_one(const mjModel* m, const mjData* d, const Before& before, int k,
                     ContactModel::Workspace& workspace, Scratch& scratch) const noexcept;
-  bool may_be_implicit(const mjModel* m) const noexcept;
+  bool is_implicit() const noexcept { return options().implicit != Implicit::kNever; }
   bool is_stiff(const mjModel* m, mjData* d, const PairContact& pair, const ContactReport& report,
-                std::size_t site, Scratch& scratch) const noexcept;
+                std::size_t site, ExplicitBounds most, Scratch& scratch) const noexcept;
   bool find_stiff_sites(const mjModel* m, mjData* d, Scratch& scratch) const noexcept;
   void solve_implicit(const mjModel* m, mjData* d, Scratch& scratch) const noexcept;
   void keep_solved(const UserdataBlock& our, const Scratch& scratch) const noexcept;
   void recall_solved(const UserdataBlock& our, Scratch& scratch) const noexcept;
-  double read_energies(const double* committed, double elapsed, Scratch& scratch) const noexcept;
+  double read_energies(const double* committed, double elapsed, bool is_rk4,
+                       Scratch& scratch) const noexcept;
+  double share_of(const mjModel* m, std::size_t k, const PairEnergy::Now& now,
+                  const Scratch& scratch) const noexcept;
+  bool find_unpaid_pairs(const mjModel* m, Scratch& scratch) const noexcept;
   bool limit_explicit(const mjModel* m, Scratch& scratch) const noexcept;
-  bool bound_runge_kutta(const mjModel* m, Scratch& scratch) const noexcept;
+  void hold_solved(const mjModel* m, mjData* d, const UserdataBlock& our,
+                   Scratch& scratch) const noexcept;
+  void choose_forces(const mjModel* m, mjData* d, const UserdataBlock& our,
+                     const AccountKeeper& account, EnergyAccount& now,
+                     Scratch& scratch) const noexcept;
   bool keep_energies(double* states, const Scratch& scratch) const noexcept;
   bool keep_sites(double* states, const Scratch& scratch) const noexcept;
-  void write_forces(const mjModel* m, mjData* d, Scratch& scratch) const noexcept;
+  void write_forces(const mjModel* m, mjData* d, bool goes_on, Scratch& scratch) const noexcept;
 
   SceneKeys keys_;
   std::string no_contact_;  // the flag of the model that says so; else empty

@@ -127,8 +127,7 @@ void write_solids(const mjModel* m, const SceneContact& contact, JsonText& json)
 
 // Whether steps are implicit in the contact of the pair, in words.
 std::string implicit_text(const mjModel* m, const SceneContact& contact, const PairContact& pair) {
-  if (contact.options().implicit == Implicit::kNever || m->opt.integrator == mjINT_RK4)
-    return "off";
+  if (contact.options().implicit == Implicit::kNever) return "off";
   if (contact.options().implicit == Implicit::kAlways) return "on";
   const SceneContact::ImplicitUse use = contact.implicit_use(m, pair);
   if (use.by_bristles) return "always, for its bristles";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What SceneContact does where a step is implicit in the contact forces.
+// What SceneContact does where a step is implicit in the contact forces. What it keeps of solved
+// forces: scene_held_forces.cc.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +8,7 @@
 #include <string_view>
 
 #include "adaptor/applied_ledger.h"
+#include "adaptor/report_sums.h"
 #include "adaptor/scene_contact.h"
 #include "adaptor/scene_key.h"
 #include "adaptor/solids_of_geoms.h"
@@ -14,30 +16,6 @@
 
 namespace volcontact::adaptor {
 namespace {
-
-// The sums of a report whose sites have changed.
-void total_up(ContactReport& report) {
-  report.elastic_energy = 0.0;
-  report.bristle_energy = {};
-  report.power = {};
-  report.taken = {};
-  for (const SiteReport& site : report.sites) {
-    report.elastic_energy += site.elastic_energy;
-    report.bristle_energy += site.bristle_energy;
-    report.power += site.power;
-    report.taken += site.taken;
-  }
-}
-
-// A share of all that acts at a site.
-void take_share(double share, SiteReport& site) {
-  site.normal_force *= share;
-  site.force_on_A *= share;
-  site.torque_on_A *= share;
-  for (ByChannel* power : {&site.power, &site.taken}) {
-    for (double* x : {&power->normal, &power->roll, &power->slide, &power->spin}) *x *= share;
-  }
-}
 
 // Change of speed by gravity in a step [m/s].
 double fall_of(const mjModel* m) {
@@ -101,23 +79,26 @@ double number_of(const PairLaws& laws, std::string_view name, double otherwise) 
 // which take the velocity first, hold h^2 k/m + 2 h c/m = 4.
 constexpr double kEulerSpring = 4.0, kEulerDamper = 2.0;
 constexpr double kRungeKuttaSpring = 8.0, kRungeKuttaDamper = 2.785;
-constexpr double kSafeRungeKuttaSpring = 2.0;
 
 // The mass at the patch is that of a solid ball: 1/m and 5/2 of it for the arm.
 constexpr double kBall = 3.5;
 
 // Whether friction without memory would throw the bodies back in an explicit step, faster than they
 // slide or spin now: h c > 2 m, with c the friction per slip. Once the slip is so small they would
-// chatter for ever.
-bool reverses_slip(const SiteReport& site, const InverseMass& inverse, double h) {
+// chatter for ever. `most`: h c/m that a step holds.
+bool reverses_slip(const SiteReport& site, const InverseMass& inverse, double h, double most) {
   const double across = (site.force_on_A - site.normal_force * site.normal).norm();
-  if (h * across * kBall * inverse.along > kEulerDamper * site.slip.norm()) return true;
+  if (h * across * kBall * inverse.along > most * site.slip.norm()) return true;
   const double torque = std::abs(site.torque_on_A.dot(site.normal));
-  return h * torque * inverse.about > kEulerDamper * std::abs(site.spin);
+  return h * torque * inverse.about > most * std::abs(site.spin);
 }
 
 // Whether bristles are too stiff for an explicit step: docs/theory.md, "Time step".
-bool shakes_bristles(const PairContact& pair, double h) {
+bool shakes_bristles(const PairContact& pair, double h, bool is_rk4) {
+  if (is_rk4) {
+    return h * h * pair.bristle_rate > 0.5 * kRungeKuttaSpring ||
+           h * pair.bristle_damping_rate > 0.5 * kRungeKuttaDamper;
+  }
   return h * (h * pair.bristle_rate + 2.0 * pair.bristle_damping_rate) > kEulerSpring;
 }
 
@@ -181,12 +162,15 @@ SceneContact::ImplicitUse SceneContact::implicit_use(const mjModel* m,
   const double number = square * pair.largest_rate;
   const double per_area =
       square * number_of(pair.laws, "stiffness", HUGE_VAL) * inverse_mass(m, pair.geoms).along;
-  return {number >= kPossibleNumber, shakes_bristles(pair, m->opt.timestep), number,
-          kStiffNumber / per_area, std::sqrt(kPossibleNumber / pair.largest_rate)};
+  const bool is_rk4 = m->opt.integrator == mjINT_RK4;
+  const double stiff = ExplicitBounds::of(is_rk4).spring;
+  return {number >= std::max(kPossibleNumber, stiff),
+          shakes_bristles(pair, m->opt.timestep, is_rk4), number, stiff / per_area,
+          std::sqrt(kPossibleNumber / pair.largest_rate)};
 }
 
 void SceneContact::warn_about_friction(const mjModel* m) {
-  if (may_be_implicit(m)) return;
+  if (is_implicit()) return;
   const double gravity = Eigen::Map<const Vec3>(m->opt.gravity).norm();
   for (const PairContact& pair : pairs_) {
     const int a = pair.geoms.a, b = pair.geoms.b;
@@ -206,37 +190,18 @@ void SceneContact::warn_about_friction(const mjModel* m) {
   }
 }
 
-void SceneContact::check_integrator(const mjModel* m) {
-  if (m->opt.integrator != mjINT_RK4 || options().implicit == Implicit::kNever) return;
-  require(options().implicit != Implicit::kAlways,
-          "volcontact/option/implicit/on does not go with integrator=\"RK4\", whose stages are "
-          "explicit; use Euler, implicit or implicitfast, or implicit/off");
-  for (const PairContact& pair : pairs_) {
-    if (implicit_use(m, pair).largest_number < kRungeKuttaSpring) continue;
-    warn_once("geoms '" + label(m, mjOBJ_GEOM, pair.geoms.a) + "' and '" +
-              label(m, mjOBJ_GEOM, pair.geoms.b) +
-              "' may touch too stiffly for integrator=\"RK4\" at this time step, which no "
-              "implicit contact helps; there they are pushed no more than what stops them within "
-              "a step: use Euler, implicit or implicitfast");
-    return;
-  }
-}
-
-bool SceneContact::may_be_implicit(const mjModel* m) const noexcept {
-  return options().implicit != Implicit::kNever && m->opt.integrator != mjINT_RK4;
-}
-
 // Whether an explicit step could not hold the site: by its friction, or by h^2 k/m of its patch
 // against displacements and turns, with the mass that MuJoCo knows of each body at its first pose.
 bool SceneContact::is_stiff(const mjModel* m, mjData* d, const PairContact& pair,
-                            const ContactReport& report, std::size_t site,
+                            const ContactReport& report, std::size_t site, ExplicitBounds most,
                             Scratch& scratch) const noexcept {
-  if (options().implicit == Implicit::kAlways) return true;
   const double h = m->opt.timestep;
   const InverseMass inverse = inverse_mass(m, pair.geoms);
   if (const Friction* friction = pair.laws.laws.friction.get()) {
-    if (shakes_bristles(pair, h)) return true;
-    if (friction->states().empty() && reverses_slip(report.sites[site], inverse, h)) return true;
+    if (shakes_bristles(pair, h, m->opt.integrator == mjINT_RK4)) return true;
+    if (friction->states().empty() && reverses_slip(report.sites[site], inverse, h, most.slip)) {
+      return true;
+    }
   }
   const VolumeMetrics& metrics = report.sites[site].metrics;
   const SiteInputs& inputs = report.inputs[site];
@@ -246,26 +211,27 @@ bool SceneContact::is_stiff(const mjModel* m, mjData* d, const PairContact& pair
   const double damper = h * inputs.normal_out.rolling_damping * metrics.volume;
   const double spring =
       h * h * inputs.normal_out.elastic / metrics.volume * metrics.area_vector.norm();
-  if (damper * mobility > kStiffDamper) return true;
+  if (damper * mobility > most.damper) return true;
   const bool possible = h * h * pair.largest_rate >= kPossibleNumber;
-  if (possible && spring * mobility > kStiffNumber) return true;
+  if (possible && spring * mobility > most.spring) return true;
   // What hangs on joints may give way more easily than its masses say.
   constexpr double kMuchMore = 1e3;
-  const double number =
-      std::max(damper * mobility / kStiffDamper, spring * mobility / kStiffNumber);
+  const double number = std::max(damper * mobility / most.damper, spring * mobility / most.spring);
   if (!pair.is_jointed || number * kMuchMore < 1.0) return false;
   const SiteReport& at = report.sites[site];
   const double along = mobility_along(m, d, pair.geoms, metrics.centroid, at.normal, scratch.row);
-  return damper * along > kStiffDamper || spring * along > kStiffNumber;
+  return damper * along > most.damper || spring * along > most.spring;
 }
 
 bool SceneContact::find_stiff_sites(const mjModel* m, mjData* d, Scratch& scratch) const noexcept {
+  const bool all = options().implicit == Implicit::kAlways;
+  const auto most = ExplicitBounds::of(m->opt.integrator == mjINT_RK4);
   scratch.stiff.clear();
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
     const ContactReport& report = scratch.reports[k];
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
-      scratch.stiff.push_back(is_stiff(m, d, pair, report, i, scratch) ? 1 : 0);
+      scratch.stiff.push_back(all || is_stiff(m, d, pair, report, i, most, scratch) ? 1 : 0);
     }
   }
   return std::find(scratch.stiff.begin(), scratch.stiff.end(), 1) != scratch.stiff.end();
@@ -304,35 +270,49 @@ void SceneContact::solve_implicit(const mjModel* m, mjData* d, Scratch& scratch)
   share(Target::kApplied, static_cast<int>(m->nv), d->qfrc_applied, scratch.user_qfrc);
   share(Target::kXfrc, 6 * static_cast<int>(m->nbody), d->xfrc_applied, scratch.user_xfrc);
   known_forces(m, d, scratch.user_qfrc.data(), scratch.user_xfrc.data(), scratch.known);
-  implicit.solve(
-      m, d, options().implicit == Implicit::kAlways ? ImplicitParts::kAll : ImplicitParts::kStiff,
-      scratch.known.data());
+  // What is held through the stages of Runge-Kutta must be implicit in all directions: forces that
+  // stay as they were at the begin of a step make its oscillations grow.
+  const auto parts = m->opt.integrator == mjINT_RK4            ? ImplicitParts::kHeld
+                     : options().implicit == Implicit::kAlways ? ImplicitParts::kAll
+                                                               : ImplicitParts::kStiff;
+  implicit.solve(m, d, parts, scratch.known.data());
   for (const int pair : scratch.order) total_up(scratch.reports[static_cast<std::size_t>(pair)]);
   for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
-    if (implicit.is_pair_solved(k))
-      scratch.energies[k].solve(implicit.work(k), implicit.friction_work(k));
+    if (!implicit.is_pair_solved(k)) continue;
+    scratch.energies[k].solve(implicit.work(k), implicit.friction_work(k));
+    scratch.held[k] = 1;
   }
 }
 
 // What the pairs hold of the energy of the bodies, after the step that ends here. Returns the
 // elastic energy that nobody paid [J].
-double SceneContact::read_energies(const double* committed, double elapsed,
+double SceneContact::read_energies(const double* committed, double elapsed, bool is_rk4,
                                    Scratch& scratch) const noexcept {
   const std::size_t count = scratch.cull.near.size();
   scratch.energies.assign(count, PairEnergy());
   double unpaid = 0.0;
+  std::size_t first = 0;  // of the pair's sites
   for (std::size_t k = 0; k < count; ++k) {
     const ContactReport& report = scratch.reports[k];
+    const auto stiff = scratch.stiff.begin() + static_cast<std::ptrdiff_t>(first);
+    first += report.sites.size();
     if (!report.touching()) continue;
     PairEnergy& energy = scratch.energies[k];
     PairEnergy::Now now;
     for (const SiteReport& site : report.sites) now.add(site);
+    SiteMemory row;
+    if (committed) {
+      const SitePool<const double> pool(committed + sites_.size(), energies_);
+      row = pool.rows_of(scratch.cull.near[k], elapsed);
+    }
+    if (row.count > 0) energy = PairEnergy::from(row.rows);
     if (!committed) {
       energy.found = now.elastic;
+    } else if (is_rk4 && energy.explains(elapsed, now) &&
+               std::find(stiff, stiff + std::ssize(report.sites), 1) ==
+                   stiff + std::ssize(report.sites)) {
+      energy.follow(now);
     } else {
-      const SitePool<const double> pool(committed + sites_.size(), energies_);
-      const SiteMemory row = pool.rows_of(scratch.cull.near[k], elapsed);
-      if (row.count > 0) energy = PairEnergy::from(row.rows);
       energy.take_in(elapsed, now);
     }
     unpaid += now.elastic - energy.stored - energy.found;
@@ -340,11 +320,50 @@ double SceneContact::read_energies(const double* committed, double elapsed,
   return unpaid;
 }
 
+// The share of the explicit forces of a pair that does no more work than the pair may.
+double SceneContact::share_of(const mjModel* m, std::size_t k, const PairEnergy::Now& now,
+                              const Scratch& scratch) const noexcept {
+  const double h = m->opt.timestep;
+  const double fall = fall_of(m);
+  const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
+  const double along = inverse_mass(m, pair.geoms).along;
+  const auto share_with = [&](double overdraft) {
+    WorkLimit limit =
+        WorkLimit::of(scratch.energies[k], scratch.dissipated, options().exit_speed, overdraft);
+    return explicit_share(limit.for_bodies(along, fall), now.force, -now.approach(), along, fall,
+                          h);
+  };
+  const double share = share_with(PairEnergy::kOverdraft);
+  const double number = h * h * now.stiffness * along;
+  return share < 1.0 && number <= kStiffNumber ? share_with(number) : share;
+}
+
+// Runge-Kutta's stages are exact enough, but for what no motion put in: pairs that would give it
+// back count as stiff. Returns whether there are some.
+bool SceneContact::find_unpaid_pairs(const mjModel* m, Scratch& scratch) const noexcept {
+  constexpr double kRounding = 1e-9;
+  bool some = false;
+  std::size_t first = 0;  // of the pair's sites
+  for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
+    const ContactReport& report = scratch.reports[k];
+    const auto stiff = scratch.stiff.begin() + static_cast<std::ptrdiff_t>(first);
+    first += report.sites.size();
+    if (!report.touching()) continue;
+    const PairEnergy& energy = scratch.energies[k];
+    PairEnergy::Now now;
+    for (const SiteReport& site : report.sites) now.add(site);
+    const double unpaid = now.elastic - energy.stored - energy.found;
+    if (energy.found == 0.0 && unpaid <= kRounding * now.elastic) continue;
+    if (share_of(m, k, now, scratch) == 1.0) continue;
+    std::fill(stiff, stiff + std::ssize(report.sites), 1);
+    some = true;
+  }
+  return some;
+}
+
 // The same bound for pairs whose forces are explicit. Returns whether some are less than their laws
 // say.
 bool SceneContact::limit_explicit(const mjModel* m, Scratch& scratch) const noexcept {
-  const double h = m->opt.timestep;
-  const double fall = fall_of(m);
   bool limited = false;
   for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
     PairEnergy& energy = scratch.energies[k];
@@ -352,50 +371,43 @@ bool SceneContact::limit_explicit(const mjModel* m, Scratch& scratch) const noex
     if (energy.is_solved || !report.touching()) continue;
     PairEnergy::Now now;
     for (const SiteReport& site : report.sites) now.add(site);
-    const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
-    const double along = inverse_mass(m, pair.geoms).along;
-    const auto share_with = [&](double overdraft) {
-      WorkLimit limit = WorkLimit::of(energy, scratch.dissipated, options().exit_speed, overdraft);
-      return explicit_share(limit.for_bodies(along, fall), now.force, -now.approach(), along, fall,
-                            h);
-    };
-    double share = share_with(PairEnergy::kOverdraft);
-    const double number = h * h * now.stiffness * along;
-    if (share < 1.0 && number <= kStiffNumber) share = share_with(number);
+    const double share = share_of(m, k, now, scratch);
     energy.rubbed = now.bristle;
     energy.force = share * now.force;
     energy.power = share * now.power;
     if (share == 1.0) continue;
     limited = true;
-    for (SiteReport& site : report.sites) take_share(share, site);
-    total_up(report);
+    scratch.held[k] = 1;
+    take_share(share, report);
   }
   return limited;
 }
 
-// Runge-Kutta's stages are explicit. A pair that is too stiff for them pushes no more than what
-// stops the bodies within a step, and parts them slowly. Returns whether some do.
-bool SceneContact::bound_runge_kutta(const mjModel* m, Scratch& scratch) const noexcept {
-  const double h = m->opt.timestep;
-  const double fall = fall_of(m);
-  bool bounded = false;
-  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    ContactReport& report = scratch.reports[k];
-    if (!report.touching()) continue;
-    PairEnergy::Now now;
-    for (const SiteReport& site : report.sites) now.add(site);
-    const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
-    const double along = inverse_mass(m, pair.geoms).along;
-    if (h * h * now.stiffness * along <= kSafeRungeKuttaSpring) continue;
-    const double depth = now.force / now.stiffness;
-    const double exit = std::min(options().exit_speed, depth / h);
-    const double most = (std::max(0.0, now.approach() + exit) + fall) / (h * along);
-    if (now.force <= most) continue;
-    bounded = true;
-    for (SiteReport& site : report.sites) take_share(most / now.force, site);
-    total_up(report);
+// The forces that act, in place of what the laws say at this evaluation.
+void SceneContact::choose_forces(const mjModel* m, mjData* d, const UserdataBlock& our,
+                                 const AccountKeeper& account, EnergyAccount& now,
+                                 Scratch& scratch) const noexcept {
+  const bool is_rk4 = m->opt.integrator == mjINT_RK4;
+  const double* begin = account.continues() ? account.begin().states() : nullptr;
+  if (account.is_within_step()) {
+    hold_solved(m, d, our, scratch);
+    now.unpaid = read_energies(begin, account.since_begin(), is_rk4, scratch);
+    return;
   }
-  return bounded;
+  now.implicit = find_stiff_sites(m, d, scratch);
+  now.unpaid = read_energies(begin, account.since_begin(), is_rk4, scratch);
+  scratch.dissipated = 0.0;
+  if (begin) {
+    double elastic = -now.unpaid;
+    for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+      elastic += scratch.reports[k].elastic_energy;
+    }
+    scratch.dissipated = least_dissipated(account.begin().energy(), account.since_begin(), elastic);
+  }
+  if (is_rk4 && find_unpaid_pairs(m, scratch)) now.implicit = true;
+  if (now.implicit) solve_implicit(m, d, scratch);
+  const bool limited = !is_rk4 && limit_explicit(m, scratch);
+  if (now.implicit || limited) keep_solved(our, scratch);
 }
 
 bool SceneContact::keep_energies(double* states, const Scratch& scratch) const noexcept {
@@ -408,35 +420,6 @@ bool SceneContact::keep_energies(double* states, const Scratch& scratch) const n
     if (!pool.push(scratch.cull.near[k], row, PairEnergy::kNumbers)) return false;
   }
   return true;
-}
-
-// The forces of a solved step cannot be had from positions and velocities alone.
-void SceneContact::keep_solved(const UserdataBlock& our, const Scratch& scratch) const noexcept {
-  int count = 0;
-  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    for (const SiteReport& site : scratch.reports[k].sites) {
-      if (count == solved_rows_) break;
-      double* row = our.solved_row(count++);
-      row[0] = site.normal_force;
-      Eigen::Map<Vec3>(row + 1) = site.force_on_A;
-      Eigen::Map<Vec3>(row + 4) = site.torque_on_A;
-    }
-  }
-  our.set_solved(count);
-}
-
-void SceneContact::recall_solved(const UserdataBlock& our, Scratch& scratch) const noexcept {
-  const int count = our.solved();
-  int i = 0;
-  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    for (SiteReport& site : scratch.reports[k].sites) {
-      if (i == count) return;
-      const double* row = our.solved_row(i++);
-      site.normal_force = row[0];
-      site.force_on_A = Eigen::Map<const Vec3>(row + 1);
-      site.torque_on_A = Eigen::Map<const Vec3>(row + 4);
-    }
-  }
 }
 
 }  // namespace volcontact::adaptor

@@ -95,7 +95,6 @@ SceneContact::SceneContact(const mjModel* m, const std::vector<GivenKey>& given,
   warn_about_meshes(m);
   pairs_.reserve(geom_pairs_.size());
   for (const GeomPair& pair : geom_pairs_) add_pair(m, pair);
-  check_integrator(m);
   warn_about_friction(m);
   if (sites_.row_size > 0) sites_.rows = rows_of(geom_pairs_);
   if (options().implicit != Implicit::kNever) solved_rows_ = rows_of(geom_pairs_);

@@ -20,7 +20,7 @@ namespace volcontact::adaptor {
 
 /// Sizes of the block, in numbers.
 struct UserdataLayout {
-  static constexpr int kVersion = 6;
+  static constexpr int kVersion = 7;
   static constexpr int kHeader = 9;
   /// A Runge-Kutta step and the one before it, which a step that is redone needs.
   static constexpr int kSlots = 5;
@@ -30,8 +30,8 @@ struct UserdataLayout {
   /// Behind it the generalized forces, the mocap bodies, the law states and the energies of the
   /// pairs.
   static constexpr int kSlotHead = 27;
-  /// Of a site that an implicit step solved: normal force, force, torque.
-  static constexpr int kSolvedRow = 7;
+  /// A HeldSite.
+  static constexpr int kSolvedRow = 11;
 
   int states = 0;       ///< numbers in which sites and energies of all pairs are kept
   int channels = 0;     ///< forces in the ledger: nv for applied, 6 nbody for xfrc, 0 for passive
@@ -45,6 +45,24 @@ struct UserdataLayout {
   int solved_size() const { return solved_rows > 0 ? 1 + kSolvedRow * solved_rows : 0; }
   int size() const {
     return motion + solved_size() + kSlots * slot_size() + ledger_size() + kHeader;
+  }
+};
+
+/// The forces at a site of a step whose forces were solved.
+struct HeldSite {
+  double* p;
+  int pair() const { return static_cast<int>(p[0]); }
+  double normal_force() const { return p[1]; }           // [N]
+  Vec3 force() const { return {p[2], p[3], p[4]}; }      // on A [N]
+  Vec3 torque() const { return {p[5], p[6], p[7]}; }     // on A, about the centroid [N m]
+  Vec3 centroid() const { return {p[8], p[9], p[10]}; }  // [m]
+
+  void set(int pair, const SiteReport& site) const {
+    p[0] = pair;
+    p[1] = site.normal_force;
+    const Vec3 vectors[] = {site.force_on_A, site.torque_on_A, site.metrics.centroid};
+    double* out = p + 2;
+    for (const Vec3& v : vectors) out = std::copy_n(v.data(), 3, out);
   }
 };
 
@@ -180,13 +198,13 @@ class UserdataBlock {
   double* base() const { return header_ - layout_.ledger_size(); }
   double* left() const { return base() + layout_.channels; }
 
-  /// How many sites the newest evaluation solved by an implicit step, and the row of one of them.
+  /// How many sites the newest step solved, by pairs in ascending order, and one of them.
   int solved() const { return layout_.solved_rows > 0 ? static_cast<int>(*solved_block()) : 0; }
   void set_solved(int count) const {
     if (layout_.solved_rows > 0) *solved_block() = std::min(count, layout_.solved_rows);
   }
-  double* solved_row(int i) const {
-    return solved_block() + 1 + static_cast<std::ptrdiff_t>(i) * UserdataLayout::kSolvedRow;
+  HeldSite solved_site(int i) const {
+    return {solved_block() + 1 + static_cast<std::ptrdiff_t>(i) * UserdataLayout::kSolvedRow};
   }
 
   /// Positions, then velocities, of the newest evaluation.

@@ -67,9 +67,29 @@ struct PairEnergy {
     if (!now.is_within) keep_within(now.elastic + ahead);
   }
 
+  /// Whether motion can have put in what the law holds `now`, in a step of `elapsed` seconds.
+  bool explains(double elapsed, const Now& now) const noexcept {
+    constexpr double kRoom = 1.5;
+    const double before = force > 0.0 ? power / force : 0.0;
+    const double power_at_most =
+        std::max(force, now.force) * std::max({0.0, before, now.approach()});
+    return now.elastic <= stored + found + kOverdraft * most + kRoom * elapsed * power_at_most;
+  }
+
+  /// The end of a step whose method is exact enough: what the law holds was put in by motion.
+  void follow(const Now& now) noexcept {
+    found = std::min(found, now.elastic);
+    stored = now.elastic - found;
+    most = std::max(most, stored);
+    rubbed = now.bristle;
+    force = now.force;
+    power = now.power;
+  }
+
   /// An implicit step that does `work` on the bodies, of which friction does `friction_work`.
   void solve(double work, double friction_work = 0.0) noexcept {
     is_solved = true;
+    force = power = 0.0;
     rubbed = std::max(0.0, rubbed - friction_work);
     put(-work, kOverdraft * most);  // once, and not in every step anew
     most = std::max(most, stored);
