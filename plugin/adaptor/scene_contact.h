@@ -168,6 +168,9 @@ class SceneContact {
                   const Scratch& scratch) const noexcept;
   bool find_unpaid_pairs(const mjModel* m, Scratch& scratch) const noexcept;
   bool limit_explicit(const mjModel* m, Scratch& scratch) const noexcept;
+  // What a later stage of Runge-Kutta cannot hold, and was not solved when the step began, waits
+  // for the next.
+  void postpone_stiff(Scratch& scratch) const noexcept;
   void hold_solved(const mjModel* m, mjData* d, const UserdataBlock& our,
                    Scratch& scratch) const noexcept;
   void choose_forces(const mjModel* m, mjData* d, const UserdataBlock& our,

@@ -84,8 +84,7 @@ void SceneContact::recall_solved(const UserdataBlock& our, Scratch& scratch) con
   }
 }
 
-// A later stage of Runge-Kutta. What its explicit forces cannot hold, and was not solved when the
-// step began, waits for the next.
+// At a later stage of Runge-Kutta.
 void SceneContact::hold_solved(const mjModel* m, mjData* d, const UserdataBlock& our,
                                Scratch& scratch) const noexcept {
   Kept kept(our);
@@ -93,14 +92,24 @@ void SceneContact::hold_solved(const mjModel* m, mjData* d, const UserdataBlock&
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     ContactReport& report = scratch.reports[k];
     scratch.held[k] = kept.take(scratch.cull.near[k], report) ? 1 : 0;
-    scratch.stiff.insert(scratch.stiff.end(), report.sites.size(), scratch.held[k]);
-    if (scratch.held[k]) continue;
     const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
-    bool is_stiff = false;
-    for (std::size_t i = 0; i < report.sites.size() && !is_stiff; ++i) {
-      is_stiff = this->is_stiff(m, d, pair, report, i, ExplicitBounds::of_stage(), scratch);
+    for (std::size_t i = 0; i < report.sites.size(); ++i) {
+      const bool is_stiff = scratch.held[k] || this->is_stiff(m, d, pair, report, i,
+                                                              ExplicitBounds::of_stage(), scratch);
+      scratch.stiff.push_back(is_stiff ? 1 : 0);
     }
-    if (is_stiff) take_share(0.0, report);
+  }
+}
+
+void SceneContact::postpone_stiff(Scratch& scratch) const noexcept {
+  std::size_t site = 0;
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    ContactReport& report = scratch.reports[k];
+    bool is_stiff = false;
+    for (std::size_t i = 0; i < report.sites.size(); ++i) {
+      is_stiff = scratch.stiff[site++] != 0 || is_stiff;
+    }
+    if (is_stiff && !scratch.held[k]) take_share(0.0, report);
   }
 }
 

@@ -392,6 +392,9 @@ void SceneContact::choose_forces(const mjModel* m, mjData* d, const UserdataBloc
   if (account.is_within_step()) {
     hold_solved(m, d, our, scratch);
     now.unpaid = read_energies(begin, account.since_begin(), is_rk4, scratch);
+    scratch.dissipated = 0.0;
+    find_unpaid_pairs(m, scratch);
+    postpone_stiff(scratch);
     return;
   }
   now.implicit = find_stiff_sites(m, d, scratch);
