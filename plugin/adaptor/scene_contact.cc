@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <utility>
 
@@ -196,31 +197,48 @@ void SceneContact::evaluate(const mjModel* m, const mjData* d, const Before& bef
   }
 }
 
+void SceneContact::add_held(const mjModel* m, const mjData* d, const UserdataBlock& our,
+                            BodyForces& forces) const noexcept {
+  for (int i = 0; i < our.solved(); ++i) {
+    const HeldSite site = our.solved_site(i);
+    const GeomPair& geoms = pairs_[static_cast<std::size_t>(site.pair())].geoms;
+    forces.add(m, d, m->geom_bodyid[geoms.a], site.centroid(), site.force(), site.torque());
+    forces.add(m, d, m->geom_bodyid[geoms.b], site.centroid(), -site.force(), -site.torque());
+  }
+}
+
 void SceneContact::write_forces(const mjModel* m, mjData* d, bool goes_on,
                                 Scratch& scratch) const noexcept {
   const UserdataBlock our = block(m, d);
   BodyForces& forces = scratch.forces;
+  const bool cartesian = keys_.options.target == Target::kXfrc;
   forces.reset(m);
-  const auto add = [&](int pair, const Vec3& point, const Vec3& force, const Vec3& torque) {
-    const GeomPair& geoms = pairs_[static_cast<std::size_t>(pair)].geoms;
-    const int a = m->geom_bodyid[geoms.a], b = m->geom_bodyid[geoms.b];
-    forces.add(m, d, a, point, force, torque);
-    forces.add(m, d, b, point, -force, -torque);
-    scratch.mocaps.add_load(m, d, a, point, force, torque);
-    scratch.mocaps.add_load(m, d, b, point, -force, -torque);
-  };
+  // Later stages of Runge-Kutta hold generalized forces: a force that stays in space loads the
+  // joints of a body that turns.
+  if (m->opt.integrator == mjINT_RK4 && !goes_on && our.solved() > 0) {
+    add_held(m, d, our, forces);
+    std::vector<double>& held = forces.generalized(m, d);
+    drop_non_finite(held);
+    std::copy(held.begin(), held.end(), our.held());
+    forces.reset(m);
+  }
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    if (goes_on && scratch.held[k]) continue;
+    const GeomPair& geoms = pairs_[static_cast<std::size_t>(scratch.cull.near[k])].geoms;
+    const int a = m->geom_bodyid[geoms.a], b = m->geom_bodyid[geoms.b];
     for (const SiteReport& site : scratch.reports[k].sites) {
-      add(scratch.cull.near[k], site.metrics.centroid, site.force_on_A, site.torque_on_A);
+      const Vec3& c = site.metrics.centroid;
+      scratch.mocaps.add_load(m, d, a, c, site.force_on_A, site.torque_on_A);
+      scratch.mocaps.add_load(m, d, b, c, -site.force_on_A, -site.torque_on_A);
+      if (goes_on && scratch.held[k]) continue;
+      forces.add(m, d, a, c, site.force_on_A, site.torque_on_A);
+      forces.add(m, d, b, c, -site.force_on_A, -site.torque_on_A);
     }
   }
-  for (int i = 0; goes_on && i < our.solved(); ++i) {
-    const HeldSite site = our.solved_site(i);
-    add(site.pair(), site.centroid(), site.force(), site.torque());
-  }
-  const bool cartesian = keys_.options.target == Target::kXfrc;
+  if (goes_on && cartesian) add_held(m, d, our, forces);
   std::vector<double>& numbers = cartesian ? forces.cartesian(m, d) : forces.generalized(m, d);
+  if (goes_on && !cartesian && our.solved() > 0) {
+    std::transform(numbers.begin(), numbers.end(), our.held(), numbers.begin(), std::plus<>());
+  }
   const bool dropped = drop_non_finite(numbers);
   if (dropped || any(scratch.invalid, scratch.cull.near.size())) our.dropped() += 1.0;
   const int count = static_cast<int>(numbers.size());

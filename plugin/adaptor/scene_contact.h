@@ -178,6 +178,8 @@ class SceneContact {
                      Scratch& scratch) const noexcept;
   bool keep_energies(double* states, const Scratch& scratch) const noexcept;
   bool keep_sites(double* states, const Scratch& scratch) const noexcept;
+  void add_held(const mjModel* m, const mjData* d, const UserdataBlock& our,
+                BodyForces& forces) const noexcept;
   void write_forces(const mjModel* m, mjData* d, bool goes_on, Scratch& scratch) const noexcept;
 
   SceneKeys keys_;

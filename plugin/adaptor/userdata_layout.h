@@ -42,7 +42,7 @@ struct UserdataLayout {
 
   int slot_size() const { return kSlotHead + dofs + mocaps + states; }
   int ledger_size() const { return 2 * channels; }
-  int solved_size() const { return solved_rows > 0 ? 1 + kSolvedRow * solved_rows : 0; }
+  int solved_size() const { return solved_rows > 0 ? 1 + dofs + kSolvedRow * solved_rows : 0; }
   int size() const {
     return motion + solved_size() + kSlots * slot_size() + ledger_size() + kHeader;
   }
@@ -204,8 +204,11 @@ class UserdataBlock {
     if (layout_.solved_rows > 0) *solved_block() = std::min(count, layout_.solved_rows);
   }
   HeldSite solved_site(int i) const {
-    return {solved_block() + 1 + static_cast<std::ptrdiff_t>(i) * UserdataLayout::kSolvedRow};
+    return {solved_block() + 1 + layout_.dofs +
+            static_cast<std::ptrdiff_t>(i) * UserdataLayout::kSolvedRow};
   }
+  /// Their generalized forces together, which a Runge-Kutta step holds; where some are solved.
+  double* held() const { return solved_block() + 1; }
 
   /// Positions, then velocities, of the newest evaluation.
   double* motion() const { return solved_block() - layout_.motion; }
