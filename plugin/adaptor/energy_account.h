@@ -51,8 +51,9 @@ inline void add_work(const EnergyAccount& before, double work, double driven, En
   const double spent = now.dissipated.sum() - before.dissipated.sum();
   now.work = before.work + work;
   now.driven = before.driven + driven;
-  now.made = work + (now.elastic - before.elastic) - driven;
-  now.numerical = before.numerical - now.made - spent;
+  const double made = work + (now.elastic - before.elastic) - driven;
+  now.numerical = before.numerical - made - spent;
+  now.made = made - (now.released - before.released);
 }
 
 /// (1 - weight) a + weight b

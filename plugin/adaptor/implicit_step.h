@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
 #include "adaptor/contact_equations.h"
@@ -23,16 +22,20 @@ enum class ImplicitParts : int {
 /// implicit what lies above this bound.
 inline constexpr double kStiffDamper = 0.5;
 
-/// What a step holds of explicit forces, with room to spare: h^2 k/m of a spring, h c/m of a damper
-/// and of friction.
+/// What a step holds of explicit forces, with room to spare: h^2 k/m of a spring, h c/m of a
+/// damper.
 struct ExplicitBounds {
-  double spring, damper, slip;
+  double spring, damper;
+  /// Whether friction that is too stiff makes no pair implicit. Runge-Kutta goes on to be of fourth
+  /// order where the slip reverses in an impact that it resolves, and may chatter at rest.
+  bool friction_is_explicit;
+
   static constexpr ExplicitBounds of(bool is_rk4) noexcept {
-    return is_rk4 ? ExplicitBounds{0.5, 0.5, 2.0}
-                  : ExplicitBounds{kStiffNumber, kStiffDamper, 2.0};
+    return is_rk4 ? ExplicitBounds{0.5, 1.4, true}
+                  : ExplicitBounds{kStiffNumber, kStiffDamper, false};
   }
   /// Of the later stages of Runge-Kutta, for what the first of them held.
-  static constexpr ExplicitBounds of_stage() noexcept { return {1.0, 1.0, HUGE_VAL}; }
+  static constexpr ExplicitBounds of_stage() noexcept { return {1.0, 2.0, true}; }
 };
 
 /// Pairs whose patch, were it as large as the smaller solid, stays below this are always left to
@@ -72,6 +75,7 @@ class ImplicitStep {
   bool is_pair_solved(std::size_t i) const noexcept { return limits_[i].is_solved; }
   double work(std::size_t i) const noexcept { return limits_[i].work(); }
   double friction_work(std::size_t i) const noexcept { return limits_[i].friction_work; }
+  double released_at_most(std::size_t i) const noexcept { return limits_[i].released_at_most(); }
 
   /// Solves, with the known forces of contact_space.h, and puts the results into the reports: the
   /// forces, and as `taken` the power that the contact takes from the motion over the step.

@@ -164,8 +164,11 @@ class SceneContact {
   void recall_solved(const UserdataBlock& our, Scratch& scratch) const noexcept;
   double read_energies(const double* committed, double elapsed, bool is_rk4,
                        Scratch& scratch) const noexcept;
-  double share_of(const mjModel* m, std::size_t k, const PairEnergy::Now& now,
-                  const Scratch& scratch) const noexcept;
+  struct ExplicitShare {
+    double share, released_at_most;
+  };
+  ExplicitShare share_of(const mjModel* m, std::size_t k, const PairEnergy::Now& now,
+                         const Scratch& scratch) const noexcept;
   bool find_unpaid_pairs(const mjModel* m, Scratch& scratch) const noexcept;
   bool limit_explicit(const mjModel* m, Scratch& scratch) const noexcept;
   // What a later stage of Runge-Kutta cannot hold, and was not solved when the step began, waits
@@ -173,6 +176,7 @@ class SceneContact {
   void postpone_stiff(Scratch& scratch) const noexcept;
   void hold_solved(const mjModel* m, mjData* d, const UserdataBlock& our,
                    Scratch& scratch) const noexcept;
+  void release(const AccountKeeper& account, EnergyAccount& now, Scratch& scratch) const noexcept;
   void choose_forces(const mjModel* m, mjData* d, const UserdataBlock& our,
                      const AccountKeeper& account, EnergyAccount& now,
                      Scratch& scratch) const noexcept;

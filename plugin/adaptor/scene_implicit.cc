@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <string_view>
+#include <utility>
 
 #include "adaptor/applied_ledger.h"
 #include "adaptor/report_sums.h"
@@ -86,19 +87,15 @@ constexpr double kBall = 3.5;
 // Whether friction without memory would throw the bodies back in an explicit step, faster than they
 // slide or spin now: h c > 2 m, with c the friction per slip. Once the slip is so small they would
 // chatter for ever. `most`: h c/m that a step holds.
-bool reverses_slip(const SiteReport& site, const InverseMass& inverse, double h, double most) {
+bool reverses_slip(const SiteReport& site, const InverseMass& inverse, double h) {
   const double across = (site.force_on_A - site.normal_force * site.normal).norm();
-  if (h * across * kBall * inverse.along > most * site.slip.norm()) return true;
+  if (h * across * kBall * inverse.along > kEulerDamper * site.slip.norm()) return true;
   const double torque = std::abs(site.torque_on_A.dot(site.normal));
-  return h * torque * inverse.about > most * std::abs(site.spin);
+  return h * torque * inverse.about > kEulerDamper * std::abs(site.spin);
 }
 
 // Whether bristles are too stiff for an explicit step: docs/theory.md, "Time step".
-bool shakes_bristles(const PairContact& pair, double h, bool is_rk4) {
-  if (is_rk4) {
-    return h * h * pair.bristle_rate > 0.5 * kRungeKuttaSpring ||
-           h * pair.bristle_damping_rate > 0.5 * kRungeKuttaDamper;
-  }
+bool shakes_bristles(const PairContact& pair, double h) {
   return h * (h * pair.bristle_rate + 2.0 * pair.bristle_damping_rate) > kEulerSpring;
 }
 
@@ -163,14 +160,16 @@ SceneContact::ImplicitUse SceneContact::implicit_use(const mjModel* m,
   const double per_area =
       square * number_of(pair.laws, "stiffness", HUGE_VAL) * inverse_mass(m, pair.geoms).along;
   const bool is_rk4 = m->opt.integrator == mjINT_RK4;
-  const double stiff = ExplicitBounds::of(is_rk4).spring;
-  return {number >= std::max(kPossibleNumber, stiff),
-          shakes_bristles(pair, m->opt.timestep, is_rk4), number, stiff / per_area,
-          std::sqrt(kPossibleNumber / pair.largest_rate)};
+  const ExplicitBounds bounds = ExplicitBounds::of(is_rk4);
+  return {number >= std::max(kPossibleNumber, bounds.spring),
+          !bounds.friction_is_explicit && shakes_bristles(pair, m->opt.timestep), number,
+          bounds.spring / per_area, std::sqrt(kPossibleNumber / pair.largest_rate)};
 }
 
 void SceneContact::warn_about_friction(const mjModel* m) {
-  if (is_implicit()) return;
+  if (is_implicit() && !(m->opt.integrator == mjINT_RK4 && options().implicit == Implicit::kAuto)) {
+    return;
+  }
   const double gravity = Eigen::Map<const Vec3>(m->opt.gravity).norm();
   for (const PairContact& pair : pairs_) {
     const int a = pair.geoms.a, b = pair.geoms.b;
@@ -197,11 +196,10 @@ bool SceneContact::is_stiff(const mjModel* m, mjData* d, const PairContact& pair
                             Scratch& scratch) const noexcept {
   const double h = m->opt.timestep;
   const InverseMass inverse = inverse_mass(m, pair.geoms);
-  if (const Friction* friction = pair.laws.laws.friction.get()) {
-    if (shakes_bristles(pair, h, m->opt.integrator == mjINT_RK4)) return true;
-    if (friction->states().empty() && reverses_slip(report.sites[site], inverse, h, most.slip)) {
-      return true;
-    }
+  const Friction* friction = pair.laws.laws.friction.get();
+  if (friction && !most.friction_is_explicit) {
+    if (shakes_bristles(pair, h)) return true;
+    if (friction->states().empty() && reverses_slip(report.sites[site], inverse, h)) return true;
   }
   const VolumeMetrics& metrics = report.sites[site].metrics;
   const SiteInputs& inputs = report.inputs[site];
@@ -279,7 +277,8 @@ void SceneContact::solve_implicit(const mjModel* m, mjData* d, Scratch& scratch)
   for (const int pair : scratch.order) total_up(scratch.reports[static_cast<std::size_t>(pair)]);
   for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
     if (!implicit.is_pair_solved(k)) continue;
-    scratch.energies[k].solve(implicit.work(k), implicit.friction_work(k));
+    scratch.energies[k].solve(implicit.work(k), implicit.friction_work(k),
+                              implicit.released_at_most(k));
     scratch.held[k] = 1;
   }
 }
@@ -321,21 +320,25 @@ double SceneContact::read_energies(const double* committed, double elapsed, bool
 }
 
 // The share of the explicit forces of a pair that does no more work than the pair may.
-double SceneContact::share_of(const mjModel* m, std::size_t k, const PairEnergy::Now& now,
-                              const Scratch& scratch) const noexcept {
+SceneContact::ExplicitShare SceneContact::share_of(const mjModel* m, std::size_t k,
+                                                   const PairEnergy::Now& now,
+                                                   const Scratch& scratch) const noexcept {
   const double h = m->opt.timestep;
   const double fall = fall_of(m);
   const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
   const double along = inverse_mass(m, pair.geoms).along;
+  double slow = 0.0;
   const auto share_with = [&](double overdraft) {
     WorkLimit limit =
         WorkLimit::of(scratch.energies[k], scratch.dissipated, options().exit_speed, overdraft);
-    return explicit_share(limit.for_bodies(along, fall), now.force, -now.approach(), along, fall,
-                          h);
+    slow = limit.for_bodies(along, fall).slow;
+    return explicit_share(limit, now.force, -now.approach(), along, fall, h);
   };
-  const double share = share_with(PairEnergy::kOverdraft);
+  double share = share_with(PairEnergy::kOverdraft);
   const double number = h * h * now.stiffness * along;
-  return share < 1.0 && number <= kStiffNumber ? share_with(number) : share;
+  if (share < 1.0 && number <= kStiffNumber) share = share_with(std::min(kExplicitError, number));
+  const double exit = h * share * now.force * along - now.approach();
+  return {share, exit <= options().exit_speed ? slow : 0.0};
 }
 
 // Runge-Kutta's stages are exact enough, but for what no motion put in: pairs that would give it
@@ -354,7 +357,7 @@ bool SceneContact::find_unpaid_pairs(const mjModel* m, Scratch& scratch) const n
     for (const SiteReport& site : report.sites) now.add(site);
     const double unpaid = now.elastic - energy.stored - energy.found;
     if (energy.found == 0.0 && unpaid <= kRounding * now.elastic) continue;
-    if (share_of(m, k, now, scratch) == 1.0) continue;
+    if (share_of(m, k, now, scratch).share == 1.0) continue;
     std::fill(stiff, stiff + std::ssize(report.sites), 1);
     some = true;
   }
@@ -371,16 +374,26 @@ bool SceneContact::limit_explicit(const mjModel* m, Scratch& scratch) const noex
     if (energy.is_solved || !report.touching()) continue;
     PairEnergy::Now now;
     for (const SiteReport& site : report.sites) now.add(site);
-    const double share = share_of(m, k, now, scratch);
+    const auto [share, released_at_most] = share_of(m, k, now, scratch);
     energy.rubbed = now.bristle;
     energy.force = share * now.force;
     energy.power = share * now.power;
+    energy.slow = released_at_most;
     if (share == 1.0) continue;
     limited = true;
     scratch.held[k] = 1;
     take_share(share, report);
   }
   return limited;
+}
+
+// What the step that ends here released: solved pairs know when they are, others at its end.
+void SceneContact::release(const AccountKeeper& account, EnergyAccount& now,
+                           Scratch& scratch) const noexcept {
+  if (!account.continues()) return;
+  const EnergyAccount before = account.begin().energy();
+  now.released = before.released + before.releasing;
+  for (PairEnergy& energy : scratch.energies) now.released += std::exchange(energy.released, 0.0);
 }
 
 // The forces that act, in place of what the laws say at this evaluation.
@@ -392,6 +405,7 @@ void SceneContact::choose_forces(const mjModel* m, mjData* d, const UserdataBloc
   if (account.is_within_step()) {
     hold_solved(m, d, our, scratch);
     now.unpaid = read_energies(begin, account.since_begin(), is_rk4, scratch);
+    release(account, now, scratch);
     scratch.dissipated = 0.0;
     find_unpaid_pairs(m, scratch);
     postpone_stiff(scratch);
@@ -399,6 +413,7 @@ void SceneContact::choose_forces(const mjModel* m, mjData* d, const UserdataBloc
   }
   now.implicit = find_stiff_sites(m, d, scratch);
   now.unpaid = read_energies(begin, account.since_begin(), is_rk4, scratch);
+  release(account, now, scratch);
   scratch.dissipated = 0.0;
   if (begin) {
     double elastic = -now.unpaid;
@@ -411,6 +426,9 @@ void SceneContact::choose_forces(const mjModel* m, mjData* d, const UserdataBloc
   if (now.implicit) solve_implicit(m, d, scratch);
   const bool limited = !is_rk4 && limit_explicit(m, scratch);
   if (now.implicit || limited) keep_solved(our, scratch);
+  for (const PairEnergy& energy : scratch.energies) {
+    if (energy.is_solved) now.releasing += energy.released;
+  }
 }
 
 bool SceneContact::keep_energies(double* states, const Scratch& scratch) const noexcept {

@@ -26,10 +26,11 @@ struct UserdataLayout {
   static constexpr int kSlots = 5;
   /// Time, step, stage, elastic energy, dissipated x4, power x4, taken x4, bristle energy x2,
   /// power into the elastic energy, whether the step is implicit, work, numerical, power of the
-  /// forces x2, elastic energy that nobody paid, work of mocap bodies, energy made in the step.
+  /// forces x2, elastic energy that nobody paid, work of mocap bodies, energy made in the step,
+  /// energy released, so far and by the step that follows.
   /// Behind it the generalized forces, the mocap bodies, the law states and the energies of the
   /// pairs.
-  static constexpr int kSlotHead = 27;
+  static constexpr int kSlotHead = 29;
   /// A HeldSite.
   static constexpr int kSolvedRow = 11;
 
@@ -87,7 +88,10 @@ struct EnergyAccount {
   double unpaid = 0.0;      ///< what the laws hold besides `elastic`, which no motion put in [J]
   double driven = 0.0;      ///< work of mocap bodies on the contacts, since the start [J]
   double made = 0.0;  ///< by the contacts in the step that ends here: work and what is stored more,
-                      ///< less what mocap bodies did [J]
+                      ///< less what mocap bodies did and what was released [J]
+  double released = 0.0;   ///< to bodies that part slowly, of what had been dissipated, since the
+                           ///< start [J]
+  double releasing = 0.0;  ///< in the step that follows [J]
 };
 
 /// What an evaluation was for the integrator.
@@ -112,8 +116,9 @@ class Slot {
   void set_stage(Stage stage) const { p_[2] = static_cast<int>(stage); }
 
   EnergyAccount energy() const {
-    return {p_[3],  channels(4), channels(8), channels(12), p_[16], p_[17], p_[18], p_[19] != 0.0,
-            p_[20], p_[21],      p_[22],      p_[23],       p_[24], p_[25], p_[26]};
+    return {p_[3],  channels(4),   channels(8), channels(12), p_[16], p_[17],
+            p_[18], p_[19] != 0.0, p_[20],      p_[21],       p_[22], p_[23],
+            p_[24], p_[25],        p_[26],      p_[27],       p_[28]};
   }
   void set_energy(const EnergyAccount& e) const {
     p_[3] = e.elastic;
@@ -131,6 +136,8 @@ class Slot {
     p_[24] = e.unpaid;
     p_[25] = e.driven;
     p_[26] = e.made;
+    p_[27] = e.released;
+    p_[28] = e.releasing;
   }
 
  private:

@@ -323,6 +323,7 @@ int volcontact_get_energy(const mjModel* m, const mjData* d, volcontact_energy* 
     energy->unpaid = account.unpaid;
     energy->driven = account.driven;
     energy->made = account.made;
+    energy->released = account.released;
     energy->dropped = contact->dropped(m, d);
     energy->forgotten = contact->forgotten(m, d);
     return 0;

@@ -13,10 +13,13 @@ namespace volcontact::adaptor {
 /// `auto` makes implicit what lies above this bound.
 inline constexpr double kStiffNumber = 0.05;
 
+/// What an explicit step may err by, of the most energy that a contact ever held.
+inline constexpr double kExplicitError = 0.05;
+
 /// What a pair of geoms holds of the energy of the bodies, from evaluation to evaluation while they
-/// touch: docs/theory.md, "No energy from nothing". Kept in six numbers.
+/// touch: docs/theory.md, "No energy from nothing". Kept in seven numbers.
 struct PairEnergy {
-  static constexpr int kNumbers = 6;
+  static constexpr int kNumbers = 7;
   /// What a pair may give back above what it got, of the most it ever held. An explicit step errs
   /// by more, by up to h^2 k/m of it, as often too little as too much.
   static constexpr double kOverdraft = 5e-4;
@@ -28,8 +31,10 @@ struct PairEnergy {
   // Of an explicit step, whose work is known at its end: force, and its power at the begin.
   double force = 0.0;  ///< f_n of all sites [N]
   double power = 0.0;  ///< sum of f_n v_n, > 0 while approaching [W]
+  double slow = 0.0;   ///< what it may release in the step [J]
 
   bool is_solved = false;  ///< by an implicit step, whose work is in already; not kept
+  double released = 0.0;   ///< to bodies that part slowly, of what was dissipated [J]; not kept
 
   /// The sites of a pair at the present evaluation, together.
   struct Now {
@@ -61,8 +66,8 @@ struct PairEnergy {
     // Explicit steps know velocities half a step before positions: on the way out the law holds
     // less by the work of half a step.
     const double ahead = force > 0.0 ? 0.5 * elapsed * std::max(0.0, -now.power) : 0.0;
-    put(0.5 * elapsed * (power + force * now.approach()), kStiffNumber * most);
-    force = power = 0.0;
+    put(0.5 * elapsed * (power + force * now.approach()), kExplicitError * most);
+    force = power = slow = 0.0;
     rubbed = std::min(rubbed, now.bristle);
     if (!now.is_within) keep_within(now.elastic + ahead);
   }
@@ -86,21 +91,24 @@ struct PairEnergy {
     power = now.power;
   }
 
-  /// An implicit step that does `work` on the bodies, of which friction does `friction_work`.
-  void solve(double work, double friction_work = 0.0) noexcept {
+  /// An implicit step that does `work` on the bodies, of which friction does `friction_work`, and
+  /// may release that much.
+  void solve(double work, double friction_work = 0.0, double may_release = 0.0) noexcept {
     is_solved = true;
     force = power = 0.0;
+    slow = may_release;
     rubbed = std::max(0.0, rubbed - friction_work);
     put(-work, kOverdraft * most);  // once, and not in every step anew
+    slow = 0.0;
     most = std::max(most, stored);
   }
 
   void write(double* row) const noexcept {
-    const double numbers[kNumbers] = {stored, found, most, rubbed, force, power};
+    const double numbers[kNumbers] = {stored, found, most, rubbed, force, power, slow};
     std::copy(std::begin(numbers), std::end(numbers), row);
   }
   static PairEnergy from(const double* row) noexcept {
-    return {row[0], row[1], row[2], row[3], row[4], row[5]};
+    return {row[0], row[1], row[2], row[3], row[4], row[5], row[6]};
   }
 
   /// Work done on the contact. What it gives back at a slow exit was found; the rest of that had
@@ -110,6 +118,7 @@ struct PairEnergy {
     const double given = std::clamp(-stored, 0.0, found);
     stored += given;
     found -= given;
+    released += std::clamp(-owed - stored, 0.0, slow);
     stored = std::max(stored, -owed);
   }
 
@@ -159,7 +168,8 @@ struct WorkLimit {
     return *this;
   }
 
-  double allowed() const noexcept { return stored + slack + (exit <= exit_speed ? slow : 0.0); }
+  double released_at_most() const noexcept { return exit <= exit_speed ? slow : 0.0; }
+  double allowed() const noexcept { return stored + slack + released_at_most(); }
   /// What is drawn from the pair: what friction dissipates pays for nothing else.
   double work() const noexcept { return normal_work + std::max(0.0, friction_work - rubbed); }
   bool is_kept() const noexcept { return work() <= allowed(); }

@@ -79,6 +79,7 @@ class RawEnergy(ctypes.Structure):
         ("unpaid", ctypes.c_double),
         ("driven", ctypes.c_double),
         ("made", ctypes.c_double),
+        ("released", ctypes.c_double),
     )
 
 

@@ -48,8 +48,10 @@ class Energy(NamedTuple):
             body gets it back.
         driven: work that mocap bodies did on the contacts since the start [J].
         made: what the contacts did and stored in the last step, less what mocap bodies did on them
-            [J]: the audit of a step. Contact takes energy, so it is negative, up to what gravity
-            does meanwhile and an explicit step errs by.
+            and what was released [J]: the audit of a step. Contact takes energy, so it is negative,
+            up to what gravity does meanwhile and an explicit step errs by.
+        released: to bodies that part slowly, of what had been dissipated, since the start [J]: what
+            it takes to bring bodies out of an overlap that no motion made.
     """
 
     elastic: float
@@ -61,6 +63,7 @@ class Energy(NamedTuple):
     unpaid: float
     driven: float = 0.0
     made: float = 0.0
+    released: float = 0.0
 
 
 def load(
@@ -320,6 +323,7 @@ class Contact(Closing):
             raw.unpaid,
             raw.driven,
             raw.made,
+            raw.released,
         )
 
     def dropped(self, data: mujoco.MjData) -> int:

@@ -84,10 +84,6 @@ WRONG = {
     "nothing moves": (scene(joint=""), "no two geoms can touch: give a body a joint"),
     "overlap at the start": (scene(height=0.06), "overlap by 40 mm at the start: move them apart"),
     "inside at the start": (scene(more=INSIDE), "one is inside the other at the start"),
-    "too stiff for Runge-Kutta": (
-        scene(STIFF, option='integrator="RK4"'),
-        "use Euler, implicit or implicitfast",
-    ),
     "too stiff for explicit steps": (
         scene(STIFF, number("option/implicit/off")),
         'write <option timestep="',

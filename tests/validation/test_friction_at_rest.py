@@ -79,7 +79,7 @@ def test_thrown_body_comes_to_rest_on_bristles(mass):
 
 
 @pytest.mark.parametrize("law", ["regularized_coulomb", "bristle"])
-@pytest.mark.parametrize(("integrator", "implicit"), [("RK4", "auto"), ("Euler", "off")])
+@pytest.mark.parametrize(("integrator", "implicit"), [("RK4", "off"), ("Euler", "off")])
 @pytest.mark.parametrize("shape", ["box", "sphere"])
 def test_explicit_steps_shake_beyond_what_the_warning_says(integrator, implicit, law, shape):
     """Pushed at 1 mm/s, or rolling at that: below the step named it rests, above it does not."""
