@@ -190,7 +190,8 @@ TEST(StiffContact, RungeKuttaRestsAsDeepAsStiffnessSays) {
   for (const double factor : {1e-3, 1.0, 1e3}) {
     for (const char* implicit : {"auto", "on"}) {
       const ModelPointer m =
-          box(factor, 0.5, testing::numeric(std::string("volcontact/option/implicit/") + implicit, "1"));
+          box(factor, 0.5,
+              testing::numeric(std::string("volcontact/option/implicit/") + implicit, "1"));
       m->opt.integrator = mjINT_RK4;
       const Attached attached(m);
       const DataPointer d = testing::make_data(m);
