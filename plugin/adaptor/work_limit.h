@@ -78,7 +78,8 @@ struct PairEnergy {
     const double before = force > 0.0 ? power / force : 0.0;
     const double power_at_most =
         std::max(force, now.force) * std::max({0.0, before, now.approach()});
-    return now.elastic <= stored + found + kOverdraft * most + kRoom * elapsed * power_at_most;
+    return now.elastic <= stored + found + kOverdraft * std::max(most, now.elastic) +
+                              kRoom * elapsed * power_at_most;
   }
 
   /// The end of a step whose method is exact enough: what the law holds was put in by motion.
