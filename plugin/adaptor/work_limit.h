@@ -218,7 +218,7 @@ inline double explicit_share(const WorkLimit& limit, double force, double partin
   const auto share_for = [&](double allowed) {
     if (a + b <= allowed) return 1.0;
     if (!(allowed > 0.0)) return b < 0.0 && a > 0.0 ? std::min(1.0, -b / a) : 0.0;
-    return 2.0 * allowed / (b + std::sqrt(b * b + 4.0 * a * allowed));
+    return std::min(1.0, 2.0 * allowed / (b + std::sqrt(b * b + 4.0 * a * allowed)));
   };
   const double fast = share_for(limit.stored);
   if (fast >= 1.0 || !(limit.slow > 0.0)) return fast;
