@@ -15,6 +15,7 @@
 #include "adaptor/scene_description.h"
 #include "adaptor/scene_registry.h"
 #include "adaptor/solids_of_geoms.h"
+#include "adaptor/watched_steps.h"
 #include "volcontact/pair/overlap_surface.h"
 
 // No exception leaves this file.
@@ -162,6 +163,9 @@ int volcontact_record_size(const char* name) {
       {"volcontact_surface_size", sizeof(volcontact_surface_size)},
       {"volcontact_energy", sizeof(volcontact_energy)},
       {"volcontact_key", sizeof(volcontact_key)},
+      {"volcontact_number", sizeof(volcontact_number)},
+      {"volcontact_range", sizeof(volcontact_range)},
+      {"volcontact_watch", sizeof(volcontact_watch)},
   };
   for (const auto& [record, size] : sizes) {
     if (name && record == name) return static_cast<int>(size);
@@ -327,6 +331,18 @@ int volcontact_get_energy(const mjModel* m, const mjData* d, volcontact_energy* 
     energy->dropped = contact->dropped(m, d);
     energy->forgotten = contact->forgotten(m, d);
     return 0;
+  });
+}
+
+int volcontact_step_watched(const mjModel* m, mjData* d, int steps, volcontact_watch* watch) {
+  return guarded(nullptr, 0, [&] { return step_watched(m, d, steps, *watch); });
+}
+
+int volcontact_read_numbers(const mjModel* m, const mjData* d, const volcontact_watch* watch,
+                            const volcontact_number* numbers, int count, double* values) {
+  return guarded(nullptr, 0, [&] {
+    for (int i = 0; i < count; ++i) values[i] = read_number(m, d, numbers[i], watch);
+    return count;
   });
 }
 

@@ -169,6 +169,98 @@ VOLCONTACT_API int volcontact_update_touch(const mjModel* m, mjData* d);
 VOLCONTACT_API int volcontact_get_energy(const mjModel* m, const mjData* d,
                                          volcontact_energy* energy);
 
+// A number of a running scene: what conditions, limits and peaks of a watched run speak of.
+enum {
+  VOLCONTACT_TIME = 0,  // [s]
+  VOLCONTACT_QPOS = 1,  // element `index` of mjData.qpos; and so on
+  VOLCONTACT_QVEL = 2,
+  VOLCONTACT_ACT = 3,
+  VOLCONTACT_CTRL = 4,
+  VOLCONTACT_SENSOR = 5,
+  VOLCONTACT_POSITION = 6,    // element `index` of mjData.xpos: 3 * body + axis [m]
+  VOLCONTACT_DISTANCE = 7,    // of body `index` from the point `place` [m]
+  VOLCONTACT_ANGLE = 8,       // of body `index` from the orientation `place`, a quaternion [degree]
+  VOLCONTACT_SPEED = 9,       // of the frame of body `index` [m/s]
+  VOLCONTACT_SPIN = 10,       // of body `index` [rad/s]
+  VOLCONTACT_SITES = 11,      // of contact, in the last step
+  VOLCONTACT_SITE_FORCE = 12  // the largest at one site in the last step [N]
+};
+typedef struct volcontact_number_ {
+  int kind;
+  int index;
+  double place[4];
+} volcontact_number;
+
+// A number from `low` to `high`, both included.
+typedef struct volcontact_range_ {
+  volcontact_number number;
+  double low;
+  double high;
+} volcontact_range;
+
+// How a watched run ended.
+enum {
+  VOLCONTACT_GOES_ON = 0,
+  VOLCONTACT_SUCCESS = 1,
+  VOLCONTACT_JAMMED = 2,
+  VOLCONTACT_FORCE_LIMIT = 3,
+  VOLCONTACT_TORQUE_LIMIT = 4,
+  VOLCONTACT_DIVERGED = 5  // MuJoCo found a bad state; it may have reset it
+};
+
+// What ends a run of steps, and what was felt in it. Set all of the first part, and of the second
+// first_touch to NaN, good_since and jammed_since to infinity, peaks to -infinity, the rest to 0.
+typedef struct volcontact_watch_ {
+  const volcontact_range* success;  // all hold: good; none: that ends nothing
+  const volcontact_range* jammed;   // all hold: jammed; none: never
+  const volcontact_number* peak_numbers;
+  const unsigned char* place_members;  // place_count rows of mjModel.ngeom: 1 for geoms of a place
+  double* peaks;                       // largest of each of peak_numbers
+  double* place_forces;                // sums of the forces at each place in the last step [N]
+  double* place_peaks;                 // and their largest
+  int success_count;
+  int jammed_count;
+  int peak_count;
+  int place_count;
+  int has_force;                     // watch the length of force_axes, not the sum of the sites
+  int has_torque;                    // likewise
+  volcontact_number force_axes[3];   // [N]
+  volcontact_number torque_axes[3];  // [N m]
+  double force_limit;
+  double torque_limit;
+  double hold;         // how long it must be good [s]
+  double jam_time;     // and jammed [s]
+  int judged_outside;  // being good ends nothing
+
+  int outcome;
+  int is_good;
+  int geom_a;  // of the site with the largest force in the last step; -1: none, or a flex
+  int geom_b;
+  int reserved;
+  double sites;       // in the last step
+  double force;       // sum of the lengths of the forces of all sites, or as force_axes say [N]
+  double torque;      // of the torques about each site's centroid [N m]
+  double site_force;  // largest of a site [N]
+  double peak_force;
+  double peak_torque;
+  double peak_site_force;
+  double most_sites;
+  double first_touch;  // time of the state in which the first site was seen [s]
+  double good_since;
+  double jammed_since;
+} volcontact_watch;
+
+// Steps a scene, attached or not, at most `steps` times, watching every step; returns how many it
+// did. Contacts are those of the state that a step began with, ours and MuJoCo's own.
+VOLCONTACT_API int volcontact_step_watched(const mjModel* m, mjData* d, int steps,
+                                           volcontact_watch* watch);
+
+// Reads numbers of a scene as it is now; what was felt of contact comes from `watch`, else is NaN.
+VOLCONTACT_API int volcontact_read_numbers(const mjModel* m, const mjData* d,
+                                           const volcontact_watch* watch,
+                                           const volcontact_number* numbers, int count,
+                                           double* values);
+
 // What was understood of the scene, as JSON: options, materials, solids, pairs, warnings. The model
 // need not be attached. Writes up to `capacity` characters with the final zero and returns the
 // length of the whole text without it.

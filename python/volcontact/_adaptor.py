@@ -89,6 +89,65 @@ class RawSurfaceSize(ctypes.Structure):
     _fields_ = (("columns", ctypes.c_int), ("triangles", ctypes.c_int), ("rim", ctypes.c_int))
 
 
+class Number(ctypes.Structure):
+    """`volcontact_number`: a number of a running scene."""
+
+    _fields_ = (
+        ("kind", ctypes.c_int),
+        ("index", ctypes.c_int),
+        ("place", ctypes.c_double * 4),
+    )
+
+
+class Range(ctypes.Structure):
+    """`volcontact_range`: a number and its bounds, both included."""
+
+    _fields_ = (("number", Number), ("low", ctypes.c_double), ("high", ctypes.c_double))
+
+
+class RawWatch(ctypes.Structure):
+    """`volcontact_watch`."""
+
+    _fields_ = (
+        ("success", ctypes.POINTER(Range)),
+        ("jammed", ctypes.POINTER(Range)),
+        ("peak_numbers", ctypes.POINTER(Number)),
+        ("place_members", ctypes.c_void_p),
+        ("peaks", ctypes.c_void_p),
+        ("place_forces", ctypes.c_void_p),
+        ("place_peaks", ctypes.c_void_p),
+        ("success_count", ctypes.c_int),
+        ("jammed_count", ctypes.c_int),
+        ("peak_count", ctypes.c_int),
+        ("place_count", ctypes.c_int),
+        ("has_force", ctypes.c_int),
+        ("has_torque", ctypes.c_int),
+        ("force_axes", Number * 3),
+        ("torque_axes", Number * 3),
+        ("force_limit", ctypes.c_double),
+        ("torque_limit", ctypes.c_double),
+        ("hold", ctypes.c_double),
+        ("jam_time", ctypes.c_double),
+        ("judged_outside", ctypes.c_int),
+        ("outcome", ctypes.c_int),
+        ("is_good", ctypes.c_int),
+        ("geom_a", ctypes.c_int),
+        ("geom_b", ctypes.c_int),
+        ("reserved", ctypes.c_int),
+        ("sites", ctypes.c_double),
+        ("force", ctypes.c_double),
+        ("torque", ctypes.c_double),
+        ("site_force", ctypes.c_double),
+        ("peak_force", ctypes.c_double),
+        ("peak_torque", ctypes.c_double),
+        ("peak_site_force", ctypes.c_double),
+        ("most_sites", ctypes.c_double),
+        ("first_touch", ctypes.c_double),
+        ("good_since", ctypes.c_double),
+        ("jammed_since", ctypes.c_double),
+    )
+
+
 class Key(ctypes.Structure):
     """`volcontact_key`."""
 
@@ -105,6 +164,9 @@ def record_sizes() -> dict[str, int]:
         "volcontact_energy": RawEnergy,
         "volcontact_surface_size": RawSurfaceSize,
         "volcontact_key": Key,
+        "volcontact_number": Number,
+        "volcontact_range": Range,
+        "volcontact_watch": RawWatch,
     }
     arrays = {"volcontact_site": SITE_DTYPE, "volcontact_contact": CONTACT_DTYPE}
     sizes = {name: ctypes.sizeof(structure) for name, structure in structures.items()}
@@ -144,6 +206,19 @@ _SIGNATURES = {
     ),
     "update_touch": _Signature((ctypes.c_void_p, ctypes.c_void_p)),
     "get_energy": _Signature((ctypes.c_void_p, ctypes.c_void_p, ctypes.POINTER(RawEnergy))),
+    "step_watched": _Signature(
+        (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int, ctypes.POINTER(RawWatch))
+    ),
+    "read_numbers": _Signature(
+        (
+            ctypes.c_void_p,
+            ctypes.c_void_p,
+            ctypes.POINTER(RawWatch),
+            ctypes.POINTER(Number),
+            ctypes.c_int,
+            ctypes.c_void_p,
+        )
+    ),
     "describe": _Signature((ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int), has_message=True),
     "live_error": _Signature((ctypes.c_void_p,), has_message=True),
 }

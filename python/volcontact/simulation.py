@@ -23,6 +23,11 @@ from volcontact.recording import CHANNELS, SITE, SITE_IN_RUN, ContactKind, Frame
 Progress = Callable[[int, int], None]
 
 # A state with one of these is worthless: MuJoCo resets the data and starts again at time 0.
+_WARNING_NAMES = {
+    int(getattr(mujoco.mjtWarning, name)): name[len("mjWARN_") :]
+    for name in dir(mujoco.mjtWarning)
+    if name.startswith("mjWARN_")
+}
 _FATAL_WARNINGS = tuple(
     int(getattr(mujoco.mjtWarning, f"mjWARN_{name}")) for name in ("BADQPOS", "BADQVEL", "BADQACC")
 )
@@ -115,13 +120,8 @@ def native_model(scene: str | os.PathLike[str]) -> mujoco.MjModel:
 
 def warnings_of(data: mujoco.MjData) -> dict[str, int]:
     """MuJoCo's warning counters that are not 0, by name (without the mjWARN_ prefix)."""
-    kinds = {
-        int(getattr(mujoco.mjtWarning, name)): name[len("mjWARN_") :]
-        for name in dir(mujoco.mjtWarning)
-        if name.startswith("mjWARN_")
-    }
-    counts = {kinds.get(i, f"warning {i}"): int(w.number) for i, w in enumerate(data.warning)}
-    return {name: count for name, count in counts.items() if count}
+    counts = data.warning.number.tolist()
+    return {_WARNING_NAMES.get(i, f"warning {i}"): n for i, n in enumerate(counts) if n}
 
 
 def _model_to_run(

@@ -19,11 +19,11 @@ from volcontact.gym.scene_files import scene_file
 from volcontact.probes import native_sites, recorded_sites
 from volcontact.render import Renderer
 from volcontact.simulation import warnings_of
+from volcontact.watched import Kind, Watch, number
 
 SCENE = "battery_insert_0g/scene.xml"
 CONTROL_PERIOD = 0.1  # [s]
 TIMESTEP = 0.005  # of MuJoCo [s]
-WATCH_PERIOD = 0.01  # the limits are watched this often [s]
 START = np.array([0.0, 0.0, 0.25, 0.0, 0.0, 0.0])  # of the carrier, when it knows all [m, rad]
 SITES = 8  # so many contact sites are observed, those with the largest forces
 
@@ -94,7 +94,9 @@ class OruInsertion(gymnasium.Env[Observation, np.ndarray]):
         turn = np.radians(turning)
         self._spread = np.array([misalignment, misalignment, 0.0, turn, turn, turn])
         self._error = np.zeros(6)
-        self._largest = np.zeros(2)
+        sensors = [number(Kind.SENSOR, i) for i in range(6)]
+        self._axes = {"force": sensors[:3], "torque": sensors[3:]}
+        self._watch = Watch(**self._axes)
         self._distance = 0.0
         self._speeds = self._model.actuator_ctrlrange[:, 1].copy()
         self._box = mujoco.mj_name2id(self._model, mujoco.mjtObj.mjOBJ_BODY, "battery_box")
@@ -134,27 +136,23 @@ class OruInsertion(gymnasium.Env[Observation, np.ndarray]):
         self._data.qpos[:] = start
         self._data.act[:] = start
         mujoco.mj_forward(self._model, self._data)
-        self._largest[:] = 0.0
+        self._watch = Watch(**self._axes)
         self._distance = self._way_left()
         return self._observe(), self._info()
 
     def step(self, action: np.ndarray) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Moves the set points for one control period."""
         self._data.ctrl[:] = np.clip(action, -1.0, 1.0) * self._speeds
-        watches = round(CONTROL_PERIOD / WATCH_PERIOD)
-        steps = round(WATCH_PERIOD / TIMESTEP)
-        for _ in range(watches):
-            mujoco.mj_step(self._model, self._data, steps)
-            wrench = self._data.sensordata
-            forces = np.linalg.norm(wrench[:3]), np.linalg.norm(wrench[3:6])
-            self._largest = np.maximum(self._largest, forces)
-        for name, number in warnings_of(self._data).items():
-            warnings.warn(f"MuJoCo warned: {name}, {number} times", RuntimeWarning, stacklevel=2)
+        self._watch.step(self._model, self._data, round(CONTROL_PERIOD / TIMESTEP))
+        for name, count in warnings_of(self._data).items():
+            warnings.warn(f"MuJoCo warned: {name}, {count} times", RuntimeWarning, stacklevel=2)
         before, self._distance = self._distance, self._way_left()
         info = self._info()
         reward = (before - self._distance) / START[2]
         reward += float(info["is_success"]) - float(info["overload"])
-        return self._observe(), reward, info["is_success"] or info["overload"], False, info
+        is_over = info["is_success"] or info["overload"]
+        diverged = self._watch.outcome == "diverged"  # MuJoCo has gone back to the start
+        return self._observe(), reward, is_over, diverged, info
 
     def render(self) -> np.ndarray | None:
         """The scene, shape (480, 640, 3), uint8; None without a render mode."""
@@ -220,7 +218,7 @@ class OruInsertion(gymnasium.Env[Observation, np.ndarray]):
             and bool(np.abs(self._data.qvel[:3]).max() < SEATED_SPEED)
             and self._data.sensordata[2] < -SEATED_PUSH
         )
-        force, torque = (float(value) for value in self._largest)
+        force, torque = self._watch.felt.peak_force, self._watch.felt.peak_torque
         overload = force > FORCE_LIMIT or torque > TORQUE_LIMIT
         return {
             "is_success": bool(seated and not overload),

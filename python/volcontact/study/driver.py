@@ -156,12 +156,12 @@ def check_values(settings: Settings, runner: Runner, trial: int, values: dict[st
     if wrong:
         raise StudyError(f"trial {trial} ({shown}): {wrong}")
     for condition in (*settings.success, *settings.end.jammed):
-        scene.quantities.reader(condition.quantity)
+        scene.quantities.number(condition.quantity)
     for _, name in (*settings.record.final, *settings.record.peak):
-        scene.quantities.reader(name)
+        scene.quantities.number(name)
     for names in (settings.end.force, settings.end.torque):
         for name in names:
-            scene.quantities.reader(name)
+            scene.quantities.number(name)
 
 
 def _go_on(

@@ -90,8 +90,8 @@ class End:
 
     Attributes:
         duration: simulated; then it has timed out [s].
-        watch: time between two looks at the scene, which peaks and ends are found by; 0 looks after
-            every step [s].
+        watch: time between two calls of the user's word on success, and of recorded states; 0 calls
+            it after every step. All else is watched after every step [s].
         force_limit, torque_limit: of the watched wrench [N], [N m].
         force, torque: three quantities each, whose norms are watched; none: of the contact sites.
         jammed: conditions that hold together for `jam_time` [s].
