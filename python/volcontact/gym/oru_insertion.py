@@ -94,9 +94,7 @@ class OruInsertion(gymnasium.Env[Observation, np.ndarray]):
         turn = np.radians(turning)
         self._spread = np.array([misalignment, misalignment, 0.0, turn, turn, turn])
         self._error = np.zeros(6)
-        sensors = [number(Kind.SENSOR, i) for i in range(6)]
-        self._axes = {"force": sensors[:3], "torque": sensors[3:]}
-        self._watch = Watch(**self._axes)
+        self._watch = _watch_of_the_grasp()
         self._distance = 0.0
         self._speeds = self._model.actuator_ctrlrange[:, 1].copy()
         self._box = mujoco.mj_name2id(self._model, mujoco.mjtObj.mjOBJ_BODY, "battery_box")
@@ -136,7 +134,7 @@ class OruInsertion(gymnasium.Env[Observation, np.ndarray]):
         self._data.qpos[:] = start
         self._data.act[:] = start
         mujoco.mj_forward(self._model, self._data)
-        self._watch = Watch(**self._axes)
+        self._watch = _watch_of_the_grasp()
         self._distance = self._way_left()
         return self._observe(), self._info()
 
@@ -228,3 +226,8 @@ class OruInsertion(gymnasium.Env[Observation, np.ndarray]):
             "distance": distance,
             "angle": angle,
         }
+
+
+def _watch_of_the_grasp() -> Watch:
+    sensors = [number(Kind.SENSOR, i) for i in range(6)]
+    return Watch(force=sensors[:3], torque=sensors[3:])
