@@ -13,6 +13,16 @@ from volcontact.cli import main
 
 # What is replaced in the study of the sliding box, and what the message must say.
 WRONG = {
+    "environment": (
+        'scene = "scene.xml"',
+        'environment = "volcontact/OruInsertion-v0"',
+        "environment = .* is unknown; did you mean 'volcontact/ORUInsertion-v0'",
+    ),
+    "environment and scene": (
+        'scene = "scene.xml"',
+        'environment = "volcontact/ORUInsertion-v0"\nscene = "scene.xml"',
+        "give either environment or scene, not both",
+    ),
     "key of the scene": (
         "volcontact/material/all/friction",
         "volcontact/material/all/frictoin",

@@ -229,13 +229,31 @@ distance = [0, 1e-3]
 """
 
 
+ENVIRONMENT_STUDY = """
+[study]
+environment = "volcontact/ORUInsertion-v0"
+[vary.x]
+distribution = "uniform"
+target = ["qpos/carrier_x", "act/carrier_x"]
+[vary.turn]
+distribution = "uniform"
+target = ["qpos/carrier_turn_y", "act/carrier_turn_y"]
+[end]
+duration = 4.6
+"""
+
+
 @pytest.mark.parametrize("contact", ["volumetric", "native"])
-def test_study_of_the_scene_is_the_environment(contact, tmp_path):
+@pytest.mark.parametrize("head", ["scene", "environment"])
+def test_study_of_the_scene_is_the_environment(head, contact, tmp_path):
     """A trial with the scripted insertion has the forces of an episode, to the last bit."""
-    study = ORU_STUDY.replace("timestep", f'contact = "{contact}"\ntimestep')
-    runner = Runner(parse_study(study, tmp_path))
+    text = ORU_STUDY.replace("timestep", f'contact = "{contact}"\ntimestep')
     error = np.array([0.004, 0.0, 0.0, 0.0, -0.006, 0.0])
     values = {"x": error[0], "z": START[2], "turn": error[4]}
+    if head == "environment":
+        text = ENVIRONMENT_STUDY.replace("[vary.x]", f'contact = "{contact}"\n[vary.x]')
+        del values["z"]
+    runner = Runner(parse_study(text, tmp_path))
     row = runner.run(0, values)
     runner.forget()
     env = OruInsertion(contact=contact)
@@ -246,6 +264,23 @@ def test_study_of_the_scene_is_the_environment(contact, tmp_path):
     env.close()
     assert row["outcome"] == "timed_out" and info["peak_force"] > 5.0
     assert (row["peak_force"], row["peak_torque"]) == (info["peak_force"], info["peak_torque"])
+
+
+def test_an_environment_brings_its_goal(tmp_path):
+    """Seated as the episode, which looks whether it is at the end of each action only."""
+    runner = Runner(parse_study(ENVIRONMENT_STUDY.replace("duration = 4.6", ""), tmp_path))
+    row = runner.run(0, {"x": 0.001, "turn": 0.0})
+    runner.forget()
+    env = OruInsertion()
+    observation, _ = env.reset(options={"misalignment": [0.001, 0, 0, 0, 0, 0]})
+    policy = ForceGuided()
+    terminated, actions = False, 0
+    while not terminated:
+        observation, _, terminated, _, info = env.step(policy(observation))
+        actions += 1
+    env.close()
+    assert info["is_success"] and row["outcome"] == "success"
+    assert 0.0 <= 0.1 * actions - row["time"] < 0.3
 
 
 def test_table_names_a_scene_and_its_meshes(tmp_path):

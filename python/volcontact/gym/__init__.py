@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import gymnasium
 
-from volcontact.gym.oru_insertion import OruInsertion
+from volcontact.gym.oru_insertion import MOST_ACTIONS, OruInsertion
 from volcontact.gym.scripted import ForceGuided
 
 __all__ = ["ENV_ID", "ForceGuided", "OruInsertion"]
@@ -21,4 +21,6 @@ __all__ = ["ENV_ID", "ForceGuided", "OruInsertion"]
 ENV_ID = "volcontact/ORUInsertion-v0"
 
 if ENV_ID not in gymnasium.registry:
-    gymnasium.register(ENV_ID, "volcontact.gym.oru_insertion:OruInsertion", max_episode_steps=300)
+    gymnasium.register(
+        ENV_ID, "volcontact.gym.oru_insertion:OruInsertion", max_episode_steps=MOST_ACTIONS
+    )

@@ -23,6 +23,7 @@ from volcontact.watched import Kind, Watch, number
 
 SCENE = "battery_insert_0g/scene.xml"
 CONTROL_PERIOD = 0.1  # [s]
+MOST_ACTIONS = 300  # of an episode
 TIMESTEP = 0.005  # of MuJoCo [s]
 START = np.array([0.0, 0.0, 0.25, 0.0, 0.0, 0.0])  # of the carrier, when it knows all [m, rad]
 SITES = 8  # so many contact sites are observed, those with the largest forces

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from volcontact.study.environments import with_environment
 from volcontact.study.inputs import CORRELATED, check_input, distribution_names
 from volcontact.study.settings import (
     ADAPTIVE,
@@ -89,7 +90,7 @@ def parse_study(text: str, folder: Path, file: str = "study.toml") -> Settings:
         content = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise StudyError(f"{file}: {error}") from error
-    top = Table(content, file)
+    top = Table(with_environment(content, file), file)
     tables = {name: top.take(name, None) for name in _TABLES}
     top.finish()
 
@@ -153,7 +154,9 @@ def _head(head: Table, folder: Path) -> dict[str, Any]:
     head.take("keyframe", None)
     head.finish()
     if (found["scene"] is None) == (not found["function"]):
-        raise StudyError(f"{head.where}: give either scene (an MJCF file) or function, not both")
+        raise StudyError(
+            f"{head.where}: give one of scene (an MJCF file), environment and function"
+        )
     return found
 
 
