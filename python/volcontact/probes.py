@@ -44,10 +44,15 @@ class Probe(Protocol):
 def probe(contact: ContactKind, model: mujoco.MjModel, keys: GivenKeys) -> Iterator[Probe]:
     """A probe of the kind of contact, which is the model's within the `with` block."""
     if contact == "native":
-        yield _NativeProbe(model)
+        yield probe_of(model, None)
         return
     with volumetric_scene.Contact(model, keys) as attached:
-        yield _VolumetricProbe(attached)
+        yield probe_of(model, attached)
+
+
+def probe_of(model: mujoco.MjModel, contact: volumetric_scene.Contact | None) -> Probe:
+    """A probe of a model under its own contact, or under a volumetric one that is open."""
+    return _NativeProbe(model) if contact is None else _VolumetricProbe(contact)
 
 
 class _VolumetricProbe:

@@ -80,7 +80,7 @@ def simulate(
     data = mujoco.MjData(model)
     to_start(model, data)
     with probe(contact, model, keys) as reader:
-        recorder = _Recorder(model, reader, steps, frame_interval)
+        recorder = RunRecorder(model, reader, steps, frame_interval)
         every = max(1, steps // _PROGRESS_CALLS)
         for i in range(steps):
             recorder.step(data)
@@ -149,8 +149,15 @@ def _model_to_run(
     return model
 
 
-class _Recorder:
-    """Arrays of one run, filled row by row."""
+class RunRecorder:
+    """Arrays of one run, filled row by row.
+
+    Args:
+        model: that is stepped.
+        probe: of its contact.
+        steps: there will be at most.
+        frame_interval: time between two frames to draw [s]; None records no frames.
+    """
 
     def __init__(
         self, model: mujoco.MjModel, probe: Probe, steps: int, frame_interval: float | None
@@ -197,6 +204,23 @@ class _Recorder:
         if not self._evaluate_first:
             self._keep_evaluation(row, data)
         self._rows += 1
+
+    def look(self, data: mujoco.MjData, microseconds: float) -> None:
+        """Records a state that somebody else stepped to.
+
+        Args:
+            data: evaluated here; a copy of what is stepped, which then goes on as if nobody looked.
+            microseconds: that the step to it took.
+        """
+        row = self._rows
+        if row > 0:
+            self._microseconds[row - 1] = microseconds
+        self._keep_state(row, data)
+        mujoco.mj_forward(self._model, data)
+        self._keep_evaluation(row, data)
+        self._rows += 1
+        self._warnings = warnings_of(data)
+        self._dropped = self._probe.dropped(data)
 
     def finish(self, data: mujoco.MjData) -> None:
         """Records the state after the last step."""

@@ -215,6 +215,42 @@ def test_replay_gives_the_same_bits(tmp_path, capsys):
     assert main(["study", "replay", str(out), "99"]) == 1
 
 
+def test_replay_reports_and_shows_a_trial(tmp_path, capsys):
+    """The report has the trial's own peak; the playback goes through its states and begins anew."""
+    from volcontact.study.replay import compare_trial, play_trial
+
+    study = vc.Study(scene_study(tmp_path), trials=3)
+    out = tmp_path / "out"
+    study.run(out, engine="serial")
+    row = study.rows(out).to_pylist()[2]
+    comparison, model = compare_trial(out, 2)
+    run = comparison.volumetric
+    assert run.time[-1] == pytest.approx(row["time"], abs=1e-9) and run.qpos.shape[1] == model.nq
+    assert run.contact_force.max() == pytest.approx(row["peak_force"], rel=1e-6)
+    assert run.position[-1, 0, 0] == row["x"]
+    assert comparison.native.contact == "native" and len(comparison.native.time) > 100
+    assert run.step_microseconds.min() > 0.0
+    report = tmp_path / "trial"
+    command = ["study", "replay", str(out), "2", "--report", str(report), "--no-frames"]
+    assert main(command) == 0
+    assert "trial 2" in (report / "report.html").read_text("utf-8")
+    with play_trial(out, 2) as stage:
+        assert stage.contact == "volumetric" and stage.data.time == 0.0
+        stage.step(5)
+        assert 0.03 < stage.data.time < 0.06 and len(stage.drawings()) == 1
+        while stage.data.time < row["time"] - 0.01:
+            stage.advance(0.02)
+        assert stage.data.qpos[0] == pytest.approx(row["x"], abs=0.01)
+        stage.advance(1.0)
+        assert stage.data.time == 0.0
+    path = function_study(tmp_path)
+    vc.Study(path, trials=2).run(tmp_path / "sums", engine="serial")
+    capsys.readouterr()
+    assert main(["study", "replay", str(tmp_path / "sums"), "0", "--view"]) == 1
+    assert main(["study", "replay", str(tmp_path / "sums"), "0", "--report", str(report)]) == 1
+    assert "the study of a function has no scene to show" in capsys.readouterr().err
+
+
 def test_status_from_the_folder(tmp_path, capsys):
     out = tmp_path / "out"
     study = vc.Study(function_study(tmp_path))

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rich.markup import escape
 from rich.table import Table
 
-from volcontact.cli.arguments import add_file, plain_command
+from volcontact.cli.arguments import add_file, plain_command, positive
 from volcontact.cli.terminal import Terminal
 
 if TYPE_CHECKING:
@@ -43,6 +44,8 @@ _STATUS_EXAMPLES = """\
 _REPLAY_EXAMPLES = """\
   volcontact study replay results 17
   volcontact study replay results 17 --record trial17
+  volcontact study replay results 17 --report trial17 --frame-interval 0.05
+  volcontact study replay results 17 --view
 """
 _REPORT_EXAMPLES = """\
   volcontact study report results
@@ -140,6 +143,24 @@ def _add_replay(ways: Subparsers) -> None:
         metavar="FOLDER",
         help="write states, energies and contact sites of every look",
     )
+    parser.add_argument(
+        "--report",
+        type=Path,
+        metavar="FOLDER",
+        help="write report.html, a film and all numbers, beside the trial under native contact",
+    )
+    parser.add_argument(
+        "--frame-interval",
+        type=positive,
+        default=0.2,
+        metavar="T",
+        help="time between two pictures of the report [s] (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--no-frames", action="store_true", help="leave the pictures out (needs no OpenGL)"
+    )
+    parser.add_argument("--view", action="store_true", help="show it in MuJoCo's window")
+    parser.add_argument("--browser", action="store_true", help="show it in the browser, by viser")
     _add_json(parser)
     parser.set_defaults(execute=replay)
 
@@ -260,10 +281,50 @@ def replay(arguments: argparse.Namespace, terminal: Terminal) -> int:
         for name, value in done.row.items():
             table.add_row(escape(name), escape(_short(value)))
         terminal.out.print(table)
+    if arguments.report is not None:
+        _report_trial(arguments, terminal)
+    if arguments.view or arguments.browser:
+        _show_trial(arguments, terminal)
     if done.differing:
         terminal.warning("differs from the recorded trial in " + ", ".join(done.differing))
         return _DIFFERS
     return 0
+
+
+def _report_trial(arguments: argparse.Namespace, terminal: Terminal) -> None:
+    from volcontact._files import appearing_in
+    from volcontact.report import files, fill_report
+    from volcontact.study.replay import compare_trial
+
+    with contextlib.ExitStack() as stack:
+        folder = stack.enter_context(appearing_in(arguments.report, files.ALL))
+        comparison, model = compare_trial(
+            arguments.out, arguments.trial, frame_interval=arguments.frame_interval
+        )
+        renderer = None
+        if not arguments.no_frames:
+            from volcontact.render import Renderer
+
+            renderer = stack.enter_context(Renderer(model))
+        fill_report(comparison, folder, renderer=renderer)
+    if not terminal.json:
+        terminal.out.print(f"report: {arguments.report / files.REPORT}", markup=False)
+
+
+def _show_trial(arguments: argparse.Namespace, terminal: Terminal) -> None:
+    from volcontact.study.replay import play_trial
+    from volcontact.view import browser, window
+
+    reason = "" if arguments.browser else window.why_no_window()
+    if reason:
+        raise RuntimeError(reason)
+    with play_trial(arguments.out, arguments.trial) as stage:
+        if not arguments.browser:
+            window.show(stage)
+            return
+        with browser.Page(stage) as page:
+            terminal.out.print(f"open {page.address}, end with Ctrl-C", markup=False)
+            page.run()
 
 
 class _Bar:

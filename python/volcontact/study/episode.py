@@ -28,7 +28,7 @@ class Episode:
         scene: whose data are at the start of the trial.
         control: called once every control period.
         success: the user's own word on success, `success(model, data)`.
-        watcher: called with model, data and contact at every look.
+        watcher: called with model, data and contact at the start and at every look.
     """
 
     def __init__(
@@ -70,6 +70,8 @@ class Episode:
         total = max(1, math.ceil(self._settings.end.duration / step - 1e-9))
         done = 0
         outcome = ""
+        if self._watcher is not None:
+            self._watcher(model, data, self._scene.contact)
         while done < total and not outcome:
             if self._control is not None and done % period == 0:
                 self._control(data)

@@ -113,7 +113,7 @@ class Runner:
         Args:
             trial: its number.
             values: of the inputs, by column.
-            watcher: called with model, data and contact after every look at the scene.
+            watcher: called with model, data and contact at the start and at every look.
         """
         try:
             if self._function is not None:
