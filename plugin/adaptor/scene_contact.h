@@ -166,6 +166,7 @@ class SceneContact {
                        Scratch& scratch) const noexcept;
   struct ExplicitShare {
     double share, released_at_most;
+    bool slowly;  // whether it needs what may be released
   };
   ExplicitShare share_of(const mjModel* m, std::size_t k, const PairEnergy::Now& now,
                          const Scratch& scratch) const noexcept;

@@ -243,8 +243,11 @@ void SceneContact::solve_implicit(const mjModel* m, mjData* d, Scratch& scratch)
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
     ContactReport& report = scratch.reports[k];
-    implicit.begin_pair(WorkLimit::of(scratch.energies[k], scratch.dissipated, options().exit_speed)
-                            .for_bodies(inverse_mass(m, pair.geoms).along, fall));
+    const double along = inverse_mass(m, pair.geoms).along;
+    const PairEnergy::Now now(report);
+    implicit.begin_pair(WorkLimit::of(scratch.energies[k], scratch.dissipated, options().exit_speed,
+                                      now.moving(along))
+                            .for_bodies(along, fall));
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
       const bool is_stiff = scratch.stiff[site++] != 0;
       if (report.sites[i].normal.isZero(0.0)) continue;
@@ -297,8 +300,7 @@ double SceneContact::read_energies(const double* committed, double elapsed, bool
     first += report.sites.size();
     if (!report.touching()) continue;
     PairEnergy& energy = scratch.energies[k];
-    PairEnergy::Now now;
-    for (const SiteReport& site : report.sites) now.add(site);
+    const PairEnergy::Now now(report);
     SiteMemory row;
     if (committed) {
       const SitePool<const double> pool(committed + sites_.size(), energies_);
@@ -312,7 +314,7 @@ double SceneContact::read_energies(const double* committed, double elapsed, bool
                    stiff + std::ssize(report.sites)) {
       energy.follow(now);
     } else {
-      energy.take_in(elapsed, now);
+      energy.take_in(elapsed, now, is_rk4);
     }
     unpaid += now.elastic - energy.stored - energy.found;
   }
@@ -327,18 +329,17 @@ SceneContact::ExplicitShare SceneContact::share_of(const mjModel* m, std::size_t
   const double fall = fall_of(m);
   const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
   const double along = inverse_mass(m, pair.geoms).along;
-  double slow = 0.0;
-  const auto share_with = [&](double overdraft) {
-    WorkLimit limit =
-        WorkLimit::of(scratch.energies[k], scratch.dissipated, options().exit_speed, overdraft);
-    slow = limit.for_bodies(along, fall).slow;
+  WorkLimit limit = WorkLimit::of(scratch.energies[k], scratch.dissipated, options().exit_speed,
+                                  now.moving(along));
+  const double slow = std::exchange(limit.for_bodies(along, fall).slow, 0.0);
+  const auto share_now = [&] {
     return explicit_share(limit, now.force, -now.approach(), along, fall, h);
   };
-  double share = share_with(PairEnergy::kOverdraft);
-  const double number = h * h * now.stiffness * along;
-  if (share < 1.0 && number <= kStiffNumber) share = share_with(std::min(kExplicitError, number));
+  const bool slowly = share_now() < 1.0;  // whether it needs what bodies that part slowly get
+  limit.slow = slow;
+  const double share = share_now();
   const double exit = h * share * now.force * along - now.approach();
-  return {share, exit <= options().exit_speed ? slow : 0.0};
+  return {share, exit <= options().exit_speed ? slow : 0.0, slowly};
 }
 
 // Runge-Kutta's stages are exact enough, but for what no motion put in: pairs that would give it
@@ -352,12 +353,19 @@ bool SceneContact::find_unpaid_pairs(const mjModel* m, Scratch& scratch) const n
     const auto stiff = scratch.stiff.begin() + static_cast<std::ptrdiff_t>(first);
     first += report.sites.size();
     if (!report.touching()) continue;
-    const PairEnergy& energy = scratch.energies[k];
-    PairEnergy::Now now;
-    for (const SiteReport& site : report.sites) now.add(site);
+    PairEnergy& energy = scratch.energies[k];
+    const PairEnergy::Now now(report);
     const double unpaid = now.elastic - energy.stored - energy.found;
     if (energy.found == 0.0 && unpaid <= kRounding * now.elastic) continue;
-    if (share_of(m, k, now, scratch).share == 1.0) continue;
+    const auto [share, released_at_most, slowly] = share_of(m, k, now, scratch);
+    if (share == 1.0) {
+      if (!slowly) continue;
+      energy.rubbed = now.bristle;
+      energy.force = now.force;
+      energy.power = now.power;
+      energy.slow = released_at_most;
+      continue;
+    }
     std::fill(stiff, stiff + std::ssize(report.sites), 1);
     some = true;
   }
@@ -372,9 +380,8 @@ bool SceneContact::limit_explicit(const mjModel* m, Scratch& scratch) const noex
     PairEnergy& energy = scratch.energies[k];
     ContactReport& report = scratch.reports[k];
     if (energy.is_solved || !report.touching()) continue;
-    PairEnergy::Now now;
-    for (const SiteReport& site : report.sites) now.add(site);
-    const auto [share, released_at_most] = share_of(m, k, now, scratch);
+    const PairEnergy::Now now(report);
+    const auto [share, released_at_most, slowly] = share_of(m, k, now, scratch);
     energy.rubbed = now.bristle;
     energy.force = share * now.force;
     energy.power = share * now.power;

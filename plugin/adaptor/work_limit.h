@@ -13,16 +13,16 @@ namespace volcontact::adaptor {
 /// `auto` makes implicit what lies above this bound.
 inline constexpr double kStiffNumber = 0.05;
 
-/// What an explicit step may err by, of the most energy that a contact ever held.
-inline constexpr double kExplicitError = 0.05;
-
 /// What a pair of geoms holds of the energy of the bodies, from evaluation to evaluation while they
 /// touch: docs/theory.md, "No energy from nothing". Kept in seven numbers.
 struct PairEnergy {
   static constexpr int kNumbers = 7;
-  /// What a pair may give back above what it got, of the most it ever held. An explicit step errs
-  /// by more, by up to h^2 k/m of it, as often too little as too much.
+  /// What a pair may give back above what it got, of the most it ever held, or less: of the energy
+  /// there is. An explicit step errs by more, by up to h^2 k/m of it, as often too little as too
+  /// much; what would be too much is held back.
   static constexpr double kOverdraft = 5e-4;
+  /// What an explicit step gave too much all the same it owes, up to this of the most.
+  static constexpr double kMostOwed = 0.05;
 
   double stored = 0.0;  ///< put in by motion and not given back [J]
   double found = 0.0;   ///< elastic energy that was there when the simulation began [J]
@@ -38,35 +38,43 @@ struct PairEnergy {
 
   /// The sites of a pair at the present evaluation, together.
   struct Now {
-    double elastic = 0.0;    ///< of the volumes [J]
-    double bristle = 0.0;    ///< of the bristles [J]
-    double force = 0.0;      ///< [N]
-    double power = 0.0;      ///< [W]
-    double stiffness = 0.0;  ///< against an approach, about [N/m]
+    double elastic = 0.0;  ///< of the volumes [J]
+    double bristle = 0.0;  ///< of the bristles [J]
+    double force = 0.0;    ///< [N]
+    double power = 0.0;    ///< [W]
     double volume = 0.0, swept = 0.0;
     bool is_within = false;  ///< one body lies in the other: no law holds what went in
 
+    Now() = default;
+    explicit Now(const ContactReport& report) noexcept {
+      for (const SiteReport& site : report.sites) add(site);
+    }
     void add(const SiteReport& site) noexcept {
       bristle += site.bristle_energy.sum();
       elastic += site.elastic_energy - site.bristle_energy.sum();
       force += site.normal_force;
       power += site.normal_force * site.approach_speed;
       volume += site.metrics.volume;
-      stiffness += site.normal_force * site.metrics.area_vector.norm() / site.metrics.volume;
       swept += site.metrics.volume * site.approach_speed;
       is_within = is_within || site.normal.isZero(0.0);
     }
     double approach() const noexcept {  // [m/s]
       return force > 0.0 ? power / force : volume > 0.0 ? swept / volume : 0.0;
     }
+    /// Kinetic energy of bodies of that inverse mass along the contact [J].
+    double moving(double inverse_mass) const noexcept {
+      return 0.5 * approach() * approach() / inverse_mass;
+    }
   };
 
-  /// The end of a step of `elapsed` seconds.
-  void take_in(double elapsed, const Now& now) noexcept {
+  /// The end of a step of `elapsed` seconds. Stages of Runge-Kutta at which a pair waited for the
+  /// next step had no force: at the worst the first alone, which counts a sixth.
+  void take_in(double elapsed, const Now& now, bool may_have_waited = false) noexcept {
     // Explicit steps know velocities half a step before positions: on the way out the law holds
     // less by the work of half a step.
     const double ahead = force > 0.0 ? 0.5 * elapsed * std::max(0.0, -now.power) : 0.0;
-    put(0.5 * elapsed * (power + force * now.approach()), kExplicitError * most);
+    const double work = 0.5 * elapsed * (power + force * now.approach());
+    put(may_have_waited && work > 0.0 ? work / 6.0 : work, kMostOwed * most);
     force = power = slow = 0.0;
     rubbed = std::min(rubbed, now.bristle);
     if (!now.is_within) keep_within(now.elastic + ahead);
@@ -151,11 +159,13 @@ struct WorkLimit {
   double low = 0.0, high = 1.0;
   double work_low = 0.0, work_high = 0.0;
 
-  /// `dissipated`: by all contacts of the scene so far [J].
+  /// `dissipated`: by all contacts of the scene so far [J]; `moving`: kinetic energy of the bodies
+  /// along the contact, of which with what is stored a part may be overdrawn [J].
   static WorkLimit of(const PairEnergy& energy, double dissipated, double exit_speed,
-                      double overdraft = PairEnergy::kOverdraft) noexcept {
+                      double moving = HUGE_VAL) noexcept {
     WorkLimit limit;
-    limit.stored = energy.stored + overdraft * energy.most;
+    const double there = std::max(0.0, energy.stored) + energy.found + moving;
+    limit.stored = energy.stored + PairEnergy::kOverdraft * std::min(energy.most, there);
     limit.slow = energy.found + std::max(0.0, dissipated);
     limit.exit_speed = exit_speed;
     limit.rubbed = energy.rubbed;
