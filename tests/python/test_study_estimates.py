@@ -44,9 +44,9 @@ def test_intervals_hold_the_probability_of_a_closed_form(tmp_path):
     assert 90 <= held <= 99
 
 
-def rare(folder, seed, threshold, response, trials=10000):
+def rare(folder, seed, threshold, response, trials=10000, text=NORMALS):
     """The estimate of the method, and how many trials it took."""
-    text = NORMALS.replace(
+    text = text.replace(
         "seed = 3",
         f'seed = {seed}\nmethod = "importance"\nresponse = "sum"\nthreshold = {threshold}\n'
         "round = 1000",
@@ -76,6 +76,22 @@ def test_rare_event_of_known_probability(threshold, response, tmp_path):
         assert found.trials < 20000 and found.events > 50
         assert RARE / 1.5 < found.probability < RARE * 1.5
         held += found.low <= RARE <= found.high
+    assert held >= 16
+
+
+def test_rare_event_by_a_rare_choice(tmp_path):
+    """What makes the event is a choice of one in a hundred, and one tail of a normal."""
+    text = NORMALS.replace('[vary.y]\ndistribution = "norm"', "[vary.y]\n@")
+    text = text.replace("@", "choices = [0.0, 2.0]\nweights = [0.99, 0.01]")
+    threshold = 5.09
+    tails = [0.5 * math.erfc((threshold - y) / math.sqrt(2.0)) for y in (0.0, 2.0)]
+    true = 0.99 * tails[0] + 0.01 * tails[1]
+    assert 0.9e-5 < true < 1.1e-5 and 0.99 * tails[0] < 0.02 * true
+    held = 0
+    for seed in range(20):
+        found = rare(tmp_path, seed, threshold, lambda x, y: x + y, text=text)
+        assert true / 1.5 < found.probability < true * 1.5
+        held += found.low <= true <= found.high
     assert held >= 16
 
 

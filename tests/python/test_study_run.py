@@ -215,6 +215,39 @@ def test_replay_gives_the_same_bits(tmp_path, capsys):
     assert main(["study", "replay", str(out), "99"]) == 1
 
 
+def test_a_study_that_moves_with_its_results(tmp_path):
+    """It is resumed and replayed at its new place; without the scene it says what is missing."""
+    place = tmp_path / "here"
+    place.mkdir()
+    study = vc.Study(scene_study(place), trials=6)
+    study.run(place / "out", engine="serial")
+    rows = study.rows(place / "out")
+    moved = tmp_path / "there"
+    place.rename(moved)
+    part = Folder(moved / "out").parts()[-1]
+    part.unlink()
+    vc.Study.resume(moved / "out", engine="serial")
+    assert vc.Study.rows(moved / "out").equals(rows)
+    assert study.replay(moved / "out", 3) == rows.to_pylist()[3]
+    (moved / "scene.xml").unlink()
+    with pytest.raises(vc.StudyError, match=r"scene = 'scene.xml': there is no such file in"):
+        vc.Study.resume(moved / "out", engine="serial")
+
+
+def test_progress_says_rate_and_failures(tmp_path, monkeypatch, capsys):
+    """Where there is no terminal, in lines."""
+    import volcontact.cli.study as command
+
+    monkeypatch.setattr(command, "_SAY_EVERY", 0.0)
+    path = function_study(tmp_path)
+    assert (
+        main(["study", "run", str(path), "--engine", "serial", "--out", str(tmp_path / "o")]) == 0
+    )
+    lines = [line for line in capsys.readouterr().err.splitlines() if "of 40 trials" in line]
+    bad = 40 - sum(vc.Study(path).rows(tmp_path / "o")["success"].to_pylist())
+    assert "trials/s" in lines[-1] and f"{bad} without success (failure {bad})" in lines[-1]
+
+
 def test_replay_reports_and_shows_a_trial(tmp_path, capsys):
     """The report has the trial's own peak; the playback goes through its states and begins anew."""
     from volcontact.study.replay import compare_trial, play_trial

@@ -52,6 +52,7 @@ _REPORT_EXAMPLES = """\
   volcontact study report results --out report.html --map friction --map angle
 """
 _DIFFERS = 3
+_SAY_EVERY = 30.0  # seconds, where there is no terminal
 
 
 def add_to(commands: Subparsers) -> None:
@@ -328,13 +329,13 @@ def _show_trial(arguments: argparse.Namespace, terminal: Terminal) -> None:
 
 
 class _Bar:
-    """A bar with trials, trials a second and failures so far."""
+    """How far a study is: a bar, or, where the log is no terminal, a line now and then."""
 
     def __init__(self, terminal: Terminal) -> None:
         self._terminal = terminal
         self._bars = terminal.progress()
-        self._begin = time.monotonic()
-        self._first: int | None = None
+        self._said = self._begin = time.monotonic()
+        self._first: int | None = None  # trials that were there when it began
 
     def __enter__(self) -> _Bar:
         self._move = self._bars.__enter__().task("trials")
@@ -344,9 +345,21 @@ class _Bar:
         self._bars.__exit__(*error)
 
     def move(self, done: int, total: int, outcomes: dict[str, int]) -> None:
-        """Moves the bar."""
-        del outcomes
-        self._move(done, total)
+        """Says how far it is."""
+        now = time.monotonic()
+        if self._first is None:
+            self._first = done
+        rate = (done - self._first) / max(now - self._begin, 1e-3)
+        failed = {word: n for word, n in outcomes.items() if word != "success" and n}
+        note = f"{rate:.3g} trials/s, {sum(failed.values())} without success"
+        if failed:
+            note += f" ({', '.join(f'{word} {n}' for word, n in sorted(failed.items()))})"
+        self._move(done, total, note)
+        log = self._terminal.log
+        if not log.is_terminal and now - self._said > _SAY_EVERY:
+            self._said = now
+            left = f", {(total - done) / rate:.0f} s left" if rate > 0.0 else ""
+            log.print(f"{done} of {total} trials, {note}{left}", markup=False, soft_wrap=True)
 
 
 def _tell(out: Path, terminal: Terminal) -> int:

@@ -7,7 +7,8 @@ import contextlib
 import json as json_format
 import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from typing import Protocol
 
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
@@ -108,8 +109,15 @@ def _named(error: OSError) -> OSError:
     return type(error)(error.errno, error.strerror, "standard output")
 
 
+class Mover(Protocol):
+    """Moves a bar."""
+
+    def __call__(self, done: int, total: int, note: str = "") -> None:
+        """So many are done, of so many."""
+
+
 class ProgressBars:
-    """One bar per task, each fed by calls of (done, total)."""
+    """One bar per task, each fed by calls of (done, total), and of a note that stands behind."""
 
     def __init__(self, console: Console, *, enabled: bool) -> None:
         self._progress = Progress(
@@ -117,6 +125,7 @@ class ProgressBars:
             BarColumn(bar_width=32),
             TextColumn("{task.percentage:>3.0f} %"),
             TimeRemainingColumn(compact=True, elapsed_when_finished=True),
+            TextColumn("{task.fields[note]}"),
             console=console,
             transient=True,
         )
@@ -124,13 +133,13 @@ class ProgressBars:
         self._begin = time.monotonic()
         self._started = False
 
-    def task(self, name: str) -> Callable[[int, int], None]:
+    def task(self, name: str) -> Mover:
         """Adds a bar and returns the function that moves it."""
-        task: TaskID = self._progress.add_task(name, start=False, total=None)
+        task: TaskID = self._progress.add_task(name, start=False, total=None, note="")
 
-        def move(done: int, total: int) -> None:
+        def move(done: int, total: int, note: str = "") -> None:
             self._progress.start_task(task)
-            self._progress.update(task, completed=done, total=total)
+            self._progress.update(task, completed=done, total=total, note=note)
             if self._enabled and not self._started and time.monotonic() - self._begin > _PATIENCE:
                 self._started = True
                 self._progress.start()

@@ -20,6 +20,7 @@ Steps = Generator[Values, np.ndarray, None]
 
 _ELITE = 0.1  # share of a round that the next level is chosen by
 _MOST_LEVELS = 20
+_SHARES = (0.5, 0.4, 0.1)  # of the mixture: followed, of unit deviations, nominal
 
 
 def optimise(settings: Settings) -> Steps:
@@ -54,9 +55,11 @@ def importance(settings: Settings) -> Steps:
 
     Inputs are independent standard normal scores u. Rounds are drawn from a normal density q whose
     mean and deviations follow the weighted elite of the round before, until the threshold is
-    reached; the rounds then left are drawn from a mixture of it with a tenth of the nominal
-    density p. The weight of a trial is p/q. The probability is the mean of weight times event over
-    the trials of the last level, whose number is `level` of them [Rubinstein2004].
+    reached; the rounds then left are drawn from a mixture of it with a normal density of the same
+    mean and unit deviations, whose tails are those of the nominal density p, and with a tenth of p
+    itself, so that no weight is large. The weight of a trial is p/q. The probability is the mean of
+    weight times event over the trials of the last level, whose number is `level` of them
+    [Rubinstein2004].
     """
     quantiles = Quantiles(settings)
     options = settings.sample.options
@@ -85,12 +88,14 @@ def importance(settings: Settings) -> Steps:
     part = 0
     while True:
         generator = _generator(settings, _MOST_LEVELS + part)
-        nominal = generator.random(count) < 0.1
+        which = generator.choice(3, count, p=_SHARES)[:, None]
         normal = generator.standard_normal((count, dimension))
-        scores = np.where(nominal[:, None], normal, mean + spread * normal)
-        inner = _log_density(scores, mean, spread)
+        scores = np.choose(which, [mean + spread * normal, mean + normal, normal])
         outer = _log_density(scores, 0.0, 1.0)
-        log_mixture = np.logaddexp(np.log(0.9) + inner, np.log(0.1) + outer)
+        parts = [_log_density(scores, mean, spread), _log_density(scores, mean, 1.0), outer]
+        log_mixture = np.logaddexp.reduce(
+            [np.log(share) + each for share, each in zip(_SHARES, parts, strict=True)]
+        )
         values = quantiles.normal_values(scores)
         responses = yield _labelled(values, last, np.exp(outer - log_mixture))
         if len(responses) < count:

@@ -45,7 +45,7 @@ def run_study(
     columns = check_trials(settings)
     plan = Plan(settings)
     folder = Folder(out)
-    folder.create(provenance_of(settings, plan.trials), settings.text)
+    folder.create(provenance_of(settings, plan.trials, out), settings.text)
     _go_on(settings, plan, folder, columns, engine, workers, address, progress)
     return folder
 
@@ -78,12 +78,12 @@ def settings_of(folder: Folder) -> Settings:
     """
     said = folder.provenance()
     text = (folder.path / STUDY).read_text(encoding="utf-8")
-    settings = parse_study(text, Path(said["folder"]), STUDY)
+    settings = _parse_where_it_lies(text, folder.path, said)
     sample = dataclasses.replace(
         settings.sample, trials=int(said["asked_trials"]), seed=int(said["seed"])
     )
     settings = dataclasses.replace(settings, sample=sample, name=str(said["name"]))
-    now = provenance_of(settings, int(said["trials"]))
+    now = provenance_of(settings, int(said["trials"]), folder.path)
     for key, what in (
         ("study_sha256", "the study file"),
         ("model_sha256", "the scene"),
@@ -102,6 +102,18 @@ def settings_of(folder: Folder) -> Settings:
                 "version, or run the study into another folder"
             )
     return settings
+
+
+def _parse_where_it_lies(text: str, results: Path, said: dict[str, Any]) -> Settings:
+    """The study where it was, or, moved together with its results, where it is now."""
+    moved = results.resolve() / said["folder_from_results"]
+    try:
+        return parse_study(text, Path(said["folder"]), STUDY)
+    except StudyError as error:
+        try:
+            return parse_study(text, moved.resolve(), STUDY)
+        except StudyError:
+            raise error from None
 
 
 def check_trials(settings: Settings, count: int = 64) -> dict[str, str]:

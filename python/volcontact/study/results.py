@@ -184,12 +184,19 @@ class Folder:
             file.unlink(missing_ok=True)
 
 
-def provenance_of(settings: Settings, trials: int) -> dict[str, Any]:
-    """Where the results of a study come from: what decides their bits, and where it ran."""
+def provenance_of(settings: Settings, trials: int, out: Path) -> dict[str, Any]:
+    """Where the results of a study come from: what decides their bits, and where it ran.
+
+    Args:
+        settings: of the study.
+        trials: of its plan.
+        out: folder of the results.
+    """
     return {
         "name": settings.name,
         "study_sha256": _sha256(settings.text.encode()),
         "folder": str(settings.folder),
+        "folder_from_results": os.path.relpath(settings.folder, Path(out).resolve()),
         "model_sha256": model_hash(settings),
         "functions_sha256": _sha256(settings.python.read_bytes()) if settings.python else None,
         "method": settings.sample.method,
