@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -178,6 +179,43 @@ def test_full_disk_ends_the_study_in_one_line(tmp_path):
     assert Folder(out).parts() == []
     assert main(["study", "resume", str(out), "--engine", "serial"]) == 0
     assert vc.Study.rows(out)["trial"].to_pylist() == list(range(400))
+
+
+FULL = """\
+mount -t tmpfs -o size=64k none "$1" || exit 77
+"$2" -c "$3" "$1/out"; echo "full: $?"
+cp -r "$1/out" "$4.full"
+mount -o remount,size=2m "$1"
+"$2" -m volcontact.cli study resume "$1/out" --engine serial >/dev/null; echo "resumed: $?"
+cp -r "$1/out" "$4"
+"""
+
+
+def test_really_full_disk(tmp_path):
+    """A file system of 64 KB: some parts fit, the rest once there is room, each trial once."""
+    if shutil.which("unshare") is None:
+        pytest.skip("needs unshare, of util-linux")
+    path = function_study(tmp_path, FUNCTION_STUDY.replace("trials = 40", "trials = 400"))
+    (tmp_path / "disk").mkdir()
+    program = (
+        "import sys; from volcontact.study import driver; from volcontact.cli import main;"
+        "driver._FLUSH = driver._SLOWEST_FLUSH = 0.0; driver._MOST_TRIALS = 5;"
+        f"sys.exit(main(['study', 'run', {str(path)!r}, '--out', sys.argv[1], '--engine',"
+        " 'serial']))"
+    )
+    arguments = [tmp_path / "disk", sys.executable, program, tmp_path / "out"]
+    shell = ["unshare", "-rm", "sh", "-c", FULL, "sh", *map(str, arguments)]
+    done = subprocess.run(shell, capture_output=True, text=True)
+    if done.returncode == 77 or "unshare" in done.stderr:
+        pytest.skip(f"no file system can be mounted here: {done.stderr.strip()[:100]}")
+    full, resumed = done.stdout.split("\n")[-3:-1]
+    assert full == "full: 1" and resumed == "resumed: 0"
+    safe = vc.Study.rows(tmp_path / "out.full")["trial"].to_pylist()
+    assert 1 <= len(safe) < 400 and safe == list(range(len(safe)))
+    said = " ".join(done.stderr.split())
+    assert "No space left on device" in said and "Traceback" not in said
+    assert f"{len(safe)} trials are safe" in said
+    assert vc.Study.rows(tmp_path / "out")["trial"].to_pylist() == list(range(400))
 
 
 def test_resume_refuses_what_has_changed(tmp_path):
