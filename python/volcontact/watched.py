@@ -132,16 +132,24 @@ class Watch:
             hold=hold,
             jam_time=jam_time,
             judged_outside=judged_outside,
-            first_touch=math.nan,
-            good_since=math.inf,
-            jammed_since=math.inf,
-            geom_a=-1,
-            geom_b=-1,
         )
         for i, each in enumerate(force):
             self.felt.force_axes[i] = each
         for i, each in enumerate(torque):
             self.felt.torque_axes[i] = each
+        self.restart()
+
+    def restart(self) -> None:
+        """Forgets what was felt: for another run."""
+        felt = self.felt
+        felt.outcome = felt.is_good = 0
+        felt.geom_a = felt.geom_b = -1
+        felt.sites = felt.force = felt.torque = felt.site_force = 0.0
+        felt.peak_force = felt.peak_torque = felt.peak_site_force = felt.most_sites = 0.0
+        felt.first_touch = math.nan
+        felt.good_since = felt.jammed_since = math.inf
+        self.peaks[:] = -np.inf
+        self.place_peaks[:] = 0.0
 
     @property
     def outcome(self) -> str:

@@ -14,7 +14,7 @@ from volcontact.recording import CHANNELS
 from volcontact.simulation import warnings_of
 from volcontact.study.scene import Scene
 from volcontact.study.settings import Settings
-from volcontact.watched import Watch, read
+from volcontact.watched import read
 
 Watcher = Callable[[mujoco.MjModel, mujoco.MjData, Any], None]
 _LONGEST = 1000  # steps in one call, so that a signal is heard
@@ -45,20 +45,8 @@ class Episode:
         self._success = success
         self._watcher = watcher
         self._good_since = math.inf
-        end, quantities = settings.end, scene.quantities
-        self._watch = Watch(
-            success=[quantities.range(each) for each in settings.success],
-            hold=settings.hold,
-            judged_outside=success is not None,
-            jammed=[quantities.range(each) for each in end.jammed],
-            jam_time=end.jam_time,
-            force=[quantities.number(name) for name in end.force],
-            torque=[quantities.number(name) for name in end.torque],
-            force_limit=end.force_limit,
-            torque_limit=end.torque_limit,
-            peaks=[quantities.number(what) for _, what in settings.record.peak],
-            places=scene.places,
-        )
+        self._watch = scene.watch
+        self._watch.restart()
 
     def run(self, row: dict[str, Any]) -> None:
         """Steps until the trial ends, and writes what happened into its row."""

@@ -15,6 +15,7 @@ from volcontact.study.quantities import Quantities, keyframe_id
 from volcontact.study.settings import Settings, StudyError
 from volcontact.study.table import nearest
 from volcontact.study.targets import LiveNumbers, Target
+from volcontact.watched import Watch
 
 
 class Scene:
@@ -31,6 +32,7 @@ class Scene:
         live: what of the inputs is changed in the compiled model.
         quantities: the numbers by name.
         places: geoms of each place of the study, shape (m, ngeom).
+        watch: of all trials, one after the other.
         key: keyframe that trials start from; negative: none.
     """
 
@@ -50,6 +52,7 @@ class Scene:
         self.data = mujoco.MjData(self.model)
         self.quantities = Quantities(self.model, settings.pose)
         self.places = _members(self.model, settings.record.places)
+        self.watch = _watch(settings, self.quantities, self.places)
         start = "start" if settings.keyframe is None else settings.keyframe
         key = mujoco.mj_name2id(self.model, int(mujoco.mjtObj.mjOBJ_KEY), start)
         if settings.keyframe is not None:
@@ -65,6 +68,23 @@ class Scene:
         """Detaches the model."""
         if self.contact is not None:
             self.contact.close()
+
+
+def _watch(settings: Settings, quantities: Quantities, places: np.ndarray) -> Watch:
+    end = settings.end
+    return Watch(
+        success=[quantities.range(each) for each in settings.success],
+        hold=settings.hold,
+        judged_outside=bool(settings.success_function),
+        jammed=[quantities.range(each) for each in end.jammed],
+        jam_time=end.jam_time,
+        force=[quantities.number(name) for name in end.force],
+        torque=[quantities.number(name) for name in end.torque],
+        force_limit=end.force_limit,
+        torque_limit=end.torque_limit,
+        peaks=[quantities.number(what) for _, what in settings.record.peak],
+        places=places,
+    )
 
 
 class _Kept:
