@@ -15,6 +15,7 @@ constexpr double kOffArc = 1e-6;         // of the way from the arc to the chord
 constexpr double kLeastSquare = 1e-300;  // of a direction mapped
 constexpr double kLeastCosine = 1e-3;
 constexpr double kLooksUp = 1e-6;  // sine of a surface's slope
+constexpr int kNewtonSteps = 4;
 
 struct RoundDirection {
   double up[3];
