@@ -6,7 +6,6 @@
 
 #include "volcontact/pair/columns/contained.h"
 #include "volcontact/pair/columns/points_within.h"
-#include "volcontact/pair/columns/round_rims.h"
 
 namespace volcontact {
 namespace {
@@ -236,8 +235,9 @@ class RoundColumns {
       if (active_[k] && solid_.plane_normal(k).dot(up) > kLooksUp) return false;
     }
     s_.parts = s_.pieces_of_patch;
+    s_.excess.clear();
     for (int k = 0; k < solid_.plane_count; ++k) {
-      split_at_rim(solid_, k, up, s_.parts, s_.divided);
+      split_at_rim(solid_, k, up, s_.parts, s_.divided, s_.excess);
       std::swap(s_.parts, s_.divided);
     }
     RoundSum sum = sum_parts(up);
@@ -249,6 +249,7 @@ class RoundColumns {
       divide_doubtful(sum);
       sum = sum_parts(up);
     }
+    const double excess_doubt = take_excess(sum);
     const Vec3 n = surface.area_vector.stableNormalized();
     RoundSum along_n = sum;  // what the depth is about
     if (!n.isZero(0.0) && up.dot(n) < 1.0 - 1e-9 && up.dot(n) > 0.0) along_n = sum_parts(n);
@@ -262,8 +263,21 @@ class RoundColumns {
                      std::max(std::abs(sum.counter_area), surface.area_vector.norm())};
     patch.depth_moment = along_n.energy;
     patch.depth = longest_column(along_n, n.isZero(0.0) ? up : n);
-    patch.volume_error = error_of(sum);
+    patch.volume_error = error_of(sum) + excess_doubt;
     return true;
+  }
+
+  // Takes away what the triangles count too much; returns in what doubt that is.
+  double take_excess(RoundSum& sum) const {
+    double doubt = 0.0;
+    for (const RimExcess& excess : s_.excess) {
+      sum.volume -= excess.volume;
+      sum.first -= excess.volume * excess.middle;
+      sum.second -= excess.volume * excess.middle * excess.middle.transpose();
+      sum.energy -= excess.volume * excess.length;
+      doubt += excess.doubt;
+    }
+    return doubt;
   }
 
   // Of those that were summed, and of those at the corners of the triangle that has it.

@@ -3,6 +3,7 @@
 
 #include "volcontact/pair/columns/cells.h"
 #include "volcontact/pair/columns/round_pieces.h"
+#include "volcontact/pair/columns/round_rims.h"
 #include "volcontact/pair/columns/round_sums.h"
 #include "volcontact/pair/columns/star_sums.h"
 #include "volcontact/pair/columns/surface_view.h"
@@ -24,6 +25,7 @@ struct RoundColumnsScratch {
   std::vector<Patch> patches;
   std::vector<int> triangle_order, sliver_order, starts;
   std::vector<RoundPieces::Triangle> pieces_of_patch, parts, divided;
+  std::vector<RimExcess> excess;
   std::vector<RoundPieces::Sliver> slivers_of_patch;
   StarScratch star;
   RoundTriangles triangles;
