@@ -55,6 +55,21 @@ void add_bore(const Fan& fan, const FanFrame& frame, Surface& s) {
   s.moment -= (1.0 + r2 / square) * turn;
 }
 
+constexpr double kLonger = 1.001;  // than an area, which a vector cannot be
+
+// From which solid the area vector is taken: plane faces give it best. The error of a vector goes
+// with its area, and a small area, as that of a rod's ends, bounds what the vector can be.
+double share_of_b(const Surface& a, const Surface& b, const FaceSet& faces) {
+  const bool flat_a = !faces.has_rounds(Owner::kA), flat_b = !faces.has_rounds(Owner::kB);
+  if (flat_a != flat_b) {
+    const Surface &flat = flat_a ? a : b, &round = flat_a ? b : a;
+    const bool from_flat = flat.vector.norm() <= kLonger * round.area;
+    return from_flat == flat_b ? 1.0 : 0.0;
+  }
+  const double square_a = a.area * a.area, square_b = b.area * b.area;
+  return square_a + square_b > 0.0 ? square_a / (square_a + square_b) : 0.5;
+}
+
 }  // namespace
 
 MomentSum moments_of(const Fan& fan, const FaceSet& faces, const FanFrame& frame) {
@@ -75,9 +90,7 @@ MomentSum moments_of(const Fan& fan, const FaceSet& faces, const FanFrame& frame
     add_rounds(fan, frame, owner, s);
     if (faces.has_bore && faces.wall.owner == owner) add_bore(fan, frame, s);
   }
-  double share_b = 0.5;
-  const bool flat_a = !faces.has_rounds(Owner::kA), flat_b = !faces.has_rounds(Owner::kB);
-  if (flat_a != flat_b) share_b = flat_b ? 1.0 : 0.0;
+  const double share_b = share_of_b(surface[0], surface[1], faces);
   sum.area_vector = (1.0 - share_b) * surface[0].vector - share_b * surface[1].vector;
   sum.area_moment = (1.0 - share_b) * surface[0].moment - share_b * surface[1].moment;
   sum.area = surface[0].area;

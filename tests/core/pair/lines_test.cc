@@ -217,6 +217,54 @@ TEST(Lines, AreaVectorHasTheDigitsThatAreAskedOfTheVolume) {
   EXPECT_LT(off[off.size() * 3 / 4], 3e-9);
 }
 
+// A thin rod has small ends and a long wall. What the wall's normals sum up to is as wrong as the
+// wall is long; the ends, and where the rod enters the other solid, tell how long it can be at
+// most.
+TEST(Lines, TheAreaVectorOfARodIsNoLongerThanItsEnds) {
+  const Shape others[] = {Sphere({.radius = 0.15}),
+                          Frustum({.bottom_radius = 0.3, .top_radius = 0.4, .half_length = 0.23}),
+                          Ellipsoid({.semi_axes = {0.3, 0.2, 0.12}}),
+                          Cylinder({.radius = 0.2, .half_length = 0.15})};
+  test::Random random(8);
+  for (const Shape& a : others) {
+    for (int i = 0; i < test::cases(60, 15); ++i) {
+      const double radius = std::pow(10.0, random.uniform(-5.0, -3.0));
+      const Shape rods[] = {
+          Capsule({.radius = radius, .half_length = 0.08}),
+          Cylinder({.radius = radius, .half_length = 0.3}),
+          Frustum({.bottom_radius = radius, .top_radius = 1.2 * radius, .half_length = 0.15})};
+      for (const Shape& b : rods) {
+        const Pose X = random.pose(0.2);
+        for (const VolumeMetrics& m : {lines(a, b, X), lines(b, a, X.inverse())}) {
+          if (!m.touching()) continue;
+          EXPECT_LE(m.area_vector.norm(), 1.001 * std::min(m.area, m.counter_area))
+              << name_of(a) << " " << i << " " << radius << " V " << m.volume;
+        }
+      }
+    }
+  }
+}
+
+// The same where two round solids fit but for a touch by rounding.
+TEST(Lines, TheAreaVectorOfATouchByRoundingIsAsSmall) {
+  const Frustum cup({.bottom_radius = 0.12886933338484124,
+                     .top_radius = 0.25773866676968249,
+                     .half_length = 0.16902644747726908});
+  const Ellipsoid ball({.semi_axes = {0.16902644747726908, 0.15, 0.16902644747726908}});
+  const Frustum other({.bottom_radius = 0.25, .top_radius = 0.2, .half_length = 0.1});
+  const Cylinder disc({.radius = 0.13, .half_length = 0.05});
+  for (const double off : {0.0, 1e-15, 1e-13, 2e-11, 1e-9, 1e-7}) {
+    for (const double aside : {0.0, 0.0045646476397676414, 0.05}) {
+      const Pose in_cup = test::shifted(aside, aside, -off),
+                 on_face = test::shifted(aside, aside, 0.05 + off);
+      for (const VolumeMetrics& m : {lines(cup, ball, in_cup), lines(disc, other, on_face)}) {
+        EXPECT_LE(m.area_vector.norm(), 1.001 * std::min(m.area, m.counter_area) + 1e-16)
+            << off << " " << aside;
+      }
+    }
+  }
+}
+
 TEST(Lines, EveryInstructionSetGivesTheSameBits) {
   const std::vector<Shape> all = solids();
   test::Random random(46);
