@@ -78,9 +78,21 @@ def forgotten_sources() -> list[str]:
     return found
 
 
+def tests_of_a_release() -> list[str]:
+    """Python tests that run once for all MuJoCo releases, and use MuJoCo all the same."""
+    return [
+        f"{path.relative_to(ROOT)}:{number}: uses MuJoCo; such tests lie in tests/python"
+        for path in sorted((ROOT / "tests" / "python" / "core").rglob("*.py"))
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
+        if re.search(
+            r"^\s*(import|from) mujoco\b|\b(vc|volcontact)\.(load|attach|simulate)\(", line
+        )
+    ]
+
+
 def faults() -> list[str]:
     """All faults, one line each."""
-    return include_faults() + forgotten_sources()
+    return include_faults() + forgotten_sources() + tests_of_a_release()
 
 
 def test_no_include_points_up():
@@ -89,6 +101,10 @@ def test_no_include_points_up():
 
 def test_every_source_is_built():
     assert forgotten_sources() == []
+
+
+def test_tests_of_the_core_know_no_mujoco():
+    assert tests_of_a_release() == []
 
 
 def test_finds_each_kind_of_fault():

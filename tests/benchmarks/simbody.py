@@ -3,10 +3,10 @@
 
     ./run python tests/benchmarks/simbody.py
 
-writes results/simbody.csv; `docs/make_comparison.py` takes it from there. Needs the package
-`opensim` (CPython 3.11 to 3.13; `./run benchmark` installs it). Both models are a bed of springs:
-Simbody's stand at the faces of a mesh, with a stiffness in N/m^3 that is k_v. Its integrator has
-error control, but takes as many steps at other accuracies: stability limits them.
+writes results/simbody.csv; `docs/generate/make_comparison.py` takes it from there. Needs
+the package `opensim` (CPython 3.11 to 3.13; `./run benchmark` installs it). Both models are a
+bed of springs: Simbody's stand at the faces of a mesh, with a stiffness in N/m^3 that is k_v. Its
+integrator has error control, but takes as many steps at other accuracies: stability limits them.
 """
 
 from __future__ import annotations

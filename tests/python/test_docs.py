@@ -71,9 +71,10 @@ def headings(page: Path) -> list[str]:
 
 def generator(name: str) -> ModuleType:
     """A script of docs as a module. It finds its neighbours as when it runs as a program."""
-    if str(ROOT / "docs") not in sys.path:
-        sys.path.insert(0, str(ROOT / "docs"))
-    spec = importlib.util.spec_from_file_location(name, ROOT / "docs" / f"{name}.py")
+    folder = ROOT / "docs" / "generate"
+    if str(folder) not in sys.path:
+        sys.path.insert(0, str(folder))
+    spec = importlib.util.spec_from_file_location(name, folder / f"{name}.py")
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module  # its dataclasses look there
@@ -108,14 +109,14 @@ def test_mjcf_blocks_load_and_step(page: Path) -> None:
 def test_components_page_is_generated_from_the_field_tables() -> None:
     module = generator("make_components")
     assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
-        "run './run python docs/make_components.py'"
+        "run './run python docs/generate/make_components.py'"
     )
 
 
 def test_page_of_the_keys_is_generated_from_what_the_code_accepts() -> None:
     module = generator("make_mjcf_keys")
     assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
-        "run './run python docs/make_mjcf_keys.py'"
+        "run './run python docs/generate/make_mjcf_keys.py'"
     )
 
 
@@ -128,7 +129,7 @@ def test_pictures_of_the_concepts_show_what_the_core_computes(
     for name, draw in module.PICTURE.items():
         picture = (module.PICTURES / f"{name}.svg").read_text(encoding="utf-8")
         assert f"<dc:source>{module.digest(draw()[1])}</dc:source>" in picture, (
-            "run './run python docs/make_concepts.py'"
+            "run './run python docs/generate/make_concepts.py'"
         )
 
 
@@ -153,7 +154,7 @@ def test_blocks_of_pages_say_what_the_code_and_the_results_say(
 ) -> None:
     module = generator("make_blocks")
     digest = generator("make_concepts").digest
-    command = "run './run python docs/make_blocks.py'"
+    command = "run './run python docs/generate/make_blocks.py'"
     for page in module.pages():
         text = page.read_text(encoding="utf-8")
         assert text == module.render(text), f"{page.name}: {command}"
@@ -173,7 +174,7 @@ def test_times_on_the_pages_of_the_engines_are_all_there_are() -> None:
 def test_accuracy_page_is_generated_from_the_results() -> None:
     module = generator("make_accuracy")
     assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
-        "run './run python docs/make_accuracy.py'"
+        "run './run python docs/generate/make_accuracy.py'"
     )
 
 
@@ -192,7 +193,7 @@ def test_accuracy_page_has_every_pair_of_every_engine() -> None:
 def test_performance_page_is_generated_from_the_results() -> None:
     module = generator("make_performance")
     assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
-        "run './run python docs/make_performance.py'"
+        "run './run python docs/generate/make_performance.py'"
     )
 
 
@@ -203,20 +204,20 @@ def test_performance_plots_are_made_of_the_results() -> None:
     for name in module.PLOT:
         plot = (module.PLOTS / f"{name}.svg").read_text(encoding="utf-8")
         assert f"<dc:source>{module.digest()}</dc:source>" in plot, (
-            "run './run python docs/make_performance.py'"
+            "run './run python docs/generate/make_performance.py'"
         )
 
 
 def test_comparison_page_is_generated_from_results_and_validation_page() -> None:
     module = generator("make_comparison")
     assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
-        "run './run python docs/make_comparison.py'"
+        "run './run python docs/generate/make_comparison.py'"
     )
 
 
 def test_assembly_page_and_its_plots_are_generated_from_the_results() -> None:
     module = generator("make_assembly")
-    command = "run './run python docs/make_assembly.py'"
+    command = "run './run python docs/generate/make_assembly.py'"
     assert module.PAGE.read_text(encoding="utf-8") == module.render(), command
     assert {path.stem for path in module.PLOTS.glob("*.svg")} == set(module.PLOT)
     for name in module.PLOT:
@@ -227,14 +228,14 @@ def test_assembly_page_and_its_plots_are_generated_from_the_results() -> None:
 def test_campaign_page_is_generated_from_the_results() -> None:
     module = generator("make_campaign")
     assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
-        "run './run python docs/make_campaign.py'"
+        "run './run python docs/generate/make_campaign.py'"
     )
 
 
 def test_third_party_page_is_generated_from_the_results() -> None:
     module = generator("make_third_party")
     assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
-        "run './run python docs/make_third_party.py'"
+        "run './run python docs/generate/make_third_party.py'"
     )
 
 

@@ -2,8 +2,8 @@
 """What the validation cases share: figures with their expected values, and runs of a scene.
 
 Each file `test_<case>.py` has a function `measure()` that runs its case and returns a `Case`. The
-test asks every figure of it to be within its tolerance; `docs/make_validation.py` writes the same
-cases into docs/validation.md.
+test asks every figure of it to be within its tolerance; `docs/generate/make_validation.py`
+writes the same cases into docs/validation.md.
 """
 
 from __future__ import annotations

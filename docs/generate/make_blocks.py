@@ -3,7 +3,7 @@
 
 The text of a page is written by hand. Between `<!-- block: argument -->` and `<!-- end -->` stands
 what the code and the tables of results have to say: `page_blocks.py` has the blocks. Run
-`./run python docs/make_blocks.py` after a change of a law, of results or of these pages.
+`./run python docs/generate/make_blocks.py` after a change of a law, of results or of these pages.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from make_concepts import save
 from page_blocks import BLOCK
 from page_pictures import PICTURE
 
-DOCS = Path(__file__).parent
+DOCS = Path(__file__).parents[1]
 _BLOCK = re.compile(r"(<!-- (\w+): (.+?) -->)\n.*?(<!-- end -->)", re.DOTALL)
 
 

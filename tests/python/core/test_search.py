@@ -7,7 +7,7 @@ import importlib.util
 from pathlib import Path
 from types import ModuleType
 
-SCRIPT = Path(__file__).resolve().parents[1] / "benchmarks" / "search_for_failures.py"
+SCRIPT = Path(__file__).resolve().parents[2] / "benchmarks" / "search_for_failures.py"
 
 
 def search() -> ModuleType:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from volcontact import _volcontact
 
-SCRIPT = Path(__file__).parents[2] / "python" / "make_stub.py"
+SCRIPT = Path(__file__).parents[3] / "python" / "make_stub.py"
 
 
 def make_stub():

@@ -2,7 +2,7 @@
 """Draws the figures of docs/studies from the rows of the two studies, and prints the numbers.
 
 ./run volcontact study run studies/NAME/study.toml --out build/studies/NAME   (both names)
-./run python docs/make_studies.py
+./run python docs/generate/make_studies.py
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from volcontact.report.svg import standing_alone
 from volcontact.study import Study, figures
 from volcontact.study.estimates import sensitivity, wilson
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 ROWS = ROOT / "build" / "studies"
 PAGES = ROOT / "docs" / "studies"
 PEG, BATTERY = "peg_in_hole_misalignment", "battery_insert_0g"

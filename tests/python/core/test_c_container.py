@@ -14,7 +14,7 @@ import pytest
 import volcontact as vc
 
 FOLDER = Path(importlib.util.find_spec("volcontact._volcontact").origin).parent
-HEADER = Path(__file__).parents[2] / "plugin/c_api/volcontact.h"
+HEADER = Path(__file__).parents[3] / "plugin/c_api/volcontact.h"
 Numbers = ctypes.POINTER(ctypes.c_double)
 
 

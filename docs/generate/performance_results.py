@@ -8,7 +8,7 @@ import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 
-RESULTS = Path(__file__).parents[1] / "tests" / "benchmarks" / "results"
+RESULTS = Path(__file__).resolve().parents[2] / "tests" / "benchmarks" / "results"
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws the pictures of docs/concepts.md, of what the core computes.
 
-`./run python docs/make_concepts.py`, after a change of a law or of this script.
+`./run python docs/generate/make_concepts.py`, after a change of a law or of this script.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from performance_plots import STYLE
 import volcontact as vc
 from volcontact.report.palette import NATIVE, VOLUMETRIC
 
-PICTURES = Path(__file__).with_name("concepts")
+PICTURES = Path(__file__).parents[1] / "concepts"
 Drawn = tuple[Figure, list[float]]  # a picture, and the numbers it shows
 
 

@@ -13,7 +13,7 @@ import pytest
 
 import volcontact as vc
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 PUBLIC = [name for name in vc.__all__ if not name.startswith("_")]
 PAGES = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from validation_peers import number
 
-CASES = Path(__file__).parents[1] / "tests" / "validation"
+CASES = Path(__file__).resolve().parents[2] / "tests" / "validation"
 EVENTS = {
     "upright": "upright",
     "touch": "stem touches",

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The parts of `./run test`: one that fails stops no other; times and counts at the end."""
+
+from __future__ import annotations
+
+import threading
+import time
+import traceback
+import xml.etree.ElementTree as xml
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from tasks.shell import Stopped
+
+
+@dataclass
+class Stages:
+    """What has been run: a word, a title and seconds each."""
+
+    results: Path  # folder of the JUnit files
+    rows: list[tuple[str, str, float]] = field(default_factory=list)
+
+    def run(self, title: str, work: Callable[[], None]) -> bool:
+        """Runs one part; whether it ended well."""
+        print(f"\n==== {title}", flush=True)
+        start = time.monotonic()
+        word = _outcome(work)
+        self.rows.append((word, title, time.monotonic() - start))
+        return word == "ok"
+
+    def beside(self, title: str, work: Callable[[], None]) -> Callable[[], bool]:
+        """The same while other parts run. Call what is returned to wait for its end."""
+        outcome: list[tuple[str, float]] = []
+
+        def body() -> None:
+            start = time.monotonic()
+            word = _outcome(work)
+            outcome.append((word, time.monotonic() - start))
+
+        thread = threading.Thread(target=body)
+        thread.start()
+
+        def wait() -> bool:
+            thread.join()
+            ((word, seconds),) = outcome
+            self.rows.append((word, f"{title} (beside others)", seconds))
+            return word == "ok"
+
+        return wait
+
+    def note(self, word: str, title: str) -> None:
+        """A line of the summary for what was not run."""
+        self.rows.append((word, title, 0.0))
+
+    def summary(self) -> int:
+        """Prints all; the number of failures. The last line counts the tests."""
+        cases = _cases(self.results)
+        counts = {kind: sum(case.kind == kind for case in cases) for kind in _KINDS}
+        print("\n==== Slowest tests")
+        for case in sorted(cases, key=lambda case: -case.seconds)[:10]:
+            print(f"{case.seconds:7.1f} s  {case.suite}: {case.name}")
+        print("\n==== Summary")
+        for word, title, seconds in self.rows:
+            print(f"{word:8s}{seconds:6.0f} s  {title}")
+        broken = sum(word == "FAILED" for word, _, _ in self.rows)
+        failed = max(counts["failed"], broken)  # a build that fails leaves no report
+        print(f"{counts['passed']} passed, {failed} failed, {counts['skipped']} skipped")
+        return failed
+
+
+_KINDS = ("passed", "failed", "skipped")
+
+
+@dataclass(frozen=True)
+class _Case:
+    suite: str
+    name: str
+    seconds: float
+    kind: str
+
+
+def _outcome(work: Callable[[], None]) -> str:
+    try:
+        work()
+    except Stopped as error:
+        print(f"run: {error}", flush=True)
+        return "FAILED"
+    except Exception:
+        traceback.print_exc()
+        return "FAILED"
+    return "ok"
+
+
+def _cases(folder: Path) -> list[_Case]:
+    found = []
+    for report in sorted(folder.glob("*.xml")):
+        for case in xml.parse(report).iter("testcase"):
+            children = {child.tag for child in case}
+            failed = bool(children & {"failure", "error"})
+            kind = "failed" if failed else "skipped" if "skipped" in children else "passed"
+            name = case.get("name", "")
+            found.append(_Case(report.stem, name, float(case.get("time", 0)), kind))
+    return found

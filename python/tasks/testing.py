@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`./run test`: the core once, then the adaptor and Python on each MuJoCo release."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from tasks.building import CORE, build, build_core, configure
+from tasks.cgal import NoCgal, build_cgal, link_cgal
+from tasks.environments import BASELINE, Environment, NoPython, prepared
+from tasks.shell import BUILD, JOBS, RESULTS, ROOT, TOOLS, run, stop
+from tasks.sites import build_site
+from tasks.stages import Stages
+from tasks.system import need_system, use_compiler_cache, wish_system
+
+# Tests that no MuJoCo release can change: they run once, on the first release that is tested.
+WITHOUT_MUJOCO = "tests/python/core"
+_NO_TESTS = 5  # pytest: none was selected
+
+
+def test(arguments: list[str]) -> None:
+    """All tests, or with arguments of pytest those that they select, on one release."""
+    _need_packages(arguments)
+    shutil.rmtree(RESULTS, ignore_errors=True)
+    RESULTS.mkdir(parents=True)
+    stages = Stages(RESULTS)
+    if arguments:
+        _test_selected(stages, arguments)
+    else:
+        _test_all(stages)
+    if stages.summary():
+        stop("tests failed")
+
+
+def _need_packages(arguments: list[str]) -> None:
+    need_system("libgtest-dev")
+    wish_system("a compiler cache", "ccache")
+    use_compiler_cache()
+    if not arguments:
+        wish_system("a browser", "chromium", "xvfb", "xauth")
+        # Of the baseline's release; without it its test is skipped and says so.
+        wish_system("simulate", "libmujoco-samples")
+
+
+# What needs one core for long goes beside what needs both.
+def _test_all(stages: Stages) -> None:
+    site = stages.beside("Documentation", lambda: build_site(quiet=True))
+    releases = [release] if (release := os.environ.get("MUJOCO")) else ["newest", BASELINE]
+    core = stages.run("Core: build of its tests", _build_core_tests)
+    site()
+    cgal = stages.beside("The CGAL program", lambda: _build_cgal(stages))
+    if core:
+        stages.run("Core: C++ tests", lambda: ctest(CORE, "cpp-core"))
+    cgal()
+    for number, release in enumerate(releases):
+        _test_release(stages, release, everything=number == 0)
+
+
+def _build_core_tests() -> None:
+    build_core("volcontact_core_tests", "volcontact_c_api_tests", VOLCONTACT_TESTS="ON")
+
+
+def _build_cgal(stages: Stages) -> None:
+    """The tests that need CGAL are skipped, and say so, where it is not to be had."""
+    try:
+        build_cgal()
+    except NoCgal as error:
+        if os.environ.get("CI") == "true":
+            raise
+        stages.note("NOT RUN", f"TESTS WITH CGAL: {error}")
+
+
+def _test_release(stages: Stages, release: str, *, everything: bool) -> None:
+    made: list[Environment] = []
+    missing: list[NoPython] = []
+
+    def set_up() -> None:
+        try:
+            made.append(prepared(release, tests=True))
+            _build_adaptor_tests(made[0])
+        except NoPython as error:
+            if release != BASELINE or os.environ.get("CI") == "true":
+                raise
+            missing.append(error)
+
+    built = stages.run(f"MuJoCo {release}: set-up and builds", set_up)
+    if missing:
+        stages.run(f"MuJoCo {release}: C++ tests, on Debian's library", _ctest_on_system)
+        stages.note("NOT RUN", f"MuJoCo {release}: ALL PYTHON TESTS, for want of Python 3.10")
+    if not made:
+        return
+    name = f"mujoco-{made[0].version}"
+    if built:
+        stages.run(
+            f"MuJoCo {made[0].version}: C++ tests",
+            lambda: ctest(made[0].tree, f"{name}-cpp"),
+        )
+    arguments = [] if everything else [f"--ignore={WITHOUT_MUJOCO}"]
+    stages.run(f"MuJoCo {made[0].version}: Python tests", lambda: pytest(made[0], arguments))
+
+
+def _build_adaptor_tests(environment: Environment) -> None:
+    configure(environment.tree, VOLCONTACT_TESTS="ON")
+    build(environment.tree, "volcontact_adaptor_tests")
+
+
+def _ctest_on_system() -> None:
+    """The adaptor against Debian's MuJoCo, where no Python fits the baseline."""
+    need_system("libmujoco-dev")
+    tree = BUILD / f"mujoco-{BASELINE}-system"
+    configure(
+        tree,
+        MUJOCO_DIR="/usr",
+        VOLCONTACT_MUJOCO="ON",
+        VOLCONTACT_PYTHON="OFF",
+        VOLCONTACT_CORE=str(CORE),
+        Eigen3_ROOT=str(TOOLS / "eigen"),
+        VOLCONTACT_TESTS="ON",
+    )
+    build(tree, "volcontact_adaptor_tests")
+    ctest(tree, f"mujoco-{BASELINE}-system-cpp")
+
+
+def ctest(tree: Path, report: str, names: list[str] | None = None) -> None:
+    """The C++ tests of a tree, or those of these names."""
+    words: list[str | Path] = ["ctest", "--test-dir", tree, "--no-tests=error", "-j", JOBS]
+    if names is not None:
+        chosen = tree / "chosen_tests.txt"
+        chosen.write_text("".join(f"{name}\n" for name in names))
+        words += ["--tests-from-file", chosen]
+    run(*words, "--output-on-failure", "--output-junit", RESULTS / f"{report}.xml")
+
+
+def pytest(environment: Environment, arguments: list[str]) -> None:
+    """The Python tests on one release."""
+    link_cgal(environment.venv)
+    name = f"mujoco-{environment.version}"
+    # What the tests see of the report and of the viewers.
+    pictures = os.environ.get("VOLCONTACT_SCREENSHOTS") or str(RESULTS / f"{name}-screenshots")
+    Path(pictures).mkdir(parents=True, exist_ok=True)
+    run(
+        environment.python, "-m", "pytest", "-n", JOBS, "--dist", "loadfile",
+        f"--junit-xml={RESULTS / name}-python.xml", *arguments,
+        env={"VOLCONTACT_SCREENSHOTS": pictures},
+    )  # fmt: skip
+
+
+# ---- A selection ---------------------------------------------------------------------------------
+
+
+@dataclass
+class _Selection:
+    """What `-k EXPRESSION` chooses among the C++ tests, by pytest's rules: parts of names."""
+
+    expression: str
+    found: list[str] = field(default_factory=list)
+
+    def of(self, tree: Path) -> list[str]:
+        listed = subprocess.run(
+            ["ctest", "--test-dir", str(tree), "-N"], capture_output=True, text=True, check=True
+        ).stdout
+        names = re.findall(r"^ +Test +#\d+: (\S+)$", listed, re.MULTILINE)
+        chosen = [name for name in names if self._matches(name.lower())]
+        self.found += chosen
+        return chosen
+
+    def _matches(self, name: str) -> bool:
+        def truth(word: re.Match[str]) -> str:
+            text = word.group().lower()
+            return text if text in {"and", "or", "not"} else str(text in name)
+
+        return bool(eval(re.sub(r"[\w.:/-]+", truth, self.expression), {"__builtins__": {}}))
+
+
+def _test_selected(stages: Stages, arguments: list[str]) -> None:
+    environment = prepared(tests=True)
+    selection = None
+    if arguments[0] == "-k" and len(arguments) == 2:
+        selection = _Selection(arguments[1])
+        for title, tree, make in (
+            ("core", CORE, _build_core_tests),
+            ("adaptor", environment.tree, lambda: _build_adaptor_tests(environment)),
+        ):
+            if stages.run(f"C++ tests of the {title}: build", make):
+                names = selection.of(tree)
+                if names:
+                    stages.run(
+                        f"C++ tests of the {title}: {len(names)} of them",
+                        lambda tree=tree, names=names, title=title: ctest(tree, title, names),
+                    )
+    chosen_in_cpp = bool(selection and selection.found)
+    stages.run(
+        f"MuJoCo {environment.version}: Python tests",
+        lambda: _pytest_selected(environment, arguments, may_be_none=chosen_in_cpp),
+    )
+
+
+def _pytest_selected(environment: Environment, arguments: list[str], *, may_be_none: bool) -> None:
+    link_cgal(environment.venv)
+    report = RESULTS / f"mujoco-{environment.version}-python.xml"
+    done = subprocess.run(
+        [str(environment.python), "-m", "pytest", "-n", JOBS, "--dist", "loadfile",
+         f"--junit-xml={report}", *arguments],
+        cwd=ROOT, check=False,
+    )  # fmt: skip
+    if done.returncode == _NO_TESTS and may_be_none:
+        return
+    if done.returncode != 0:
+        stop(f"pytest ended with status {done.returncode}")
