@@ -20,6 +20,32 @@ MAY_INCLUDE = {
     "c_api": {"base", "metrics", "shape", "pair", "force", "model"},
     "cgal": set(),  # a program of its own under another licence
 }
+# Rooms of volcontact/pair, and the files that lie in none; each may use those before it.
+PAIR_ROOMS = (
+    "engine",
+    "overlap",
+    "overlap_limits",
+    "quadrature",
+    "convex",
+    "window",
+    "closed_form",
+    "clip",
+    "sections",
+    "sections/bore",
+    "sections/torus",
+    "torus_pair",
+    "surface_sweep",
+    "mesh_columns/crossing",
+    "mesh_columns",
+    "mesh_columns/in_round",
+    "mesh_columns/radial",
+    "octree",
+    "interference",
+    "geometric_pair",
+    "pressure",
+    "picture",
+)
+MOST_FILES = 25  # in a folder of the plugin's core
 # The only folder that may include each library of others.
 OWNER = {"mujoco": "adaptor", "CGAL": "cgal"}
 NOWHERE = {"nanobind", "pybind11", "Python.h"}
@@ -30,6 +56,38 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 def floor_of(path: str) -> str | None:
     """The folder of MAY_INCLUDE that holds a path relative to plugin/, None if there is none."""
     return next((floor for floor in MAY_INCLUDE if path.startswith(floor + "/")), None)
+
+
+def pair_room(path: str) -> str | None:
+    """The room of a file of volcontact/pair, None for another file or a room that is not known."""
+    inside = path.removeprefix("volcontact/pair/")
+    if inside == path:
+        return None
+    room = inside.rsplit("/", 1)[0] if "/" in inside else inside.split(".")[0]
+    return room if room in PAIR_ROOMS else None
+
+
+def room_fault(source: str, included: str) -> str | None:
+    """Why a file of volcontact/pair may not include another; None if it may."""
+    if not (source.startswith("volcontact/pair/") and included.startswith("volcontact/pair/")):
+        return None
+    rooms = pair_room(source), pair_room(included)
+    for path, room in zip((source, included), rooms, strict=True):
+        if room is None:
+            return f"{path}: lies in no known room of volcontact/pair"
+    if PAIR_ROOMS.index(rooms[0]) < PAIR_ROOMS.index(rooms[1]):
+        return f"{source}: {rooms[0]} must not include {included}"
+    return None
+
+
+def crowded_folders() -> list[str]:
+    """Folders of the core with more files than a reader takes in."""
+    found = []
+    for folder in sorted(path for path in (PLUGIN / "volcontact").rglob("*") if path.is_dir()):
+        count = sum(path.is_file() for path in folder.iterdir())
+        if count > MOST_FILES:
+            found.append(f"{folder.relative_to(ROOT)}: {count} files, {MOST_FILES} at most")
+    return found
 
 
 def fault(source: str, included: str) -> str | None:
@@ -47,7 +105,7 @@ def fault(source: str, included: str) -> str | None:
         return None
     if target != floor and target.removeprefix("volcontact/") not in MAY_INCLUDE[floor]:
         return f"{source}: {floor} must not include {included}"
-    return None
+    return room_fault(source, included)
 
 
 def include_faults() -> list[str]:
@@ -78,7 +136,7 @@ def forgotten_sources() -> list[str]:
     return found
 
 
-def tests_of_a_release() -> list[str]:
+def faults_of_core_tests() -> list[str]:
     """Python tests that run once for all MuJoCo releases, and use MuJoCo all the same."""
     return [
         f"{path.relative_to(ROOT)}:{number}: uses MuJoCo; such tests lie in tests/python"
@@ -92,11 +150,15 @@ def tests_of_a_release() -> list[str]:
 
 def faults() -> list[str]:
     """All faults, one line each."""
-    return include_faults() + forgotten_sources() + tests_of_a_release()
+    return include_faults() + forgotten_sources() + faults_of_core_tests() + crowded_folders()
 
 
 def test_no_include_points_up():
     assert include_faults() == []
+
+
+def test_no_folder_is_crowded():
+    assert crowded_folders() == []
 
 
 def test_every_source_is_built():
@@ -104,12 +166,12 @@ def test_every_source_is_built():
 
 
 def test_tests_of_the_core_know_no_mujoco():
-    assert tests_of_a_release() == []
+    assert faults_of_core_tests() == []
 
 
 def test_finds_each_kind_of_fault():
     down = fault("volcontact/model/a.h", "volcontact/pair/b.h")
-    same = fault("volcontact/pair/closed_form/a.h", "volcontact/pair/b.h")
+    same = fault("volcontact/pair/octree/a.h", "volcontact/pair/window/b.h")
     system = fault("volcontact/base/a.h", "Eigen/Core")
     assert (down, same, system) == (None, None, None)
     assert fault("adaptor/a.cc", "mujoco/mujoco.h") is None
@@ -118,13 +180,16 @@ def test_finds_each_kind_of_fault():
         ("volcontact/base/a.h", "volcontact/metrics/b.h"),
         ("volcontact/force/a.h", "volcontact/shape/b.h"),
         ("volcontact/force/a.h", "volcontact/pair/b.h"),
-        ("volcontact/pair/a.h", "volcontact/force/b.h"),
+        ("volcontact/pair/overlap.h", "volcontact/force/b.h"),
         ("volcontact/model/a.h", "adaptor/b.h"),
         ("volcontact/model/a.cc", "mujoco/mujoco.h"),
         ("c_api/a.cc", "mujoco/mujoco.h"),
         ("adaptor/a.cc", "CGAL/Surface_mesh.h"),
         ("adaptor/a.cc", "Python.h"),
-        ("volcontact/pair/a.h", "volcontact/misc/b.h"),
+        ("volcontact/pair/octree/a.h", "volcontact/misc/b.h"),
+        ("volcontact/pair/quadrature/a.h", "volcontact/pair/sections/b.h"),
+        ("volcontact/pair/overlap.h", "volcontact/pair/interference.h"),
+        ("volcontact/pair/cellar/a.h", "volcontact/pair/overlap.h"),
         ("misc/a.h", "vector"),
     ]:
         assert fault(source, included), (source, included)

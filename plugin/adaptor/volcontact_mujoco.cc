@@ -16,7 +16,7 @@
 #include "adaptor/scene_registry.h"
 #include "adaptor/solids_of_geoms.h"
 #include "adaptor/watched_steps.h"
-#include "volcontact/pair/overlap_surface.h"
+#include "volcontact/pair/picture/overlap_surface.h"
 
 // No exception leaves this file.
 

@@ -21,6 +21,21 @@ function(volcontact_target name)
     COMPILE_WARNING_AS_ERROR ${VOLCONTACT_WARNINGS_AS_ERRORS})
 endfunction()
 
+# Compiles the sources of each folder as one: names of unnamed namespaces are shared in a room alone,
+# and an edit compiles its room. Sources named after ALONE are compiled by themselves.
+function(volcontact_unity_by_folder name)
+  cmake_parse_arguments(PARSE_ARGV 1 argument "" "" "ALONE")
+  get_target_property(sources ${name} SOURCES)
+  foreach(source IN LISTS sources)
+    cmake_path(GET source PARENT_PATH folder)
+    string(MAKE_C_IDENTIFIER "${folder}" group)
+    if(NOT source IN_LIST argument_ALONE)
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+    endif()
+  endforeach()
+  set_target_properties(${name} PROPERTIES UNITY_BUILD_MODE GROUP)
+endfunction()
+
 # What a user of the core must have as well. Scope: PUBLIC for the core, INTERFACE for one that was
 # compiled before.
 function(volcontact_core_usage name scope)

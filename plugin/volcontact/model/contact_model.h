@@ -10,7 +10,7 @@
 #include "volcontact/model/contact_report.h"
 #include "volcontact/model/site_memory.h"
 #include "volcontact/pair/geometric_pair.h"
-#include "volcontact/pair/pressure_field.h"
+#include "volcontact/pair/pressure/pressure_field.h"
 
 namespace volcontact {
 

@@ -5,24 +5,24 @@
 #include <cmath>
 #include <type_traits>
 
-#include "volcontact/pair/clip.h"
+#include "volcontact/pair/clip/clip.h"
 #include "volcontact/pair/closed_form/half_space_capsule.h"
 #include "volcontact/pair/closed_form/half_space_ellipsoid.h"
 #include "volcontact/pair/closed_form/half_space_frustum.h"
 #include "volcontact/pair/closed_form/half_space_sphere.h"
 #include "volcontact/pair/closed_form/half_space_torus.h"
 #include "volcontact/pair/closed_form/sphere_sphere.h"
-#include "volcontact/pair/columns.h"
-#include "volcontact/pair/composed_columns.h"
-#include "volcontact/pair/composed_lines.h"
-#include "volcontact/pair/octree.h"
+#include "volcontact/pair/mesh_columns/in_round/round_columns.h"
+#include "volcontact/pair/mesh_columns/mesh_columns.h"
+#include "volcontact/pair/mesh_columns/radial/composed_columns.h"
+#include "volcontact/pair/mesh_columns/radial/torus_columns.h"
+#include "volcontact/pair/octree/octree.h"
 #include "volcontact/pair/overlap_limits.h"
-#include "volcontact/pair/ring_composed.h"
-#include "volcontact/pair/ring_lines.h"
-#include "volcontact/pair/ring_pair.h"
-#include "volcontact/pair/round_columns.h"
-#include "volcontact/pair/shell.h"
-#include "volcontact/pair/torus_columns.h"
+#include "volcontact/pair/sections/bore/composed_sections.h"
+#include "volcontact/pair/sections/torus/torus_in_composed.h"
+#include "volcontact/pair/sections/torus/torus_sections.h"
+#include "volcontact/pair/surface_sweep/surface_sweep.h"
+#include "volcontact/pair/torus_pair/torus_pair.h"
 
 namespace volcontact {
 

@@ -3,8 +3,8 @@
 
 #include <string_view>
 
-#include "volcontact/shape/csg.h"
-#include "volcontact/shape/mesh.h"
+#include "volcontact/shape/csg/csg.h"
+#include "volcontact/shape/mesh/mesh.h"
 #include "volcontact/shape/signed_distance.h"
 #include "volcontact/shape/simple_shapes.h"
 

@@ -6,11 +6,11 @@
 #include "volcontact/base/type_list.h"
 #include "volcontact/shape/box.h"
 #include "volcontact/shape/capsule.h"
-#include "volcontact/shape/convex_polytope.h"
 #include "volcontact/shape/cylinder.h"
 #include "volcontact/shape/ellipsoid.h"
 #include "volcontact/shape/frustum.h"
 #include "volcontact/shape/half_space.h"
+#include "volcontact/shape/polytope/convex_polytope.h"
 #include "volcontact/shape/sphere.h"
 #include "volcontact/shape/torus.h"
 

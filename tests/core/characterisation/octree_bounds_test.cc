@@ -6,7 +6,7 @@
 #include "core/support/fuzz.h"
 #include "core/support/line_lattice.h"
 #include "core/support/random_solids.h"
-#include "volcontact/pair/octree.h"
+#include "volcontact/pair/octree/octree.h"
 
 namespace volcontact::test::octree_bounds_test {
 namespace {

@@ -8,8 +8,8 @@
 #include "volcontact/base/fields.h"
 #include "volcontact/metrics/volume_metrics.h"
 #include "volcontact/shape/box.h"
-#include "volcontact/shape/convex_polytope.h"
 #include "volcontact/shape/half_space.h"
+#include "volcontact/shape/polytope/convex_polytope.h"
 
 namespace volcontact::test {
 

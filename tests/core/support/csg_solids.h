@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "volcontact/shape/csg.h"
+#include "volcontact/shape/csg/csg.h"
 
 namespace volcontact {
 

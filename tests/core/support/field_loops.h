@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/support/gradient.h"
-#include "volcontact/pair/pressure_field.h"
+#include "volcontact/pair/pressure/pressure_field.h"
 
 namespace volcontact::test {
 

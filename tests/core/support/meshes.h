@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/support/random.h"
-#include "volcontact/shape/mesh.h"
+#include "volcontact/shape/mesh/mesh.h"
 
 namespace volcontact::test {
 

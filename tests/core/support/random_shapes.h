@@ -5,7 +5,7 @@
 
 #include "core/support/random.h"
 #include "volcontact/shape/box.h"
-#include "volcontact/shape/convex_polytope.h"
+#include "volcontact/shape/polytope/convex_polytope.h"
 
 namespace volcontact::test {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/support/random.h"
-#include "volcontact/shape/csg.h"
+#include "volcontact/shape/csg/csg.h"
 
 namespace volcontact::test {
 

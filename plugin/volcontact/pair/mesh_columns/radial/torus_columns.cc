@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/mesh_columns/radial/torus_columns.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volcontact/pair/mesh_columns/contained.h"
+
+namespace volcontact {
+namespace {
+
+constexpr double kTubeRestError = 1e-6;  // of V; as measured
+
+class TorusColumns {
+ public:
+  TorusColumns(const SurfaceView& a, const Torus& b, const Pose& X_AB,
+               const InterferenceOptions& options, TorusColumnsScratch& scratch, Interference& out)
+      : a_(a),
+        b_(b),
+        X_AB_(X_AB),
+        X_BA_(X_AB.inverse()),
+        options_(options),
+        s_(scratch),
+        out_(out) {
+    out.total = VolumeMetrics{};
+    out.sites.clear();
+  }
+
+  bool run() {
+    if (bounds_apart(a_.bounds, b_.bounds(), X_AB_) || !(b_.minor_radius() > 0.0)) return true;
+    const RadialSolid solid{RadialWall(b_), {}, 0, {}, {}};
+    if (radial_patches(a_, X_BA_, solid, options_, s_.radial) != RadialReach::kDone) return false;
+    MomentSum inside;
+    double depth_moment = 0.0;
+    const std::vector<RadialPatch>& patches = s_.radial.patches;
+    if (!add_arcs(inside, depth_moment)) return false;
+    bool apart = inside.volume == 0.0;
+    for (const RadialPatch& patch : patches) apart &= patch.sum.moments.volume > 0.0;
+    if (apart) {
+      for (const RadialPatch& patch : patches) add_site(patch.sum);
+    } else {
+      RadialSum all;
+      all.moments = inside;
+      all.depth_moment = depth_moment;
+      all.depth = inside.volume != 0.0 ? b_.minor_radius() : 0.0;
+      for (const RadialPatch& patch : patches) {
+        all.moments += patch.sum.moments;
+        all.depth_moment += patch.sum.depth_moment;
+        all.depth = std::max(all.depth, patch.sum.depth);
+        all.doubt += patch.sum.doubt;
+      }
+      add_site(all);
+    }
+    VolumeMetrics& total = out_.total;
+    const bool crosses = std::any_of(patches.begin(), patches.end(),
+                                     [](const RadialPatch& patch) { return patch.at_wall; });
+    if (!crosses && total.touching()) total.status = Status::kContained;
+    if (total.volume_error > options_.tolerance * total.volume) total.status = Status::kApproximate;
+    for (VolumeMetrics& site : out_.sites) site.status = total.status;
+    return is_finite(total);
+  }
+
+ private:
+  void add_site(RadialSum sum) {
+    if (!(sum.moments.volume > 0.0)) return;
+    sum.moments.counter_area = std::max(0.0, sum.moments.counter_area);
+    VolumeMetrics m = sum.moments.metrics();
+    m.depth_moment = sum.depth_moment;
+    m.depth = sum.depth;
+    m.volume_error = sum.doubt + kTubeRestError * m.volume;
+    out_.sites.push_back(transformed(m, X_AB_));
+    out_.total = out_.total + out_.sites.back();
+  }
+
+  // Where the circle in the middle of the tube passes through a triangle.
+  void add_crossings(const Vec3 (&c)[3]) {
+    const double R = b_.major_radius();
+    if (std::min({c[0].z(), c[1].z(), c[2].z()}) > 0.0 ||
+        std::max({c[0].z(), c[1].z(), c[2].z()}) < 0.0) {
+      return;
+    }
+    const Vec3 n = (c[1] - c[0]).cross(c[2] - c[0]);
+    const double reach = R * std::hypot(n.x(), n.y()), height = n.dot(c[0]);
+    if (!(std::abs(height) < reach)) return;
+    const double middle = std::atan2(n.y(), n.x()), half = std::acos(height / reach);
+    for (const double side : {-1.0, 1.0}) {
+      double angle = middle + side * half;
+      const Vec3 x(R * std::cos(angle), R * std::sin(angle), 0.0);
+      bool within = true;
+      for (int i = 0; i < 3; ++i) {
+        const Vec3& p = c[i];
+        within &= n.dot((c[(i + 1) % 3] - p).cross(x - p)) >= 0.0;
+      }
+      if (!within) continue;
+      if (angle < 0.0) angle += 2.0 * kPi;
+      if (angle >= 2.0 * kPi) angle -= 2.0 * kPi;
+      // n . x falls behind the nearer side of the plane's normal.
+      s_.crossings.push_back({angle, side > 0.0});
+    }
+  }
+
+  // What lies around those arcs of the circle that are inside of the mesh: the lines to the wall
+  // begin at the circle where they meet no triangle. False when the crossings contradict each
+  // other, as next to an edge.
+  bool add_arcs(MomentSum& sum, double& depth_moment) {
+    s_.crossings.clear();
+    const ObbTree& tree = *a_.tree;
+    for (const auto& [slot, inside] : s_.radial.search.found) {
+      Vec3 c[3];
+      for (int i = 0; i < 3; ++i) c[i] = X_BA_ * tree.corner(slot, i);
+      add_crossings(c);
+    }
+    auto& crossings = s_.crossings;
+    if (crossings.empty()) {
+      const Vec3 p = X_AB_ * Vec3(b_.major_radius(), 0.0, 0.0);
+      if (winding_around(a_, p, s_.cells) > 0) add_arc(0.0, 2.0 * kPi, sum, depth_moment);
+      return true;
+    }
+    std::sort(crossings.begin(), crossings.end(),
+              [](const auto& x, const auto& y) { return x.angle < y.angle; });
+    const std::size_t count = crossings.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto &here = crossings[i], &next = crossings[(i + 1) % count];
+      if (here.enters == next.enters) return false;
+      if (!here.enters) continue;
+      const double end = i + 1 == count ? next.angle + 2.0 * kPi : next.angle;
+      add_arc(here.angle, end, sum, depth_moment);
+    }
+    return true;
+  }
+
+  void add_arc(double from, double to, MomentSum& sum, double& depth_moment) const {
+    const double R = b_.major_radius(), a2 = b_.minor_radius() * b_.minor_radius();
+    const double disc = kPi * a2, ring = 0.25 * kPi * a2 * a2, angle = to - from;
+    const double sine = std::sin(to) - std::sin(from), cosine = std::cos(to) - std::cos(from);
+    const double sine2 = std::sin(2.0 * to) - std::sin(2.0 * from);
+    const double squares = std::sin(to) * std::sin(to) - std::sin(from) * std::sin(from);
+    sum.volume += disc * R * angle;
+    sum.first += (disc * R * R + ring) * Vec3(sine, -cosine, 0.0);
+    const double across = disc * R * R * R + 3.0 * R * ring;
+    sum.second(0, 0) += across * 0.5 * (angle + 0.5 * sine2);
+    sum.second(1, 1) += across * 0.5 * (angle - 0.5 * sine2);
+    sum.second(0, 1) += across * 0.5 * squares;
+    sum.second(1, 0) += across * 0.5 * squares;
+    sum.second(2, 2) += ring * R * angle;
+    sum.counter_area += 2.0 * kPi * b_.minor_radius() * R * angle;
+    depth_moment += R * kPi * a2 * b_.minor_radius() / 3.0 * angle;
+  }
+
+  const SurfaceView& a_;
+  const Torus& b_;
+  const Pose& X_AB_;
+  const Pose X_BA_;
+  const InterferenceOptions& options_;
+  TorusColumnsScratch& s_;
+  Interference& out_;
+};
+
+}  // namespace
+
+bool torus_columns(const SurfaceView& a, const Torus& b, const Pose& X_AB,
+                   const InterferenceOptions& options, TorusColumnsScratch& scratch,
+                   Interference& out) noexcept {
+  return TorusColumns(a, b, X_AB, options, scratch, out).run();
+}
+
+}  // namespace volcontact

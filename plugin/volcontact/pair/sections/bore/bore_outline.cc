@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/sections/bore/bore_outline.h"
+
+#include <algorithm>
+
+#include "volcontact/pair/sections/even_turn.h"
+#include "volcontact/pair/sections/rim_shape.h"
+
+namespace volcontact {
+namespace {
+
+constexpr int kMaxRoundings = 24;  // of the frame
+constexpr double kRoundRim =
+    3.0;                        // longest by shortest way to the outline; then it is round enough
+constexpr double kSpike = 6.0;  // longest by shortest of all ways: a spike between the first ones
+constexpr int kNarrowings = 3;  // of a place where the outline comes near the wall
+constexpr int kEndNarrowings = 2;  // of a place where it crosses the wall
+
+}  // namespace
+
+// A fan along the bore's axis, or from the apex, through the middle of the overlap, in which its
+// outline is about round.
+void BoreOutline::choose_frame() {
+  if (bore_.is_cone()) {
+    const Vec3 way = window_.center - bore_.center;
+    const double length = way.norm();
+    frame_ = round_frame(bore_.center, window_.spread, way / length);
+    frame_.t *= length;
+    frame_.central = true;
+  } else {
+    frame_ = round_frame(window_.center, window_.spread, bore_.axis);
+  }
+}
+
+void BoreOutline::set_frame() {
+  s_.faces.active.has_bore = false;
+  s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
+}
+
+BoreOutline::Place BoreOutline::place(double angle, double x, double y, double height) const {
+  const Vec3 point = frame_.place(x, y, height);
+  return {angle, bore_.radii(point), point};
+}
+
+// Eight places of the outline at these angles.
+void BoreOutline::places_at(const double* angles, Place* places) {
+  double u[kLanes], v[kLanes], rho[kLanes], height[kLanes];
+  for (int i = 0; i < kLanes; ++i) {
+    u[i] = std::cos(angles[i]);
+    v[i] = std::sin(angles[i]);
+  }
+  s_.fan.ends(s_.path, u, v, rho, height);
+  for (int i = 0; i < kLanes; ++i) {
+    places[i] = place(angles[i], rho[i] * u[i], rho[i] * v[i], height[i]);
+  }
+}
+
+// Fills `places_` in the present frame. False when the outline is not round in it, unless that is
+// good enough; then the frame is a rounder one.
+bool BoreOutline::place_all_round(bool good_enough) {
+  constexpr int kStep = kEvenTurn / kLanes;
+  double shortest = kInfinity, longest = 0.0;
+  RimShape farthest;
+  for (int k = 0; k < kStep; ++k) {
+    RimShape rim;
+    even_directions(kEvenTurn, k, rim.u, rim.v);
+    s_.fan.ends(s_.path, rim.u, rim.v, rim.rho, rim.height);
+    const double near = rim.shortest(), far = rim.longest();
+    if (k == 0 && !good_enough && far > kRoundRim * near) {
+      if (!rim.round_off(frame_)) rim.go_inwards(frame_);
+      return false;
+    }
+    if (far > longest) farthest = rim;
+    shortest = std::min(shortest, near);
+    longest = std::max(longest, far);
+    for (int i = 0; i < kLanes; ++i) {
+      const int at = k + kStep * i;
+      places_[at] = place(2.0 * kPi * at / kEvenTurn, rim.rho[i] * rim.u[i], rim.rho[i] * rim.v[i],
+                          rim.height[i]);
+    }
+  }
+  if (good_enough || longest < kSpike * shortest) return true;
+  farthest.go_inwards(frame_);
+  return false;
+}
+
+void BoreOutline::trace() {
+  choose_frame();
+  set_frame();
+  places_.resize(kEvenTurn);
+  // The window knows a thin overlap's shape only roughly.
+  for (int turns = 0; !place_all_round(turns == kMaxRoundings); ++turns) set_frame();
+  // Places that come nearest to the wall may hide a lobe between them, or a dip.
+  const int n = kEvenTurn;
+  for (int k = 0; k < n; ++k) {
+    const Place p = places_[k], before = places_[(k + n - 1) % n], after = places_[(k + 1) % n];
+    const double side = p.rho > 1.0 ? -1.0 : 1.0;
+    const double fall = side * p.rho - side * (side > 0.0 ? std::min(before.rho, after.rho)
+                                                          : std::max(before.rho, after.rho));
+    if (side * before.rho > side * p.rho || side * after.rho > side * p.rho) continue;
+    if (side * (p.rho - 1.0) + 2.0 * fall < 0.0) continue;
+    const Place top = summit(p.angle - 2.0 * kPi / n, p.angle + 2.0 * kPi / n, side);
+    if (side * (top.rho - 1.0) > 0.0) places_.push_back(top);
+  }
+  std::sort(places_.begin(), places_.end(),
+            [](const Place& p, const Place& q) { return p.angle < q.angle; });
+}
+
+// Where the outline is farthest from the axis between two angles; nearest to it with a negative
+// `side`.
+BoreOutline::Place BoreOutline::summit(double from, double to, double side) {
+  Place places[kLanes];
+  Place top;
+  for (int step = 0; step < kNarrowings; ++step) {
+    double angles[kLanes];
+    for (int i = 0; i < kLanes; ++i) angles[i] = from + (to - from) * (i + 1) / (kLanes + 1);
+    places_at(angles, places);
+    const int best = static_cast<int>(std::max_element(places, places + kLanes,
+                                                       [&](const Place& p, const Place& q) {
+                                                         return side * p.rho < side * q.rho;
+                                                       }) -
+                                      places);
+    top = places[best];
+    const double width = (to - from) / (kLanes + 1);
+    if (step + 1 == kNarrowings && best > 0 && best + 1 < kLanes) {
+      // The summit of the parabola through three places.
+      const double low = places[best - 1].rho, high = places[best + 1].rho;
+      const double bend = low - 2.0 * top.rho + high;
+      if (side * bend < 0.0) {
+        std::fill_n(angles, kLanes, top.angle + 0.5 * width * (low - high) / bend);
+        places_at(angles, places);
+        if (side * places[0].rho > side * top.rho) top = places[0];
+      }
+    }
+    from = top.angle - width;
+    to = top.angle + width;
+  }
+  top.angle = std::fmod(top.angle + 2.0 * kPi, 2.0 * kPi);
+  return top;
+}
+
+// Where the outline crosses the wall, between two pairs of an inner and an outer place.
+void BoreOutline::crossings(Place (&inner)[2], Place (&outer)[2], Place (&found)[2]) {
+  set_frame();
+  constexpr int kShare = kLanes / 2;
+  double angles[kLanes];
+  Place places[kLanes];
+  for (int side : {0, 1}) {
+    outer[side].angle = inner[side].angle + wrapped(outer[side].angle - inner[side].angle);
+  }
+  for (int step = 0; step < kEndNarrowings; ++step) {
+    for (int i = 0; i < kLanes; ++i) {
+      const int side = i / kShare;
+      const double part = (i % kShare + 1.0) / (kShare + 1.0);
+      angles[i] = (1.0 - part) * inner[side].angle + part * outer[side].angle;
+    }
+    places_at(angles, places);
+    for (int i = 0; i < kLanes; ++i) {
+      const int side = i / kShare;
+      if (places[i].rho <= 1.0) {
+        inner[side] = places[i];
+      } else {
+        outer[side] = places[i];
+        i = kShare * (side + 1) - 1;  // on to the other side
+      }
+    }
+  }
+  // The last step goes to where the chord crosses.
+  for (int i = 0; i < kLanes; ++i) {
+    const Place &from = inner[i / kShare], &to = outer[i / kShare];
+    const double part = std::clamp((1.0 - from.rho) / (to.rho - from.rho), 0.0, 1.0);
+    angles[i] = from.angle + (to.angle - from.angle) * part;
+  }
+  places_at(angles, places);
+  found[0] = places[0];
+  found[1] = places[kShare];
+}
+
+void BoreOutline::between(const Place (&from)[2], const Place (&to)[2], Place (&places)[kLanes]) {
+  constexpr double kParts[] = {0.01, 0.1, 0.4, 0.7};
+  double angles[kLanes];
+  for (int i = 0; i < kLanes; ++i) {
+    const int side = i / (kLanes / 2);
+    const double way = wrapped(to[side].angle - from[side].angle);
+    angles[i] = from[side].angle + kParts[i % (kLanes / 2)] * way;
+  }
+  places_at(angles, places);
+}
+
+}  // namespace volcontact

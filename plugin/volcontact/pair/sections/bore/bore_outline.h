@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "volcontact/pair/sections/convex_sections.h"
+
+namespace volcontact {
+
+/// The same angle from -pi to pi.
+inline double wrapped(double angle) {
+  return angle - 2.0 * kPi * std::floor(angle / (2.0 * kPi) + 0.5);
+}
+
+/// The outline of an overlap seen along the axis of a bore, or from the apex of a cone: a convex
+/// curve, and where it lies outside of the wall.
+class BoreOutline {
+ public:
+  struct Place {
+    double angle;  ///< about the middle of the overlap [rad]
+    double rho;    ///< from the axis of the bore, in its radii there
+    Vec3 point;
+  };
+
+  /// `places` is memory to be used.
+  BoreOutline(const Bore& bore, const LinesWindow& window, LinesScratch& lines,
+              std::vector<Place>& places)
+      : bore_(bore), window_(window), s_(lines), places_(places) {}
+
+  /// Places all round, in the order of their angle. One lies on every part outside of the wall, and
+  /// on every part inside, however small.
+  void trace();
+  const std::vector<Place>& places() const { return places_; }
+
+  /// Where the outline crosses the wall, between two pairs of an inner and an outer place.
+  void crossings(Place (&inner)[2], Place (&outer)[2], Place (&found)[2]);
+
+  /// Places of the outline on the way from two of them to two others, four each. After crossings().
+  void between(const Place (&from)[2], const Place (&to)[2], Place (&places)[kLanes]);
+
+ private:
+  void choose_frame();
+  bool place_all_round(bool good_enough);
+  void set_frame();
+  void places_at(const double* angles, Place* places);
+  Place place(double angle, double x, double y, double height) const;
+  Place summit(double from, double to, double side);
+
+  const Bore& bore_;
+  const LinesWindow& window_;
+  LinesScratch& s_;
+  std::vector<Place>& places_;
+  FanFrame frame_;
+};
+
+}  // namespace volcontact

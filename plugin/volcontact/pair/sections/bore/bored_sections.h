@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "volcontact/pair/sections/bore/bore_outline.h"
+
+namespace volcontact {
+
+/// Memory of the search for the parts of an overlap outside of a bore.
+struct BoreScratch {
+  std::vector<BoreOutline::Place> outline;
+  std::vector<double> breaks;
+};
+
+/// Regions of the overlap of two convex bodies outside of a bore, a tube (`bore`, in A's frame) cut
+/// out of its owner. Adds them to `regions`; false when it cannot tell, as the overlap reaches past
+/// the bore sideways. docs/theory.md, "Bores".
+bool bored_lines(const ConvexView& a, const ConvexView& b, const Pose& X_AB, const Bore& bore,
+                 Owner owner, const InterferenceOptions& options, LinesScratch& lines,
+                 BoreScratch& scratch, LinesRegions& regions) noexcept;
+
+}  // namespace volcontact

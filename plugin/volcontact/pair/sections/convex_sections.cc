@@ -1,0 +1,387 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/sections/convex_sections.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "volcontact/pair/quadrature/outer_rule.h"
+#include "volcontact/pair/sections/even_turn.h"
+#include "volcontact/pair/sections/rim_shape.h"
+#include "volcontact/pair/sections/section_metrics.h"
+
+namespace volcontact {
+namespace {
+
+using Vec2 = Eigen::Vector2d;
+
+constexpr double kClear = 0.02;       // |S| / area below which S gives no direction to look along
+constexpr double kSameCorner = 1e-7;  // squared distance of directions that count as one
+constexpr int kMaxRecenterings = 24;  // from a far corner of a thin overlap
+constexpr double kRoundRim = 2.0;     // longest by shortest way to the rim; then one step is enough
+constexpr double kMostTurn = 0.5;  // of the columns towards the normal of the rim; more: no normal
+constexpr double kAligned = 0.1;   // a turn after which the next one would be too small to matter
+constexpr double kWhole = 0.999;   // share of a solid in the overlap, that is all of it
+// Of the smaller solid. An overlap of 1e-9 is not to be missed, and from a far corner of a thin one
+// the window sees a small part of it.
+constexpr double kLeastSeen = 1e-12;
+constexpr int kLeastArcs = 4;         // where no corners are known
+constexpr double kWidestAngle = 2.3;  // of an arc between corners [rad]
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+class LinesRun {
+ public:
+  LinesRun(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
+           const InterferenceOptions& options, LinesScratch& scratch)
+      : a_(a), b_(b), X_AB_(X_AB), options_(options), s_(scratch) {}
+
+  VolumeMetrics run(bool look_inside) {
+    window_ = find_lines_window(a_, b_, X_AB_, s_.path, look_inside, s_.faces);
+    switch (window_.kind) {
+      case LinesWindow::Kind::kApart:
+        return {};
+      case LinesWindow::Kind::kAInB:
+        return contained(a_.own_metrics());
+      case LinesWindow::Kind::kBInA:
+        return contained(transformed(b_.own_metrics(), X_AB_));
+      case LinesWindow::Kind::kOverlap:
+        break;
+    }
+    choose_frame();
+    s_.fan.choose_rule(options_.tolerance);
+    s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
+    recenter();
+    find_breaks(s_.faces.active, frame_, tolerance(), s_.breaks);
+    const bool smooth = s_.breaks.complete && s_.breaks.directions.empty();
+    if (!smooth || !integrate_smooth()) integrate_arcs();
+    if (is_open(options_.tolerance)) look_closer(smooth);
+    return metrics();
+  }
+
+  // The surface that was found is not closed, so part of it was overlooked, and so may be a part of
+  // the volume.
+  bool beyond() const { return is_open(std::max(options_.tolerance, outer_rule::kLeastOpen)); }
+
+  // Nothing where the window saw something: the fan stands on a place from where it does not see.
+  bool lost(const VolumeMetrics& metrics, double least_volume) const {
+    return window_.kind == LinesWindow::Kind::kOverlap && !metrics.touching() &&
+           window_.volume > kLeastSeen * least_volume;
+  }
+
+  void add_patches(std::vector<LinesRegion::PlanePatch>& patches) const {
+    volcontact::add_patches(s_.fan, s_.faces.active, frame_, patches);
+  }
+
+ private:
+  static VolumeMetrics contained(VolumeMetrics metrics) {
+    metrics.status = Status::kContained;
+    return metrics;
+  }
+
+  bool is_open(double tolerance) const {
+    return window_.kind == LinesWindow::Kind::kOverlap &&
+           open_ > tolerance * s_.fan.total().moments[0];
+  }
+
+  // Once more, with more columns in between.
+  void look_closer(bool smooth) {
+    s_.fan.look_closer();
+    s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
+    target_ *= outer_rule::kCloserTarget;
+    depth_ += outer_rule::kCloserDepth;
+    if (!smooth || !integrate_smooth() || is_open(options_.tolerance)) integrate_arcs();
+  }
+
+  bool is_flat(Owner owner) const { return !s_.faces.active.has_rounds(owner); }
+
+  // Length to which places are known.
+  double tolerance() const { return 1e-9 * (window_.spread.transpose() * frame_.t).norm(); }
+
+  // The normal of the one plane that a flat solid turns towards the other, from B to A; zero if
+  // there is none or more than one.
+  Vec3 only_plane() const {
+    for (Owner owner : {Owner::kB, Owner::kA}) {
+      if (!is_flat(owner)) continue;
+      const PlaneFace* only = nullptr;
+      int count = 0;
+      for (const PlaneFace& plane : s_.faces.active.planes) {
+        if (plane.owner != owner) continue;
+        only = &plane;
+        ++count;
+      }
+      if (count == 1) return owner == Owner::kB ? only->normal : Vec3(-only->normal);
+    }
+    return Vec3::Zero();
+  }
+
+  // Columns along the contact normal; across them, axes in which the overlap is about round.
+  void choose_frame() {
+    Vec3 t = only_plane();
+    along_normal_ = t.isZero(0.0);
+    if (along_normal_) t = -window_.area_vector;
+    if (!(t.norm() > 0.0)) t = -X_AB_.translation;
+    if (!(t.norm() > 0.0)) t = Vec3::UnitZ();
+    t.normalize();
+    frame_ = round_frame(window_.center, window_.spread, t);
+  }
+
+  // Eight ways to the rim tell its center and its shape, in which it is rounder.
+  void recenter() {
+    RimShape rim;
+    even_directions(kLanes, 0, rim.u, rim.v);
+    for (int step = 0; step < kMaxRecenterings; ++step) {
+      s_.fan.ends(s_.path, rim.u, rim.v, rim.rho, rim.height);
+      const bool aligned = !along_normal_ || align(rim);
+      const bool round = rim.longest() < kRoundRim * rim.shortest();
+      recenter(rim);
+      if (aligned && round) return;
+    }
+  }
+
+  // Turns the columns to the area vector of the rim, which is that of the faces if these meet
+  // there. Whether they were about so before.
+  bool align(const RimShape& ends) {
+    Vec3 rim[kLanes], sum = Vec3::Zero();
+    for (int i = 0; i < kLanes; ++i) {
+      rim[i] =
+          ends.rho[i] * (ends.u[i] * frame_.u + ends.v[i] * frame_.v) + ends.height[i] * frame_.t;
+    }
+    for (int i = 0; i < kLanes; ++i) sum += rim[i].cross(rim[(i + 1) % kLanes]);
+    sum.normalize();
+    const double turn = (sum - frame_.t).norm();
+    if (!(turn < kMostTurn)) return true;
+    const Mat3 turned = Eigen::Quaterniond::FromTwoVectors(frame_.t, sum).toRotationMatrix();
+    frame_.u = turned * frame_.u;
+    frame_.v = turned * frame_.v;
+    frame_.t = sum;
+    return turn < kAligned;
+  }
+
+  void recenter(const RimShape& rim) {
+    FanFrame frame = frame_;
+    double low = 0.0, high = 0.0;
+    if (rim.round_off(frame) && column(frame.center, low, high)) {
+      frame.center += 0.5 * (low + high) * frame.t;
+      frame_ = frame;
+    } else {
+      rim.go_inwards(frame_);
+    }
+    s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
+  }
+
+  // Without corners the rim is smooth and nearly round: equal steps of the angle converge fastest.
+  // False when they do not, as a corner was overlooked.
+  bool integrate_smooth() {
+    double u[kLanes], v[kLanes], weight[kLanes], section[kLanes], volume[2];
+    std::fill_n(weight, kLanes, kPi / kLanes);
+    for (int half = 0; half < 2; ++half) {
+      even_directions(2 * kLanes, half, u, v);
+      s_.fan.integrate(s_.path, u, v, weight, section);
+      s_.fan.accept_batch();
+      volume[half] = s_.fan.batch().moments[0];
+    }
+    error_ = even_error(volume[0], volume[1]);
+    measure_opening();
+    return error_ <= outer_rule::kEvenTarget * options_.tolerance * (volume[0] + volume[1]);
+  }
+
+  void integrate_arcs() {
+    s_.fan.clear();
+    error_ = 0.0;
+    volume_scale_ = window_.volume;
+    set_corners();
+    set_arcs();
+    while (!s_.arcs.empty()) integrate_arc();
+    measure_opening();
+  }
+  void measure_opening() {
+    open_ = s_.faces.active.has_bore ? 0.0 : openness(s_.fan, s_.faces.active, frame_);
+  }
+
+  // The part of the line x + height t inside of both; false when it is empty.
+  bool column(const Vec3& x, double& low, double& high) const {
+    const RayInterval in_a = a_.ray(Pose{}, x, frame_.t), in_b = b_.ray(X_AB_, x, frame_.t);
+    low = std::max(in_a.enter, in_b.enter);
+    high = std::min(in_a.leave, in_b.leave);
+    return !in_a.empty() && !in_b.empty() && low < high;
+  }
+
+  // The breaks in the order of their angle, with more between them where they are far apart.
+  void set_corners() {
+    std::vector<Vec2>& d = s_.breaks.directions;
+    std::sort(d.begin(), d.end(), [](const Vec2& a, const Vec2& b) {
+      const bool a_up = a.y() >= 0.0, b_up = b.y() >= 0.0;
+      return a_up != b_up ? a_up : a_up ? a.x() > b.x() : a.x() < b.x();
+    });
+    d.erase(std::unique(d.begin(), d.end(),
+                        [](const Vec2& a, const Vec2& b) {
+                          return (a - b).squaredNorm() < kSameCorner * kSameCorner;
+                        }),
+            d.end());
+    s_.corners.clear();
+    if (d.empty()) d.push_back(Vec2::UnitX());
+    for (std::size_t i = 0; i < d.size(); ++i) {
+      s_.corners.push_back(d[i]);
+      fill(d[i], d[i + 1 < d.size() ? i + 1 : 0], d.size() == 1);
+    }
+  }
+
+  // Directions between two corners, none inclusive, so that no angle is wide.
+  void fill(const Vec2& from, const Vec2& to, bool whole_turn) {
+    double angle = std::atan2(cross(from, to), from.dot(to));
+    if (whole_turn || angle <= 0.0) angle += 2.0 * kPi;
+    const int parts =
+        std::max(static_cast<int>(std::ceil(angle / kWidestAngle)), whole_turn ? kLeastArcs : 1);
+    for (int k = 1; k < parts; ++k) {
+      const double turn = angle * k / parts, c = std::cos(turn), s = std::sin(turn);
+      s_.corners.push_back({c * from.x() - s * from.y(), s * from.x() + c * from.y()});
+    }
+  }
+
+  // Lengthens or shortens each place to the rim.
+  void put_on_rim(std::vector<Vec2>& places) {
+    double u[kLanes], v[kLanes], rho[kLanes], height[kLanes];
+    for (std::size_t from = 0; from < places.size(); from += kLanes) {
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        const Vec2& p = places[std::min(from + i, places.size() - 1)];
+        u[i] = p.x();
+        v[i] = p.y();
+      }
+      s_.fan.ends(s_.path, u, v, rho, height);
+      for (std::size_t i = 0; i < kLanes && from + i < places.size(); ++i)
+        places[from + i] *= rho[i];
+    }
+  }
+
+  // From corner to corner, over a place half way between them.
+  void set_arcs() {
+    const std::size_t n = s_.corners.size();
+    for (std::size_t i = 0; i < n; ++i)
+      s_.corners.push_back(s_.corners[i] + s_.corners[(i + 1) % n]);
+    put_on_rim(s_.corners);
+    s_.arcs.clear();
+    for (std::size_t i = 0; i < n; ++i) {
+      s_.arcs.push_back({s_.corners[i], s_.corners[n + i], s_.corners[(i + 1) % n], 0});
+    }
+  }
+
+  // Eight half-planes over the arc. Along it, rho of the end is about 1: little is left to resolve.
+  void integrate_arc() {
+    const LinesScratch::Arc arc = s_.arcs.back();
+    s_.arcs.pop_back();
+    double u[kLanes], v[kLanes], weight[kLanes], section[kLanes];
+    for (int i = 0; i < kLanes; ++i) {
+      const double x = OuterRule::kNodes[i];
+      const Vec2 place = (1.0 - x) * (1.0 - 2.0 * x) * arc.from +
+                         4.0 * x * (1.0 - x) * arc.through + x * (2.0 * x - 1.0) * arc.to;
+      const Vec2 along =
+          (4.0 * x - 3.0) * arc.from + (4.0 - 8.0 * x) * arc.through + (4.0 * x - 1.0) * arc.to;
+      u[i] = place.x();
+      v[i] = place.y();
+      weight[i] = OuterRule::kWeights[i] * cross(place, along);
+    }
+    s_.fan.integrate(s_.path, u, v, weight, section);
+    for (int i = 0; i < kLanes; ++i) section[i] *= weight[i];
+    const double error = legendre_error(section);
+    double volume = 0.0;
+    for (double part : section) volume += part;
+    volume_scale_ = std::max(volume_scale_, volume);
+    if (error > target_ * options_.tolerance * volume_scale_ && arc.depth < depth_) {
+      divide(arc);
+      return;
+    }
+    error_ += error;
+    s_.fan.accept_batch();
+  }
+
+  void divide(const LinesScratch::Arc& arc) {
+    double u[kLanes], v[kLanes], rho[kLanes], height[kLanes];
+    const Vec2 middles[2] = {0.5 * (arc.from + arc.through), 0.5 * (arc.through + arc.to)};
+    for (int i = 0; i < kLanes; ++i) {
+      u[i] = middles[i / 4].x();
+      v[i] = middles[i / 4].y();
+    }
+    s_.fan.ends(s_.path, u, v, rho, height);
+    s_.arcs.push_back({arc.from, middles[0] * rho[0], arc.through, arc.depth + 1});
+    s_.arcs.push_back({arc.through, middles[1] * rho[4], arc.to, arc.depth + 1});
+  }
+
+  VolumeMetrics metrics() const {
+    const FanSums& sums = s_.fan.total();
+    VolumeMetrics result = moments_of(s_.fan, s_.faces.active, frame_).metrics();
+    if (!result.touching()) return result;
+    if (result.area == 0.0) {
+      const VolumeMetrics own = b_.own_metrics();
+      if (result.volume > kWhole * own.volume) return contained(transformed(own, X_AB_));
+    }
+    if (result.counter_area == 0.0) {
+      const VolumeMetrics own = a_.own_metrics();
+      if (result.volume > kWhole * own.volume) return contained(own);
+    }
+    result.depth_moment = sums.depth_moment;
+    result.depth = std::max(sums.high, s_.breaks.high) - std::min(sums.low, s_.breaks.low);
+    result.volume_error = std::max(error_, open_) + outer_rule::kInnerError * result.volume;
+    if (std::max(error_, open_) > options_.tolerance * result.volume)
+      result.status = Status::kApproximate;
+    return transformed(result, Pose{Mat3::Identity(), frame_.center});
+  }
+
+  const ConvexView& a_;
+  const ConvexView& b_;
+  const Pose& X_AB_;
+  const InterferenceOptions& options_;
+  LinesScratch& s_;
+  LinesWindow window_;
+  FanFrame frame_;
+  bool along_normal_ = false;  // the columns are to follow the normal, which is yet to be found
+  double error_ = 0.0;
+  double open_ = 0.0;  // how far the surface is from closed
+  double target_ = outer_rule::kTarget;
+  int depth_ = outer_rule::kMaxDepth;
+  double volume_scale_ = 0.0;  // least V, as known so far
+};
+
+}  // namespace
+
+bool lines_interference(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
+                        const InterferenceOptions& options, LinesScratch& scratch,
+                        Interference& out) noexcept {
+  out.sites.clear();
+  out.total = VolumeMetrics{};
+  if (!X_AB.is_finite()) {
+    out.total.status = Status::kInvalid;
+    return true;
+  }
+  const double volume_a = a.own_metrics().volume, volume_b = b.own_metrics().volume;
+  if (std::isinf(volume_a) && std::isinf(volume_b)) {
+    out.total.status = Status::kUnbounded;
+    return true;
+  }
+  if (!(volume_a > 0.0) || !(volume_b > 0.0)) return true;
+  LinesRun run(a, b, X_AB, options, scratch);
+  out.total = run.run(false);
+  if (run.lost(out.total, std::min(volume_a, volume_b))) return false;
+  if (run.beyond()) {
+    out.total = VolumeMetrics{};
+    return false;
+  }
+  if (out.total.touching()) out.sites.push_back(out.total);
+  return true;
+}
+
+bool add_lines_region(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
+                      const InterferenceOptions& options, LinesScratch& scratch,
+                      LinesRegions& regions) noexcept {
+  LinesRun run(a, b, X_AB, options, scratch);
+  const VolumeMetrics metrics = run.run(true);
+  if (run.beyond()) return false;
+  if (!metrics.touching()) {
+    return !run.lost(metrics, std::min(a.own_metrics().volume, b.own_metrics().volume));
+  }
+  LinesRegion& region = regions.add();
+  region.metrics = metrics;
+  run.add_patches(region.patches);
+  return true;
+}
+
+}  // namespace volcontact

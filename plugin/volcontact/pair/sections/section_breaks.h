@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "volcontact/pair/sections/section.h"
+
+namespace volcontact {
+
+/// Where a half-plane that turns about the axis of a fan meets something new.
+struct FanBreaks {
+  std::vector<Eigen::Vector2d>
+      directions;    ///< (u, v) in the frame of the fan, unit length, any order
+  bool complete;     ///< false when there are too many faces to look for all
+  double low, high;  ///< least and greatest height of all places found
+
+  void clear();
+};
+
+/// Finds the directions in which the section of a half-plane with the overlap changes its make-up:
+/// at corners, where three faces meet, and where the half-plane touches an edge from the side.
+/// Between them the section is a smooth function of the direction. An edge between two round faces
+/// of different solids is not searched for touches. Also notes the places of least and greatest
+/// height on faces and on edges with a plane face.
+void find_breaks(const FaceSet& faces, const FanFrame& frame, double tolerance, FanBreaks& breaks);
+
+}  // namespace volcontact

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "volcontact/metrics/volume_metrics.h"
+#include "volcontact/pair/sections/section.h"
+#include "volcontact/pair/sections/section_region.h"
+
+namespace volcontact {
+
+/// The sums of a fan in A's axes, about the center of its frame. The area vector is taken from the
+/// solid whose faces give it best: plane ones and the wall of a bore.
+MomentSum moments_of(const Fan& fan, const FaceSet& faces, const FanFrame& frame);
+
+/// Flux of 1, x and y through the surface of an overlap, along two axes e and f across the columns.
+/// By the theorem of Gauss int n dS vanishes and int x_i n_j dS is V or nothing. Columns see to
+/// that only along themselves; across them the normals come from the gradients of the faces. So the
+/// surface is closed only where no change of face was overlooked, in a half-plane or between two.
+class SurfaceFlux {
+ public:
+  using Axes = Eigen::Matrix<double, 3, 2>;
+  explicit SurfaceFlux(const Axes& axes) : axes_(axes) {}
+
+  /// `sums`: of 1, x and y over the face.
+  void add_plane(const Vec3& normal, const double* sums) {
+    flux_ += Vec3(sums[0], sums[1], sums[2]) * (normal.transpose() * axes_);
+  }
+  void add_round(const FanRound& round, const double* sums);
+  void add(const Axes& flux) { flux_ += flux; }  ///< rows: of 1, x, y; columns: along e, f
+
+  /// How far from closed the surface is, as an error of V, which is `volume`. Seen from `middle`,
+  /// of an overlap about `size` long in x and y.
+  double open(double volume, const Eigen::Vector2d& middle = Eigen::Vector2d::Zero(),
+              double size = 1.0) const;
+
+ private:
+  Axes axes_, flux_ = Axes::Zero();
+};
+
+/// The same of a fan without a bore.
+double openness(const Fan& fan, const FaceSet& faces, const FanFrame& frame);
+
+/// Which share of the push on the owner of a bore comes from its wall, from 0 to 1.
+double share_of_bore(const Fan& fan, const FaceSet& faces, const FanFrame& frame);
+
+/// The parts of the surface that lie in plane faces, in A's frame.
+void add_patches(const Fan& fan, const FaceSet& faces, const FanFrame& frame,
+                 std::vector<LinesRegion::PlanePatch>& patches);
+
+}  // namespace volcontact

@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/sections/torus/torus_sections.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volcontact/pair/quadrature/even_steps.h"
+#include "volcontact/pair/quadrature/outer_rule.h"
+#include "volcontact/pair/sections/even_turn.h"
+#include "volcontact/pair/sections/section_metrics.h"
+#include "volcontact/pair/sections/torus/torus_breaks.h"
+
+namespace volcontact {
+namespace {
+
+constexpr double kAxial = 1e-2;         // of directions, and of R: a face that holds the axis
+constexpr double kLostFace = 1e-5;      // of the area: a face that the sums have missed
+constexpr double kWidestAngle = 1.6;    // of an undivided arc [rad]
+constexpr double kSameAngle = 1e-11;    // [rad]
+constexpr double kNearRangeEnd = 3e-4;  // of a range: to which its ends are known at least
+constexpr double kOnAxis = 1e-8;        // of a plane from the axis, per radius
+constexpr double kEndError = 5.0;       // error by its estimate where an arc ends in nothing
+constexpr double kTarget = 1e-2;  // share of the tolerance asked of an arc: kinks may be hidden
+// Where two silhouettes come near each other the normals in the check of the surface converge far
+// less fast than V: on a closer look a gap this many times as large is another one's error.
+constexpr double kGapShare = 0.1;
+constexpr double kWhole = 0.999;  // share of a solid in the overlap, that is all of it
+
+class RingRun {
+ public:
+  RingRun(const Torus& torus, const ConvexView& body, const Pose& X,
+          const InterferenceOptions& options, RingScratch& scratch, LinesRegions& regions,
+          RingSurface surface)
+      : torus_(torus),
+        body_(body),
+        X_(X),
+        options_(options),
+        s_(scratch),
+        regions_(regions),
+        surface_(surface) {}
+
+  bool run() {
+    set_faces();
+    set_fan();
+    find_ring_sites(body_, X_, s_.path, s_.fan, s_.sites);
+    if (s_.sites.ranges.empty()) return true;
+    find_ring_breaks(s_.faces, torus_.major_radius(), torus_.minor_radius(), s_.breaks);
+    for (const RingRange& range : s_.sites.ranges) {
+      integrate(range);
+      if (is_open(std::max(options_.tolerance, outer_rule::kLeastOpen))) return false;
+      add_region();
+    }
+    return true;
+  }
+
+ private:
+  // The planes that the torus reaches, and the round faces.
+  void set_faces() {
+    s_.faces.clear();
+    FaceWriter writer(s_.faces, X_, Owner::kB);
+    body_.write_faces(writer);
+    std::erase_if(s_.faces.planes, [&](const PlaneFace& plane) {
+      return torus_.support_height(plane.normal) <= plane.offset;
+    });
+    // A plane that holds the axis is seen edge on: it is moved a little.
+    const double least = kOnAxis * torus_.major_radius();
+    for (PlaneFace& plane : s_.faces.planes) {
+      if (std::abs(plane.normal.z()) < kOnAxis && std::abs(plane.offset) < least) {
+        plane.offset = least;
+      }
+    }
+  }
+
+  struct Arc {
+    double from, to;
+    bool begins, ends;  // with a section of no size; not both
+
+    // The angle at x in [0, 1] and its derivative: a section that grows from nothing like a power
+    // of the angle is smooth in x.
+    void at(double x, double& angle, double& speed) const {
+      const double width = to - from;
+      if (begins) {
+        angle = from + width * x * x;
+        speed = 2.0 * width * x;
+      } else if (ends) {
+        angle = to - width * (1.0 - x) * (1.0 - x);
+        speed = 2.0 * width * (1.0 - x);
+      } else {
+        angle = from + width * x;
+        speed = width;
+      }
+    }
+  };
+
+  // The breaks within a range, in order, with its ends. A whole turn begins at a break. A break
+  // near an end is the end, known better: a plane across the tube ends a section at once.
+  void set_corners(RingRange& range) {
+    corners_.clear();
+    if (range.whole && !s_.breaks.empty()) {
+      range.low = s_.breaks[0];
+      range.high = range.low + 2.0 * kPi;
+    }
+    const double near_end = kNearRangeEnd * (range.high - range.low);
+    for (double angle : s_.breaks) {
+      const double turned =
+          angle - 2.0 * kPi * std::floor((angle - range.low + kSameAngle) / (2.0 * kPi));
+      if (turned < range.high + kSameAngle) corners_.push_back(turned);
+    }
+    std::sort(corners_.begin(), corners_.end());
+    if (corners_.empty() || range.whole || corners_.front() > range.low + near_end) {
+      corners_.insert(corners_.begin(), range.low);
+    }
+    if (range.whole || corners_.back() < range.high - near_end) corners_.push_back(range.high);
+    corners_.erase(std::unique(corners_.begin(), corners_.end(),
+                               [](double a, double b) { return b - a < kSameAngle; }),
+                   corners_.end());
+    range.low = corners_.front();
+    range.high = corners_.back();
+  }
+
+  void set_fan() {
+    s_.fan.choose_rule(options_.tolerance);
+    if (closer_) s_.fan.look_closer();
+    s_.fan.set(s_.faces, torus_.major_radius(), torus_.minor_radius());
+  }
+
+  void integrate(RingRange range) {
+    if (closer_) {
+      closer_ = false;
+      set_fan();
+    }
+    set_corners(range);
+    integrate_corners(range);
+    if (!is_open(options_.tolerance)) return;
+    const double volume = s_.fan.total().moments[0];
+    closer_ = true;
+    set_fan();
+    integrate_corners(range);
+    open_ = std::max(kGapShare * open_, std::abs(s_.fan.total().moments[0] - volume));
+  }
+
+  bool is_open(double tolerance) const { return open_ > tolerance * s_.fan.total().moments[0]; }
+  double target() const {
+    return (closer_ ? outer_rule::kCloserTarget : 1.0) * kTarget * options_.tolerance;
+  }
+  int depth() const { return outer_rule::kMaxDepth + (closer_ ? outer_rule::kCloserDepth : 0); }
+
+  void integrate_corners(const RingRange& range) {
+    s_.fan.clear();
+    error_ = volume_scale_ = 0.0;
+    const bool done =
+        range.whole
+            ? s_.breaks.empty() && integrate_even_turn(s_.fan, s_.path, options_.tolerance, error_)
+            : corners_.size() == 2 && whole_range(range);
+    for (std::size_t i = 0; i + 1 < corners_.size() && !done; ++i) {
+      const double from = corners_[i], to = corners_[i + 1];
+      const bool begins = !range.whole && i == 0, ends = !range.whole && i + 2 == corners_.size();
+      const int parts =
+          std::max(begins && ends ? 2 : 1, static_cast<int>(std::ceil((to - from) / kWidestAngle)));
+      for (int k = 0; k < parts; ++k) {
+        const Arc arc{from + (to - from) * k / parts, from + (to - from) * (k + 1) / parts,
+                      begins && k == 0, ends && k + 1 == parts};
+        integrate_arc(arc, 0.0, 1.0, 0);
+      }
+    }
+    open_ = openness();
+  }
+
+  // How far from closed the surface is, see SurfaceFlux. A face through the axis is not in the
+  // sums.
+  double openness() const {
+    if (has_axial_plane()) return 0.0;
+    const RingSums& sums = s_.fan.total();
+    const FanFaces& fan = s_.fan.faces().fan;
+    const double* m = sums.across_rho;
+    SurfaceFlux::Axes axes, of_torus;
+    axes << Vec3::UnitX(), Vec3::UnitY();
+    of_torus << sums.vector[0], sums.vector[1], m[0], m[1], m[1], m[2];
+    SurfaceFlux flux(axes);
+    flux.add(of_torus);
+    for (int i = 0; i < fan.active_planes; ++i) {
+      flux.add_plane(s_.faces.planes[s_.fan.plane_face(i)].normal, sums.planes[i].sums);
+    }
+    for (int i = 0; i + 1 < fan.round_count; ++i) {
+      flux.add_round(fan.rounds[i], sums.rounds[i].sums);
+    }
+    const double* v = sums.moments;
+    if (!(v[0] > 0.0)) return 0.0;
+    const Vec3 middle = Vec3(v[1], v[2], v[3]) / v[0];
+    const double spread = (v[4] + v[6] + v[9]) / v[0] - middle.squaredNorm();
+    return flux.open(v[0], middle.head<2>(), std::sqrt(std::max(spread, 0.0)));
+  }
+
+  // A range without breaks. At its ends sections mostly grow like an odd power of the root of the
+  // angle: then the integrand, as a function of theta, angle = middle - half cos theta, is even and
+  // periodic, and equal steps converge fastest. False when they do not.
+  bool whole_range(const RingRange& range) {
+    double u[kLanes], v[kLanes], weight[kLanes], section[kLanes];
+    const double half = 0.5 * (range.high - range.low), middle = range.low + half;
+    const EvenSteps& steps = even_steps();
+    for (int i = 0; i < kLanes; ++i) {
+      const double angle = middle - half * steps.cos[1][i];
+      u[i] = std::cos(angle);
+      v[i] = std::sin(angle);
+      weight[i] = half * kPi / kLanes * steps.sin[i];
+    }
+    s_.fan.integrate(s_.path, u, v, weight, section);
+    for (int i = 0; i < kLanes; ++i) section[i] *= weight[i];
+    double volume;
+    error_ = steps.error(section, volume);
+    volume_scale_ = volume;
+    if (error_ > outer_rule::kTarget * options_.tolerance * volume || closer_) {
+      error_ = 0.0;
+      return false;
+    }
+    s_.fan.accept_batch();
+    return true;
+  }
+
+  void integrate_arc(const Arc& arc, double x_from, double x_to, int divisions) {
+    double u[kLanes], v[kLanes], weight[kLanes], section[kLanes];
+    for (int i = 0; i < kLanes; ++i) {
+      double angle, speed;
+      arc.at(x_from + (x_to - x_from) * OuterRule::kNodes[i], angle, speed);
+      u[i] = std::cos(angle);
+      v[i] = std::sin(angle);
+      weight[i] = OuterRule::kWeights[i] * speed * (x_to - x_from);
+    }
+    s_.fan.integrate(s_.path, u, v, weight, section);
+    double volume = 0.0;
+    for (int i = 0; i < kLanes; ++i) volume += section[i] *= weight[i];
+    const double error = (arc.begins || arc.ends ? kEndError : 1.0) * legendre_error(section);
+    volume_scale_ = std::max(volume_scale_, volume);
+    if (error > target() * volume_scale_ && divisions < depth()) {
+      const double middle = 0.5 * (x_from + x_to);
+      integrate_arc(arc, x_from, middle, divisions + 1);
+      integrate_arc(arc, middle, x_to, divisions + 1);
+      return;
+    }
+    error_ += error;
+    s_.fan.accept_batch();
+  }
+
+  void add_region() {
+    const RingSums& sums = s_.fan.total();
+    const double* m = sums.moments;
+    MomentSum sum;
+    sum.volume = m[0];
+    sum.first = Vec3(m[1], m[2], m[3]);
+    sum.second << m[4], m[5], m[7], m[5], m[6], m[8], m[7], m[8], m[9];
+    set_surface(sum);
+    VolumeMetrics metrics = sum.metrics();
+    if (!metrics.touching()) return;
+    const double error = std::max(error_, open_);
+    metrics.volume_error = error + outer_rule::kInnerError * metrics.volume;
+    if (error > options_.tolerance * metrics.volume) metrics.status = Status::kApproximate;
+    set_depth(metrics);
+    settle_contained(metrics);
+    LinesRegion& region = regions_.add();
+    region.metrics = metrics;
+    add_patches(region.patches);
+  }
+
+  bool by_planes() const { return s_.faces.rounds.empty() && surface_ == RingSurface::kBest; }
+
+  // From the planes of a body that has nothing else, else from the torus.
+  void set_surface(MomentSum& sum) const {
+    const RingSums& sums = s_.fan.total();
+    const FanFaces& fan = s_.fan.faces().fan;
+    sum.area = sums.area;
+    const bool flat = by_planes();
+    for (int i = 0; i < fan.active_planes; ++i) {
+      const double* x = sums.planes[i].sums;
+      sum.counter_area += x[0];
+      if (!flat) continue;
+      const Vec3& n = s_.faces.planes[s_.fan.plane_face(i)].normal;
+      sum.area_vector -= x[0] * n;
+      sum.area_moment -= Vec3(x[1], x[2], x[3]).cross(n);
+    }
+    for (int i = 0; i + 1 < fan.round_count; ++i) sum.counter_area += sums.rounds[i].area;
+    const Vec3 of_torus(sums.vector[0], sums.vector[1], sums.vector[2]);
+    if (flat) {
+      // A face through the axis lies in one half-plane, of which the sums see nothing.
+      const double lost = (of_torus - sum.area_vector).norm();
+      if (!has_axial_plane() || lost < kLostFace * sum.area) return;
+      sum.counter_area += lost;
+    }
+    sum.area_vector = of_torus;
+    sum.area_moment = Vec3(sums.moment[0], sums.moment[1], 0.0);
+  }
+
+  bool has_axial_plane() const {
+    for (const PlaneFace& plane : s_.faces.planes) {
+      if (std::abs(plane.normal.z()) < kAxial &&
+          std::abs(plane.offset) < kAxial * torus_.major_radius()) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // Depth under the planes of a flat body, in proportion to the squares of their area vectors; in
+  // other bodies that under the surface of the tube, (r^2 - t^2) / 2 r.
+  void set_depth(VolumeMetrics& metrics) const {
+    const RingSums& sums = s_.fan.total();
+    const double R = torus_.major_radius(), r = torus_.minor_radius();
+    const double* m = sums.moments;
+    metrics.depth = r - std::sqrt(std::max(0.0, sums.least_inside));
+    metrics.depth_moment =
+        ((r * r - R * R) * m[0] + 2.0 * R * sums.radial - m[4] - m[6] - m[9]) / (2.0 * r);
+    if (!by_planes()) return;
+    double weight = 0.0, moment = 0.0, depth = 0.0;
+    const FanFaces& fan = s_.fan.faces().fan;
+    for (int i = 0; i < fan.active_planes; ++i) {
+      const PlaneFace& plane = s_.faces.planes[s_.fan.plane_face(i)];
+      const double area = sums.planes[i].sums[0];
+      weight += area * area;
+      moment += area * area * (plane.offset - plane.normal.dot(metrics.centroid)) * metrics.volume;
+      depth += area * area * (plane.offset + torus_.support_height(-plane.normal));
+    }
+    if (!(weight > 0.0)) return;
+    metrics.depth_moment = moment / weight;
+    metrics.depth = depth / weight;
+  }
+
+  void settle_contained(VolumeMetrics& metrics) const {
+    if (metrics.area == 0.0) {
+      const VolumeMetrics own = body_.own_metrics();
+      if (metrics.volume > kWhole * own.volume) {
+        metrics = transformed(own, X_);
+        metrics.status = Status::kContained;
+      }
+    } else if (metrics.counter_area == 0.0) {
+      const VolumeMetrics own = torus_.own_metrics();
+      if (metrics.volume > kWhole * own.volume) {
+        metrics = own;
+        metrics.status = Status::kContained;
+      }
+    }
+  }
+
+  void add_patches(std::vector<LinesRegion::PlanePatch>& patches) const {
+    const FanFaces& fan = s_.fan.faces().fan;
+    for (int i = 0; i < fan.active_planes; ++i) {
+      const PlaneFace& plane = s_.faces.planes[s_.fan.plane_face(i)];
+      const double* x = s_.fan.total().planes[i].sums;
+      if (!(x[0] > 0.0)) continue;
+      patches.push_back(
+          {plane.owner, plane.normal, plane.offset, x[0], Vec3(x[1], x[2], x[3]) / x[0]});
+    }
+  }
+
+  const Torus& torus_;
+  const ConvexView& body_;
+  const Pose& X_;
+  const InterferenceOptions& options_;
+  RingScratch& s_;
+  LinesRegions& regions_;
+  RingSurface surface_;
+  std::vector<double>& corners_ = s_.corners;
+  double error_ = 0.0, volume_scale_ = 0.0;
+  double open_ = 0.0;    // how far the surface is from closed
+  bool closer_ = false;  // more columns, since with fewer it was not
+};
+
+}  // namespace
+
+bool add_ring_regions(const Torus& torus, const ConvexView& body, const Pose& X,
+                      const InterferenceOptions& options, RingScratch& scratch,
+                      LinesRegions& regions, RingSurface surface) noexcept {
+  return RingRun(torus, body, X, options, scratch, regions, surface).run();
+}
+
+bool ring_interference(const Torus& torus, const ConvexView& body, const Pose& X_AB,
+                       const InterferenceOptions& options, RingScratch& scratch,
+                       LinesRegions& regions, Interference& out) noexcept {
+  out.sites.clear();
+  out.total = VolumeMetrics{};
+  if (!(torus.own_metrics().volume > 0.0) || !(body.own_metrics().volume > 0.0)) return true;
+  regions.cut(0);
+  if (!add_ring_regions(torus, body, X_AB, options, scratch, regions)) return false;
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    const VolumeMetrics& site = regions[i].metrics;
+    out.total = i == 0 ? site : out.total + site;
+    out.sites.push_back(site);
+  }
+  return true;
+}
+
+}  // namespace volcontact

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/sections/torus/torus_sites.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volcontact/pair/convex/gjk.h"
+
+namespace volcontact {
+namespace {
+
+constexpr int kMaxBalls = 96;            // tried at most
+constexpr double kShortArc = kPi / 6.0;  // one with a ball that meets the body is not divided [rad]
+constexpr double kNothing = 1e-9;        // an arc this short holds nothing [rad]
+constexpr double kSampleStep = kPi / 24.0;  // between half-planes, at most [rad]
+constexpr int kLeastSamples = 8;            // of an arc
+constexpr int kEndRounds = 9;               // each of them narrows an end to a fifth
+constexpr double kEndWidth = 1e-4;          // to which an end is known, of the range
+
+class SiteSearch {
+ public:
+  SiteSearch(const ConvexView& body, const Pose& X, SimdPath path, RingFan& fan, RingSites& sites)
+      : body_(body),
+        X_(X),
+        path_(path),
+        fan_(fan),
+        s_(sites),
+        major_(fan.faces().major),
+        minor_(fan.faces().minor) {}
+
+  void run() {
+    s_.ranges.clear();
+    s_.doubtful.clear();
+    s_.samples.clear();
+    part_by_planes();
+    if (s_.doubtful.empty()) return;
+    add_samples();
+    read_samples();
+  }
+
+ private:
+  using Arc = RingSites::Arc;
+  using Sample = RingSites::Sample;
+
+  static double turned_near(double angle, double to) {
+    return angle - 2.0 * kPi * std::floor((angle - to) / (2.0 * kPi) + 0.5);
+  }
+
+  // Leaves the arcs that no plane parts from the body in `doubtful`, and half-planes that meet it
+  // in `samples`.
+  void part_by_planes() {
+    const Vec3 middle = body_.middle(X_);
+    start_ = std::atan2(middle.y(), middle.x());
+    s_.arcs.clear();
+    s_.arcs.push_back({start_ - kPi, start_ + kPi});
+    for (int balls = 0; !s_.arcs.empty(); ++balls) {
+      const Arc arc = s_.arcs.back();
+      s_.arcs.pop_back();
+      if (!(arc.high - arc.low > kNothing)) continue;
+      if (balls >= kMaxBalls) {
+        s_.doubtful.push_back(arc);
+        continue;
+      }
+      divide(arc);
+    }
+  }
+
+  void divide(const Arc& arc) {
+    const double angle = 0.5 * (arc.low + arc.high);
+    const Vec3 center(major_ * std::cos(angle), major_ * std::sin(angle), 0.0);
+    const BallGap gap = ball_gap(body_, X_, center, minor_);
+    if (gap.apart) {
+      const double across = major_ * std::hypot(gap.normal.x(), gap.normal.y());
+      const double share = (gap.offset + minor_) / across;
+      if (share <= -1.0) return s_.arcs.clear(), s_.doubtful.clear();
+      const double middle = turned_near(std::atan2(gap.normal.y(), gap.normal.x()), angle);
+      const double half = share < 1.0 ? std::acos(share) : 0.0;
+      const double low = std::min(middle - half, angle), high = std::max(middle + half, angle);
+      if (low > arc.low) s_.arcs.push_back({arc.low, low});
+      if (high < arc.high) s_.arcs.push_back({high, arc.high});
+      return;
+    }
+    const Vec3& q = gap.place;
+    if (q.x() != 0.0 || q.y() != 0.0) {
+      s_.samples.push_back({turned_near(std::atan2(q.y(), q.x()), start_), 0.0});
+    }
+    if (arc.high - arc.low > kShortArc) {
+      s_.arcs.push_back({arc.low, angle});
+      s_.arcs.push_back({angle, arc.high});
+    } else {
+      s_.doubtful.push_back(arc);
+    }
+  }
+
+  // The doubtful arcs joined where they touch, and half-planes all over them.
+  void add_samples() {
+    std::vector<Arc>& arcs = s_.doubtful;
+    std::sort(arcs.begin(), arcs.end(), [](const Arc& a, const Arc& b) { return a.low < b.low; });
+    std::size_t kept = 0;
+    for (std::size_t i = 1; i < arcs.size(); ++i) {
+      if (arcs[i].low <= arcs[kept].high + kNothing) {
+        arcs[kept].high = std::max(arcs[kept].high, arcs[i].high);
+      } else {
+        arcs[++kept] = arcs[i];
+      }
+    }
+    arcs.resize(kept + 1);
+    for (const Arc& arc : arcs) {
+      const double width = arc.high - arc.low;
+      const int parts = std::max(kLeastSamples, static_cast<int>(std::ceil(width / kSampleStep)));
+      for (int i = 0; i <= parts; ++i) {
+        s_.samples.push_back({arc.low + width * i / parts, 0.0});
+      }
+    }
+    for (Sample& sample : s_.samples) {
+      if (sample.angle < start_ - kPi) sample.angle += 2.0 * kPi;
+      if (sample.angle >= start_ + kPi) sample.angle -= 2.0 * kPi;
+    }
+    std::sort(s_.samples.begin(), s_.samples.end(),
+              [](const Sample& a, const Sample& b) { return a.angle < b.angle; });
+    s_.samples.erase(
+        std::unique(s_.samples.begin(), s_.samples.end(),
+                    [](const Sample& a, const Sample& b) { return b.angle - a.angle < kNothing; }),
+        s_.samples.end());
+    for (std::size_t from = 0; from < s_.samples.size(); from += kLanes) {
+      double angle[kLanes], length[kLanes];
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        angle[i] = s_.samples[std::min(from + i, s_.samples.size() - 1)].angle;
+      }
+      probe(angle, length);
+      for (std::size_t i = 0; i < kLanes && from + i < s_.samples.size(); ++i) {
+        s_.samples[from + i].length = length[i];
+      }
+    }
+  }
+
+  void probe(const double* angle, double* length) {
+    double cos[kLanes], sin[kLanes];
+    for (int i = 0; i < kLanes; ++i) {
+      cos[i] = std::cos(angle[i]);
+      sin[i] = std::sin(angle[i]);
+    }
+    fan_.probe(path_, cos, sin, length);
+  }
+
+  // Whether an arc that a plane parts from the body lies between two angles next to each other.
+  bool parted(double from, double to) const {
+    const double middle = 0.5 * (from + to);
+    for (const Arc& arc : s_.doubtful) {
+      if (turned_near(middle, 0.5 * (arc.low + arc.high)) >= arc.low - kNothing &&
+          turned_near(middle, 0.5 * (arc.low + arc.high)) <= arc.high + kNothing) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  void read_samples() {
+    const std::vector<Sample>& all = s_.samples;
+    const std::size_t n = all.size();
+    const auto next = [&](std::size_t i) {
+      return i + 1 < n ? all[i + 1].angle : all[0].angle + 2.0 * kPi;
+    };
+    const auto goes_on = [&](std::size_t i) {  // from a full place to the next one
+      return all[(i + 1) % n].length > 0.0 && !parted(all[i].angle, next(i));
+    };
+    std::size_t first = n;  // a full one after a gap
+    bool any = false;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!(all[i].length > 0.0)) continue;
+      any = true;
+      const std::size_t before = (i + n - 1) % n;
+      if (!(all[before].length > 0.0) || !goes_on(before)) first = i;
+    }
+    if (!any) return;
+    if (first == n) {
+      s_.ranges.push_back({start_ - kPi, start_ + kPi, true});
+      return;
+    }
+    for (std::size_t k = 0; k < n;) {
+      const std::size_t from = first + k;
+      if (!(all[from % n].length > 0.0)) {
+        ++k;
+        continue;
+      }
+      std::size_t to = from;
+      while (to + 1 < first + n && goes_on(to % n)) ++to;
+      add_range(from, to);
+      k = to + 1 - first;
+    }
+  }
+
+  double angle_at(std::size_t i) const {
+    const std::size_t n = s_.samples.size();
+    return s_.samples[i % n].angle + 2.0 * kPi * static_cast<double>(i / n);
+  }
+
+  // From the samples number `from` to `to`, which are full, to the empty ones beside them.
+  void add_range(std::size_t from, std::size_t to) {
+    const std::size_t n = s_.samples.size();
+    double full[2] = {angle_at(from), angle_at(to)};
+    double empty[2] = {angle_at(from + n - 1) - 2.0 * kPi, angle_at(to + 1)};
+    for (int round = 0; round < kEndRounds; ++round) {
+      const double width = kEndWidth * (full[1] - full[0]);
+      if (full[0] - empty[0] <= width && empty[1] - full[1] <= width) break;
+      constexpr int kParts = kLanes / 2 + 1;
+      double angle[kLanes], length[kLanes], cos[kLanes], sin[kLanes];
+      for (int end = 0; end < 2; ++end) {
+        const double step = (empty[end] - full[end]) / kParts;
+        const double c = std::cos(step), s = std::sin(step);
+        double u = std::cos(full[end]), v = std::sin(full[end]);
+        for (int i = 1; i < kParts; ++i) {
+          const int lane = end * (kParts - 1) + i - 1;
+          const double turned = c * u - s * v;
+          v = s * u + c * v;
+          u = turned;
+          angle[lane] = full[end] + i * step;
+          cos[lane] = u;
+          sin[lane] = v;
+        }
+      }
+      fan_.probe(path_, cos, sin, length);
+      for (int end = 0; end < 2; ++end) {
+        const double from_empty = empty[end];
+        for (int i = 1; i < kParts; ++i) {
+          const int lane = end * (kParts - 1) + i - 1;
+          if (!(length[lane] > 0.0)) {
+            empty[end] = angle[lane];
+            break;
+          }
+          full[end] = angle[lane];
+          empty[end] = i + 1 < kParts ? angle[lane + 1] : from_empty;
+        }
+      }
+    }
+    s_.ranges.push_back({empty[0], empty[1], false});
+  }
+
+  const ConvexView& body_;
+  const Pose& X_;
+  SimdPath path_;
+  RingFan& fan_;
+  RingSites& s_;
+  double major_, minor_;
+  double start_ = 0.0;
+};
+
+}  // namespace
+
+void find_ring_sites(const ConvexView& body, const Pose& X, SimdPath path, RingFan& fan,
+                     RingSites& sites) {
+  SiteSearch(body, X, path, fan, sites).run();
+}
+
+}  // namespace volcontact

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "volcontact/pair/overlap.h"
+#include "volcontact/pair/surface_sweep/sweep_patch.h"
+#include "volcontact/pair/window/overlap_window.h"
+#include "volcontact/shape/shapes.h"
+
+namespace volcontact {
+
+/// Memory of the search, reused from call to call; no value depends on what it holds.
+struct ShellScratch {
+  CutPolytope hull, part;
+  ShellSolids solids;
+  std::vector<ShellFamily> families;
+  std::vector<int> family_of;  ///< by face; -1 for none
+  std::vector<ShellPatch> patches;
+  ShellPatchScratch patch;
+  ShellSurface surface;
+  struct Region {
+    ShellFlux flux[2];  ///< through the surface of A, of B
+    double error = 0.0;
+    int root = -1;
+    int into = -1;  ///< the region it is counted with
+  };
+  std::vector<Region> regions;
+};
+
+/// Interference of any two solids made of simple ones, from the surface of their overlap: metrics
+/// in A's frame and about A's origin. False where it finds no overlap, or not all of its surface,
+/// or where a solid is a mesh or a signed distance. docs/theory.md, "Shells".
+bool shell_interference(const Shape& a, const Shape& b, const Pose& X_AB,
+                        const InterferenceOptions& options, ShellScratch& scratch,
+                        Interference& out) noexcept;
+
+}  // namespace volcontact

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/surface_sweep/sweep_solid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace volcontact {
+namespace {
+
+using Kind = ShellFace::Kind;
+
+constexpr double kSameSurface = 1e-11;  // of directions, and of places per size of the box
+
+Kind kind_of(const RoundFace& round) {
+  if (round.cone) return Kind::kCone;
+  return round.map.row(2).isZero(0.0) ? Kind::kTube : Kind::kBall;
+}
+
+enum class Where { kWithin, kBeyond, kThrough };
+
+// Where a box about the origin lies, of a torus: from the distance of its middle.
+Where place_of_torus(const ShellFace& face, const Vec3& half) {
+  const Vec3 d = -face.round.center;
+  const double z = face.normal.dot(d), rho = (d - z * face.normal).norm();
+  const double distance = std::hypot(rho - face.major, z) - face.minor, reach = half.norm();
+  return distance > reach ? Where::kBeyond : distance < -reach ? Where::kWithin : Where::kThrough;
+}
+
+// The same of the convex inside of a face: a box is within when its corners are, and beyond when a
+// tangent plane says so.
+Where place_of(const ShellFace& face, const Vec3& half) {
+  if (face.kind == Kind::kTorus) return place_of_torus(face, half);
+  double most = -kInfinity, least = kInfinity;
+  if (face.kind == Kind::kPlane) {
+    const double reach = face.normal.cwiseAbs().dot(half);
+    most = reach - face.offset;
+    least = -reach - face.offset;
+  } else {
+    const Vec3 middle = face.round.map * -face.round.center;
+    Vec3 out(middle.x(), middle.y(), face.kind == Kind::kBall ? middle.z() : 0.0);
+    const double length = out.norm();
+    out = length > 0.0 ? Vec3(out / length) : Vec3::Zero();
+    const bool cone = face.kind == Kind::kCone;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 y = face.round.map * (half.cwiseProduct(corner_signs(i)) - face.round.center);
+      const double level = cone ? y.z() : 1.0;
+      const double across = face.kind == Kind::kBall ? y.norm() : std::hypot(y.x(), y.y());
+      most = std::max(most, across - level);
+      least = std::min(least, out.dot(y) - level);
+    }
+  }
+  return most < 0.0 ? Where::kWithin : least > 0.0 ? Where::kBeyond : Where::kThrough;
+}
+
+}  // namespace
+
+double ShellFace::value(const Vec3& x) const {
+  if (kind == Kind::kPlane) return normal.dot(x) - offset;
+  if (kind != Kind::kTorus) return round(x);
+  const Vec3 d = x - round.center;
+  const double z = normal.dot(d), rho = (d - z * normal).norm();
+  return (rho - major) * (rho - major) + (z - minor) * (z + minor);
+}
+
+bool ShellSolids::read(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
+                       const Vec3& box) {
+  faces.clear();
+  parts.clear();
+  half = box;
+  for (auto& steps : steps_) steps.clear();
+  if (!read_solid(a, X_WA, Owner::kA) || !read_solid(b, X_WB, Owner::kB)) return false;
+  prune();
+  for (const Owner owner : {Owner::kA, Owner::kB}) fill_table(owner);
+  find_twins();
+  return true;
+}
+
+bool ShellSolids::read_solid(const Shape& shape, const Pose& X_WS, Owner owner) {
+  std::vector<Step>& steps = steps_[index(owner)];
+  return std::visit(
+      [&](const auto& solid) {
+        using S = std::decay_t<decltype(solid)>;
+        if constexpr (std::is_same_v<S, Csg>) {
+          for (const Csg::Step& step : solid.steps()) {
+            if (step.member >= 0) {
+              const Csg::Member& member = solid.members()[step.member];
+              if (!read_member(member.shape, X_WS * member.X_SM, owner)) return false;
+              continue;
+            }
+            const bool meet = step.operation == Csg::Operation::kIntersection;
+            const bool join = step.operation == Csg::Operation::kUnion;
+            steps.push_back({join   ? Join::kUnion
+                             : meet ? Join::kIntersection
+                                    : Join::kDifference,
+                             0});
+          }
+          return true;
+        } else if constexpr (HasFaces<S> || std::is_same_v<S, Torus>) {
+          const std::size_t before = parts.size();
+          add_parts(solid, X_WS, owner);
+          if (parts.size() > kMostParts) return false;
+          std::uint64_t mask = 0;
+          for (std::size_t i = before; i < parts.size(); ++i) mask |= std::uint64_t{1} << i;
+          steps.push_back({Join::kLeaf, mask});
+          return true;
+        } else {
+          return false;
+        }
+      },
+      shape);
+}
+
+bool ShellSolids::read_member(const SimpleShape& shape, const Pose& X_WM, Owner owner) {
+  const std::size_t before = parts.size();
+  std::visit([&](const auto& solid) { add_parts(solid, X_WM, owner); }, shape);
+  if (parts.size() > kMostParts) return false;
+  std::uint64_t mask = 0;
+  for (std::size_t i = before; i < parts.size(); ++i) mask |= std::uint64_t{1} << i;
+  steps_[index(owner)].push_back({Join::kLeaf, mask});
+  return true;
+}
+
+template <typename S>
+void ShellSolids::add_parts(const S& solid, const Pose& X_WM, Owner owner) {
+  const auto first = static_cast<int>(faces.size());
+  const auto add = [&](Kind kind) -> ShellFace& {
+    ShellFace& face = faces.emplace_back();
+    face.kind = kind;
+    face.owner = owner;
+    face.smooth = std::is_same_v<S, Capsule> ? -1 - first : static_cast<int>(faces.size());
+    return face;
+  };
+  const auto add_plane = [&](const Vec3& normal, double offset, bool seam) {
+    ShellFace& face = add(Kind::kPlane);
+    face.normal = normal;
+    face.offset = offset;
+    face.seam = seam;
+  };
+  if constexpr (std::is_same_v<S, Torus>) {
+    ShellFace& face = add(Kind::kTorus);
+    face.normal = X_WM.rotation.col(2);
+    face.round.center = X_WM.translation;
+    face.major = solid.major_radius();
+    face.minor = solid.minor_radius();
+    end_part(first, owner);
+  } else {
+    set_.clear();
+    FaceWriter(set_, X_WM, owner).write(solid);
+    if constexpr (std::is_same_v<S, Capsule>) {
+      const Vec3 axis = X_WM.rotation.col(2);
+      const double middle = axis.dot(X_WM.translation), h = solid.half_length();
+      for (const RoundFace& round : set_.rounds) {
+        const auto begin = static_cast<int>(faces.size());
+        if (round.part != CapsulePart::kBottomBall) {
+          const double side = round.part == CapsulePart::kTube ? 1.0 : -1.0;
+          add_plane(side * axis, side * (middle + h), true);
+        }
+        if (round.part != CapsulePart::kTopBall) {
+          const double side = round.part == CapsulePart::kTube ? -1.0 : 1.0;
+          add_plane(side * axis, side * (middle - h), true);
+        }
+        add(kind_of(round)).round = round;
+        end_part(begin, owner);
+      }
+    } else {
+      for (const PlaneFace& plane : set_.planes) add_plane(plane.normal, plane.offset, false);
+      for (const RoundFace& round : set_.rounds) add(kind_of(round)).round = round;
+      end_part(first, owner);
+    }
+  }
+}
+
+void ShellSolids::end_part(int first, Owner owner) {
+  parts.push_back({first, static_cast<int>(faces.size()), owner});
+}
+
+// Drops faces that hold all of the box, and parts that hold all of it or nothing.
+void ShellSolids::prune() {
+  std::size_t kept = 0;
+  std::uint64_t dropped = 0, within = 0;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    ShellPart& part = parts[p];
+    const auto begin = static_cast<int>(kept);
+    bool beyond = false;
+    for (int f = part.first; f < part.last && !beyond; ++f) {
+      const Where where = place_of(faces[f], half);
+      beyond = where == Where::kBeyond;
+      if (where == Where::kThrough) faces[kept++] = faces[f];
+    }
+    if (beyond) kept = static_cast<std::size_t>(begin);
+    part.first = begin;
+    part.last = static_cast<int>(kept);
+    const std::uint64_t bit = std::uint64_t{1} << p;
+    if (part.first == part.last) dropped |= bit;
+    if (part.first == part.last && !beyond) within |= bit;
+  }
+  faces.resize(kept);
+  drop_parts(dropped, within);
+}
+
+void ShellSolids::drop_parts(std::uint64_t dropped, std::uint64_t within) {
+  const auto count = static_cast<int>(parts.size());
+  for (auto& steps : steps_) {
+    for (Step& step : steps) {
+      step.always = (step.mask & within) != 0;
+      std::uint64_t mask = 0;
+      for (int p = 0, next = 0; p < count; ++p) {
+        if (dropped >> p & 1u) continue;
+        mask |= (step.mask >> p & 1u) << next++;
+      }
+      step.mask = mask;
+    }
+  }
+  std::size_t next = 0;
+  for (int p = 0; p < count; ++p) {
+    if (!(dropped >> p & 1u)) parts[next++] = parts[p];
+  }
+  parts.resize(next);
+}
+
+void ShellSolids::fill_table(Owner owner) {
+  constexpr int kMost = 6;  // 64 answers
+  Table& table = tables_[index(owner)];
+  const auto mine = [owner](const ShellPart& part) { return part.owner == owner; };
+  const auto count = static_cast<int>(std::count_if(parts.begin(), parts.end(), mine));
+  table = Table{};
+  if (count > kMost) return;
+  table.filled = true;
+  table.first = static_cast<int>(std::find_if(parts.begin(), parts.end(), mine) - parts.begin());
+  if (count == 0) table.first = 0;
+  table.mask = (std::uint64_t{1} << count) - 1;
+  for (std::uint64_t in = 0; in <= table.mask; ++in) {
+    if (evaluate(owner, in << table.first)) table.answers |= std::uint64_t{1} << in;
+  }
+}
+
+void ShellSolids::find_twins() {
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    faces[i].twin = static_cast<int>(i);
+    faces[i].side = 1;
+    for (std::size_t j = 0; j < i; ++j) {
+      if (faces[j].twin != static_cast<int>(j)) continue;
+      int side = 1;
+      if (!same_surface(faces[i], faces[j], side)) continue;
+      faces[i].twin = static_cast<int>(j);
+      faces[i].side = side;
+      break;
+    }
+  }
+}
+
+bool ShellSolids::same_surface(const ShellFace& one, const ShellFace& other, int& side) const {
+  if (one.kind != other.kind) return false;
+  const double size = half.norm();
+  if (one.kind == Kind::kPlane) {
+    side = one.normal.dot(other.normal) > 0.0 ? 1 : -1;
+    return (one.normal - side * other.normal).norm() <= kSameSurface &&
+           std::abs(one.offset - side * other.offset) <= kSameSurface * size;
+  }
+  if (one.kind == Kind::kTorus) {
+    return one.normal.cross(other.normal).norm() <= kSameSurface &&
+           (one.round.center - other.round.center).norm() <= kSameSurface * size &&
+           std::abs(one.major - other.major) <= kSameSurface * size &&
+           std::abs(one.minor - other.minor) <= kSameSurface * size;
+  }
+  // Forms of the same unit: those of round faces are fixed but for that of an ellipsoid.
+  const auto form = [](const RoundFace& face) -> Mat3 {
+    return face.map.transpose() * Vec3(1.0, 1.0, face.cone ? -1.0 : 1.0).asDiagonal() * face.map;
+  };
+  const Mat3 h = form(one.round), k = form(other.round);
+  const double unit = h.norm();
+  const Vec3 apart = one.round.center - other.round.center;
+  if ((h - k).norm() > kSameSurface * unit) return false;
+  if (one.kind == Kind::kCone) {
+    return apart.norm() <= kSameSurface * size &&
+           one.round.map.row(2).dot(other.round.map.row(2)) > 0.0;
+  }
+  return (h * apart).norm() <= kSameSurface * size * unit;
+}
+
+bool ShellSolids::evaluate(Owner owner, std::uint64_t in_parts) const {
+  std::uint64_t stack = 0;
+  for (const Step& step : steps_[index(owner)]) {
+    if (step.join == Join::kLeaf) {
+      stack = (stack << 1) | (step.always || (in_parts & step.mask) != 0 ? 1u : 0u);
+      continue;
+    }
+    const std::uint64_t b = stack & 1u, a = (stack >> 1) & 1u;
+    const std::uint64_t joined = step.join == Join::kUnion          ? a | b
+                                 : step.join == Join::kIntersection ? a & b
+                                                                    : a & (b ^ 1u);
+    stack = ((stack >> 2) << 1) | joined;
+  }
+  return (stack & 1u) != 0;
+}
+
+}  // namespace volcontact

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "volcontact/pair/overlap.h"
+#include "volcontact/pair/torus_pair/torus_flux.h"
+#include "volcontact/pair/torus_pair/torus_patch.h"
+#include "volcontact/shape/torus.h"
+
+namespace volcontact {
+
+/// Memory of the engine for two rings.
+struct RingPairScratch {
+  RingPatchScratch patch[2];   ///< of A and B
+  std::vector<int> region_of;  ///< by strand, those of B after those of A
+  struct Region {
+    int strand;   ///< the first one
+    Vec3 origin;  ///< near its middle
+    double weight;
+    double reach;  ///< farthest place of its surface
+    double depth;
+    RingFlux flux[2];
+  };
+  std::vector<Region> regions;
+};
+
+/// Interference of two rings from the surface of their overlap: metrics in A's frame; every
+/// connected region is a site. False when the surface found is not closed well enough.
+/// docs/theory.md, "Two rings".
+bool ring_pair(const Torus& a, const Torus& b, const Pose& X_AB, const InterferenceOptions& options,
+               RingPairScratch& scratch, Interference& out) noexcept;
+
+}  // namespace volcontact

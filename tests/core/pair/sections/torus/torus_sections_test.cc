@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/pair/sections/torus/torus_sections.h"
+
+#include <gtest/gtest.h>
+
+#include "core/support/evaluated.h"
+#include "core/support/gradient.h"
+#include "core/support/matchers.h"
+#include "core/support/random_shapes.h"
+#include "core/support/sanitized.h"
+
+namespace volcontact::torus_sections_test {
+namespace {
+
+using test::evaluated;
+
+constexpr double kMajor = 0.3, kMinor = 0.1;
+const Shape kRing = Torus({.major_radius = kMajor, .minor_radius = kMinor});
+
+// One of each shape that meets a ring.
+std::vector<Shape> bodies() {
+  test::Random random(1);
+  return {Sphere({.radius = 0.25}),
+          Ellipsoid({.semi_axes = {0.3, 0.2, 0.15}}),
+          Capsule({.radius = 0.1, .half_length = 0.2}),
+          Cylinder({.radius = 0.15, .half_length = 0.2}),
+          Frustum({.bottom_radius = 0.2, .top_radius = 0.1, .half_length = 0.2}),
+          Box({.half_sizes = {0.25, 0.2, 0.15}}),
+          test::random_polytope(12, random)};
+}
+
+TEST(RingLines, ServesEveryConvexBodyInBothOrders) {
+  test::Random random(2);
+  for (const Shape& body : bodies()) {
+    EXPECT_EQ(engine_for(kRing, body), Engine::kLines);
+    EXPECT_EQ(engine_for(body, kRing), Engine::kLines);
+    const Pose X{random.rotation(), {0.3, 0.1, 0.1}};
+    const Interference out = evaluated(kRing, body, X),
+                       swapped = evaluated(body, kRing, X.inverse());
+    EXPECT_EQ(out.engine, Engine::kLines);
+    EXPECT_GT(out.total.volume, 0.0);
+    EXPECT_TRUE(test::same(reversed(transformed(swapped.total, X)), out.total, {1e-9, kMajor}));
+  }
+}
+
+// The closed form of a ring on a plane, at all angles and depths.
+TEST(RingLines, AWideFaceIsAHalfSpace) {
+  test::Random random(3);
+  const Shape plate = Box({.half_sizes = {2.0, 2.0, 1.0}}), ground = HalfSpace();
+  for (int i = 0; i < 200; ++i) {
+    const Mat3 R = random.rotation();
+    const Vec3 up = R.transpose() * Vec3::UnitZ();  // of the plate, in the ring's frame
+    const double reach = std::get<Torus>(kRing).support_height(up);
+    const double depth = random.log_uniform(1e-8, 2.0 * reach);
+    const Pose X_PlateRing{R, {0.0, 0.0, reach - depth}};
+    const VolumeMetrics expected = evaluated(ground, kRing, X_PlateRing).total;
+    const Pose X_top{Mat3::Identity(), {0.0, 0.0, 1.0}};
+    const VolumeMetrics m =
+        transformed(evaluated(plate, kRing, X_top * X_PlateRing).total, X_top.inverse());
+    ASSERT_GT(expected.volume, 0.0);
+    EXPECT_NEAR(m.volume, expected.volume, 2e-5 * expected.volume) << "depth " << depth;
+    EXPECT_LE((m.centroid - expected.centroid).norm(), 1e-4 * kMajor);
+    EXPECT_LE((m.inertia - expected.inertia).norm(), 1e-4 * expected.inertia.norm());
+    EXPECT_LE((m.area_vector - expected.area_vector).norm(), 2e-3 * expected.area);
+    EXPECT_LE((m.area_moment - expected.area_moment).norm(), 2e-3 * expected.area * kMajor);
+    EXPECT_NEAR(m.depth_moment, expected.depth_moment, 1e-4 * expected.depth_moment);
+    EXPECT_NEAR(m.depth, expected.depth, 1e-9 * kMajor);
+  }
+}
+
+TEST(RingLines, ARingInABoxIsContained) {
+  const Shape box = Box({.half_sizes = {0.5, 0.5, 0.5}});
+  test::Random random(4);
+  for (int i = 0; i < 20; ++i) {
+    const VolumeMetrics m = evaluated(kRing, box, {random.rotation(), random.in_box(0.02)}).total;
+    EXPECT_EQ(m.status, Status::kContained);
+    EXPECT_NEAR(m.volume, 2.0 * kPi * kMajor * kPi * kMinor * kMinor, 1e-15);  // Pappus
+  }
+}
+
+TEST(RingLines, ABallInTheTubeIsContained) {
+  const double r = 0.04;
+  const Shape ball = Sphere({.radius = r});
+  for (double angle : {0.0, 1.0, 2.5}) {
+    const Vec3 middle(kMajor * std::cos(angle), kMajor * std::sin(angle), 0.03);
+    const VolumeMetrics m = evaluated(kRing, ball, {Mat3::Identity(), middle}).total;
+    EXPECT_EQ(m.status, Status::kContained);
+    EXPECT_NEAR(m.volume, 4.0 / 3.0 * kPi * r * r * r, 1e-15);
+    EXPECT_LE((m.centroid - middle).norm(), 1e-12);
+  }
+}
+
+// By Pappus, from the segment of the disc that lies within the peg.
+TEST(RingLines, APegInTheHoleIsASegmentThatGoesRound) {
+  for (double depth : {1e-7, 1e-4, 0.03, 0.1, 0.17}) {
+    const double radius = kMajor - kMinor + depth;
+    const double far = kMinor - depth, angle = std::acos(far / kMinor);
+    const double half = std::sqrt(kMinor * kMinor - far * far);
+    const double area = kMinor * kMinor * angle - far * half;
+    const double first = -2.0 / 3.0 * half * half * half;  // about the middle of the disc
+    const double expected = 2.0 * kPi * (kMajor * area + first);
+    const Shape peg = Cylinder({.radius = radius, .half_length = 0.5});
+    for (double tilt : {0.0, 1e-12}) {
+      const Interference out =
+          evaluated(kRing, peg, {test::turn(Vec3::UnitX(), tilt), {0, 0, 0.1}});
+      ASSERT_EQ(out.sites.size(), 1u);
+      // The closed form loses digits of thin segments itself.
+      EXPECT_NEAR(out.total.volume, expected, 1e-5 * expected + 1e-17) << "depth " << depth;
+      EXPECT_LE(out.total.area_vector.norm(), 1e-6 * out.total.area);
+      EXPECT_NEAR(out.total.area, 2.0 * kPi * 2.0 * kMinor * (kMajor * angle - half),
+                  1e-5 * out.total.area);
+      EXPECT_NEAR(out.total.counter_area, 2.0 * kPi * radius * 2.0 * half,
+                  1e-5 * out.total.counter_area);
+    }
+  }
+}
+
+TEST(RingLines, ARodThroughTheHoleTouchesNothing) {
+  const Shape rod = Capsule({.radius = 0.15, .half_length = 1.0});
+  EXPECT_FALSE(evaluated(kRing, rod, {Mat3::Identity(), {0.04, 0.0, 0.0}}).total.touching());
+  EXPECT_TRUE(evaluated(kRing, rod, {Mat3::Identity(), {0.051, 0.0, 0.0}}).total.touching());
+}
+
+TEST(RingLines, ABarAcrossTheRingTouchesInTwoSites) {
+  const Shape bar = Box({.half_sizes = {1.0, 0.02, 0.03}});
+  const Interference out = evaluated(kRing, bar, {Mat3::Identity(), {0.0, 0.0, 0.12}});
+  ASSERT_EQ(out.sites.size(), 2u);
+  EXPECT_NEAR(out.sites[0].volume, out.sites[1].volume, 1e-7 * out.total.volume);
+  EXPECT_NEAR(out.sites[0].centroid.x(), -out.sites[1].centroid.x(), 1e-7);
+  EXPECT_NEAR(std::abs(out.sites[0].centroid.x()), kMajor, 0.02);
+  const Interference octree =
+      evaluated(kRing, bar, {Mat3::Identity(), {0.0, 0.0, 0.12}}, Engine::kOctree, 1e-3);
+  EXPECT_NEAR(out.total.volume, octree.total.volume, octree.total.volume_error);
+}
+
+TEST(RingLines, AreaVectorAndMomentAreTheGradientOfVolume) {
+  test::Random random(5);
+  const std::vector<Shape> all = bodies();
+  for (const Shape& body : all) {
+    for (int i = 0; i < test::cases(6, 1); ++i) {
+      const double angle = random.uniform(0.0, 2.0 * kPi);
+      const Pose X{random.rotation(),
+                   Vec3(0.35 * std::cos(angle), 0.35 * std::sin(angle), random.uniform(0.0, 0.1))};
+      const InterferenceOptions options{.tolerance = 1e-6};
+      const VolumeMetrics m = evaluated(kRing, body, X, options).total;
+      const auto volume = [&](const Pose& X_AB) {
+        return evaluated(kRing, body, X_AB, options).total.volume;
+      };
+      if (m.volume < 1e-5 || m.status == Status::kContained) continue;
+      const test::Gradient g = test::gradient_of_A(volume, X, 1e-3);
+      EXPECT_LE((g.shift - m.area_vector).norm(), 1e-2 * m.area);
+      EXPECT_LE((g.turn - m.area_moment).norm(), 1e-2 * m.area * kMajor);
+    }
+  }
+}
+
+// The side of a box through the axis of the ring, which no half-plane about the axis crosses.
+TEST(RingLines, AFaceThroughTheAxisCounts) {
+  const Shape box = Box({.half_sizes = {0.3, 0.2, 0.25}});
+  const InterferenceOptions options{.tolerance = 1e-6};
+  for (const double aside : {0.0, 1e-12, 1e-9, 1e-6, 1e-3}) {
+    const Pose X{Mat3::Identity(), Vec3(0.3, 0.2 + aside, 0.22)};
+    const VolumeMetrics m = evaluated(kRing, box, X, options).total;
+    const auto volume = [&](const Pose& X_AB) {
+      return evaluated(kRing, box, X_AB, options).total.volume;
+    };
+    const test::Gradient g = test::gradient_of_A(volume, X, 1e-3);
+    EXPECT_LE((g.shift - m.area_vector).norm(), 1e-3 * m.area) << aside;
+    EXPECT_LE((g.turn - m.area_moment).norm(), 1e-3 * m.area * kMajor) << aside;
+  }
+}
+
+// A bar moves outwards over the inner side of the ring: two sites become one.
+TEST(RingLines, VolumeIsContinuousWhereSitesMerge) {
+  const Shape bar = Box({.half_sizes = {1.0, 0.02, 0.03}});
+  double before = 0.0;
+  std::size_t first = 0, last = 0;
+  constexpr int kSteps = 200;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double y = 0.17 + 0.06 * i / kSteps;
+    const Interference out = evaluated(kRing, bar, {Mat3::Identity(), {0.0, y, 0.0}});
+    if (i == 0) first = out.sites.size();
+    last = out.sites.size();
+    // A step sweeps no more than the bar's side, within the ring, times its own length.
+    if (i > 0) {
+      EXPECT_LE(std::abs(out.total.volume - before), 2.0 * 0.06 / kSteps * 0.06 * 0.8);
+    }
+    before = out.total.volume;
+  }
+  EXPECT_EQ(first, 2u);
+  EXPECT_EQ(last, 1u);
+}
+
+TEST(RingLines, EveryPathHasTheSameBits) {
+  test::Random random(6);
+  const std::vector<Shape> all = bodies();
+  int compared = 0;
+  const auto metrics = [&](const Shape& body, const Pose& X, SimdPath path) {
+    RingScratch scratch;
+    scratch.path = path;
+    LinesRegions regions;
+    Interference out;
+    std::visit(
+        [&](const auto& solid) {
+          if constexpr (HasFaces<std::decay_t<decltype(solid)>>) {
+            ring_interference(std::get<Torus>(kRing), ConvexView(solid), X, {}, scratch, regions,
+                              out);
+          }
+        },
+        body);
+    return out.total;
+  };
+  for (SimdPath path : {SimdPath::kAvx2, SimdPath::kAvx512}) {
+    if (!can_run(path)) continue;
+    for (const Shape& body : all) {
+      for (int i = 0; i < 20; ++i) {
+        const Pose X{random.rotation(), random.in_box(0.4)};
+        const VolumeMetrics m = metrics(body, X, path);
+        const VolumeMetrics portable = metrics(body, X, SimdPath::kPortable);
+        EXPECT_EQ(m.volume, portable.volume);
+        EXPECT_EQ(m.inertia, portable.inertia);
+        EXPECT_EQ(m.area_vector, portable.area_vector);
+        EXPECT_EQ(m.area_moment, portable.area_moment);
+        EXPECT_EQ(m.depth_moment, portable.depth_moment);
+        ++compared;
+      }
+    }
+  }
+  if (compared == 0) GTEST_SKIP() << "this machine has the portable path only";
+}
+
+// int rho dA over the part of a disc about m that lies towards a chord in the direction d, seen
+// from m under the half angle a.
+double moment_of_segment(const Eigen::Vector2d& m, double radius, const Eigen::Vector2d& d,
+                         double cosine) {
+  const double a = std::acos(std::clamp(cosine, -1.0, 1.0)), sine = std::sin(a);
+  return m.x() * radius * radius * (a - sine * std::cos(a)) +
+         d.x() * 2.0 / 3.0 * radius * radius * radius * sine * sine * sine;
+}
+
+// In a half-plane through the axis a ball is a disc as well, and two discs share two segments;
+// those have closed forms. The half-planes are summed by the midpoint rule.
+double ring_and_ball(double major, double minor, double radius, const Vec3& center) {
+  constexpr int kHalfPlanes = 100000;
+  const double across = std::hypot(center.x(), center.y());
+  double sum = 0.0;
+  for (int i = 0; i < kHalfPlanes; ++i) {
+    const double angle = kPi * (i + 0.5) / kHalfPlanes, off = across * std::sin(angle);
+    const double square = radius * radius - off * off;
+    if (!(square > 0.0)) continue;
+    const Eigen::Vector2d tube(major, 0.0), ball(across * std::cos(angle), center.z());
+    const Eigen::Vector2d way = ball - tube;
+    const double s = std::sqrt(square), d = way.norm();
+    if (d >= minor + s) continue;
+    const Eigen::Vector2d e = way / d;
+    sum += moment_of_segment(tube, minor, e, (d * d + minor * minor - s * s) / (2.0 * d * minor)) +
+           moment_of_segment(ball, s, -e, (d * d - minor * minor + s * s) / (2.0 * d * s));
+  }
+  return sum * 2.0 * kPi / kHalfPlanes;
+}
+
+// The ball crosses the tube within a small part of a section, twice: in windows of poses a
+// thousandth wide such a part falls between the places that are looked at.
+TEST(RingLines, ABallSharesSegmentsOfDiscsWithTheRing) {
+  test::Random random(21);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 center = i < 100 ? Vec3(0.1405 + 4e-5 * i, 0.0, 0.0) : random.in_box(0.2);
+    const double radius = i < 100 ? 0.3 : random.uniform(0.15, 0.4);
+    const double expected = ring_and_ball(kMajor, kMinor, radius, center);
+    const Shape ball = Sphere({.radius = radius});
+    const Pose X{random.rotation(), center};
+    for (const VolumeMetrics& m :
+         {evaluated(kRing, ball, X).total, evaluated(ball, kRing, X.inverse()).total}) {
+      EXPECT_NEAR(m.volume, expected, m.volume_error + 1e-7 * expected) << center.transpose();
+      EXPECT_NEAR(m.volume, expected, 1e-3 * expected) << center.transpose();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace volcontact::torus_sections_test
