@@ -44,6 +44,7 @@ SECTIONS = {
         "docs/studies",
         "docs/studies/peg_in_hole_misalignment",
         "docs/studies/battery_insert_0g",
+        "docs/identification",
         "python/examples/README",
         "docs/troubleshooting",
         "docs/faq",

@@ -40,6 +40,7 @@ from volcontact._volcontact import (
     series_stiffness,
 )
 from volcontact.audit import Audit
+from volcontact.identify import identify
 from volcontact.own_laws import FrictionLaw, LawField, LawState, NormalLaw
 from volcontact.recorder import Recorder
 from volcontact.scene import Contact, attach, contact_forces, load
@@ -91,6 +92,7 @@ __all__ = [
     "__version__",
     "attach",
     "contact_forces",
+    "identify",
     "interference",
     "layer_stiffness",
     "load",

@@ -14,6 +14,7 @@ EXTRAS = {
     "gymnasium": "gym",
     "optuna": "study",
     "SALib": "study",
+    "cma": "study",
     "scipy": "study",
     "tomli": "study",
     "ray": "ray",

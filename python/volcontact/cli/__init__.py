@@ -2,7 +2,7 @@
 """The `volcontact` program: one module per command.
 
 Exit status: 0 all went well, 1 the scene, the mesh or the request is at fault, 2 wrong usage, 3 it
-ran and MuJoCo or volcontact warned of the numbers, 130 interrupted.
+ran and MuJoCo or volcontact warned of the numbers, or a fit did not converge, 130 interrupted.
 """
 
 from __future__ import annotations
@@ -19,12 +19,24 @@ import mujoco
 
 import volcontact
 from volcontact import extras
-from volcontact.cli import check, compare, completion, doctor, mesh, metrics, new, run, study, view
+from volcontact.cli import (
+    check,
+    compare,
+    completion,
+    doctor,
+    identify,
+    mesh,
+    metrics,
+    new,
+    run,
+    study,
+    view,
+)
 from volcontact.cli.terminal import Terminal
 
 __all__ = ["main", "make_parser"]
 
-_COMMANDS = (new, check, run, compare, view, metrics, mesh, study, doctor, completion)
+_COMMANDS = (new, check, run, compare, view, metrics, mesh, study, identify, doctor, completion)
 _ERROR, _INTERRUPTED = 1, 130
 
 _EXAMPLES = """\
@@ -37,11 +49,13 @@ examples:
   volcontact metrics scene.xml                     its contact sites in numbers
   volcontact mesh check part.stl                   whether a mesh is a solid
   volcontact study run study.toml --out results    thousands of trials of a scene
+  volcontact identify study.toml --out results     parameters from measured motions
   volcontact doctor                                what is installed and whether it works
 
 exit status:
   0 all went well, 1 the scene, the mesh or the request is at fault, 2 wrong usage,
-  3 it ran and MuJoCo or volcontact warned of the numbers, 130 interrupted
+  3 it ran and MuJoCo or volcontact warned of the numbers, or a fit did not converge,
+  130 interrupted
 """
 
 
