@@ -113,6 +113,24 @@ def test_components_page_is_generated_from_the_field_tables() -> None:
     )
 
 
+def test_places_in_the_glossary_exist() -> None:
+    named = 0
+    rows = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8").splitlines()
+    for row in filter(lambda line: line.startswith("|"), rows):
+        for place in re.findall(r"`([^`]+)`", row.strip("|").split("|")[-1]):
+            above = "" if place.startswith("plugin/") else "plugin/volcontact"
+            assert (ROOT / above / place).exists(), row
+            named += 1
+    assert named > 50
+
+
+def test_drawing_of_the_rooms_is_that_of_the_includes() -> None:
+    module = generator("make_rooms")
+    assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
+        "run './run python docs/generate/make_rooms.py'"
+    )
+
+
 def test_page_of_the_keys_is_generated_from_what_the_code_accepts() -> None:
     module = generator("make_mjcf_keys")
     assert module.PAGE.read_text(encoding="utf-8") == module.render(), (

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "volcontact/pair/convex/face_set.h"
+#include "volcontact/pair/engine_interface.h"
+#include "volcontact/pair/surface_sweep/surface_sweep.h"
+
+namespace volcontact {
+
+/// What sections serve, from the surface of the overlap: the next to be asked where they are
+/// beyond.
+struct SurfaceSweep : EngineBase {
+  static constexpr Engine kWord = Engine::kLines;
+  using Scratch = TypeList<ShellScratch>;
+
+  template <typename S>
+  static constexpr bool kMadeOfSimple =
+      HasFaces<S> || std::is_same_v<S, Torus> || std::is_same_v<S, Csg>;
+  template <typename S>
+  static constexpr bool kHasPlanesOnly = HasFaces<S> && !HasRoundFaces<S>;
+
+  /// One with a formula.
+  template <typename A, typename B>
+  static constexpr bool kTorusOnPlane = std::is_same_v<A, Torus> && std::is_same_v<B, HalfSpace>;
+
+  template <typename A, typename B>
+  static constexpr bool serves() {
+    return kMadeOfSimple<A> && kMadeOfSimple<B> && !(kHasPlanesOnly<A> && kHasPlanesOnly<B>) &&
+           !kTorusOnPlane<A, B> && !kTorusOnPlane<B, A>;
+  }
+  template <typename A, typename B>
+  static Answer run(const Question<A, B>& q, ShellScratch& scratch, Interference& out) noexcept {
+    return answer(shell_interference(q.shape_a, q.shape_b, q.X_AB, q.options, scratch, out));
+  }
+};
+
+}  // namespace volcontact
