@@ -90,6 +90,7 @@ SECTIONS = {
     ],
     "Inside": [
         "docs/theory",
+        "docs/glossary",
         "docs/architecture",
         "CONTRIBUTING",
         "plugin/cgal/README",
