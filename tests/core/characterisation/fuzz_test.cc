@@ -29,6 +29,15 @@ TEST(Fuzz, NoPairFails) {
   }
 }
 
+TEST(Fuzz, EveryAnswerCountsForTheEngineThatGaveIt) {
+  const FuzzReport report =
+      fuzz({.random_poses = 6, .degenerate_poses = 0, .seed = 7, .only = "box-mesh"});
+  for (const FuzzCount& count : report.counts) {
+    const bool is_it = count.engine == Engine::kColumns && !count.degenerate;
+    EXPECT_EQ(count.poses, is_it ? 6 : 0) << to_string(count.engine);
+  }
+}
+
 // Solids without volume overlap nothing; the answer is finite and says so.
 TEST(Fuzz, SolidsOfZeroSize) {
   Random random(8);

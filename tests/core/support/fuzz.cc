@@ -106,8 +106,10 @@ class Search {
         {a_->name, b_->name, what, result_.engine, X_AB_, result_.total.volume, expected});
   }
   FuzzCount& count() {
-    const auto index = 2 * static_cast<std::size_t>(result_.engine) + (degenerate_ ? 1 : 0);
-    return report_.counts[index];
+    return *std::find_if(report_.counts.begin(), report_.counts.end(),
+                         [this](const FuzzCount& count) {
+                           return count.engine == result_.engine && count.degenerate == degenerate_;
+                         });
   }
   InterferenceOptions options() const {
     InterferenceOptions options;
