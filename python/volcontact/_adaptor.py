@@ -11,6 +11,7 @@ import ctypes
 import functools
 import importlib.util
 import os
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -19,6 +20,9 @@ import mujoco  # first: then the process has one copy of libmujoco
 import numpy as np
 
 from volcontact import _adaptor_build
+
+# Keys of a material that a program gives; no tuple of a file has this name.
+GIVEN_MATERIAL = "volcontact/material/given/"
 
 SITE_DTYPE = np.dtype(
     [
@@ -284,7 +288,7 @@ class Adaptor:
         if result == _ERROR_STATE and not message:
             message = "the model is not attached"
         if result < 0:
-            raise ValueError(message)
+            raise ValueError(_in_words_of_python(message))
         return result, message
 
     def text(self, name: str, *arguments: Any) -> str:
@@ -293,6 +297,14 @@ class Adaptor:
         buffer = ctypes.create_string_buffer(length + 1)
         self.call(name, *arguments, buffer, length + 1)
         return buffer.value.decode("utf-8", "replace")
+
+
+def _in_words_of_python(message: str) -> str:
+    """A message about a key of `material`, which no file has, as Python spells it."""
+    message = re.sub(rf"{GIVEN_MATERIAL}(\w+)", r"material['\1']", message)
+    return message.replace(GIVEN_MATERIAL, "material: ").replace(
+        GIVEN_MATERIAL.rstrip("/"), "material"
+    )
 
 
 @functools.cache

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import mujoco
 
+_MESHES = {".stl", ".obj", ".ply", ".off", ".msh", ".step", ".stp", ".iges", ".glb", ".dae"}
+
 
 def compile_scene(path_or_text: str) -> mujoco.MjModel:
     """The model of a file, or of MJCF text.
@@ -20,8 +22,8 @@ def compile_scene(path_or_text: str) -> mujoco.MjModel:
             the nearest one.
     """
     is_text = path_or_text.lstrip().startswith("<")
-    if not is_text and not Path(path_or_text).is_file():
-        raise FileNotFoundError(f"no such scene: {path_or_text}")
+    if not is_text:
+        require_scene(path_or_text)
     try:
         if is_text:
             return mujoco.MjModel.from_xml_string(path_or_text)
@@ -33,6 +35,23 @@ def compile_scene(path_or_text: str) -> mujoco.MjModel:
         if hint is None:
             raise
         raise ValueError(hint) from error
+
+
+def require_scene(path: str) -> None:
+    """Raises what is wrong with a path before MuJoCo reads it.
+
+    Raises:
+        FileNotFoundError: there is no such file.
+        ValueError: it is a mesh.
+    """
+    if not Path(path).is_file():
+        raise FileNotFoundError(f"no such scene: {path}")
+    if Path(path).suffix.lower() in _MESHES:
+        raise ValueError(
+            f"{path}: is a mesh, not a scene: name it in <asset><mesh file=.../> of a scene "
+            "(`volcontact new NAME --template mesh_in_hole` writes one); "
+            "`volcontact mesh check` looks at the mesh"
+        )
 
 
 def _misspelt_reference(path_or_text: str, *, is_text: bool) -> str | None:

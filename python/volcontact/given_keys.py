@@ -9,13 +9,11 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
-from volcontact._adaptor import Key, adaptor
+from volcontact._adaptor import GIVEN_MATERIAL, Key, adaptor
 
 Value = float | str | Sequence[float]
 Values = Mapping[str, Value]
 
-# No tuple of a file has this name: then it is the material of all geoms without one.
-_MATERIAL = "volcontact/material/given/"
 _OPTION = "volcontact/option/"
 
 
@@ -33,7 +31,7 @@ class GivenKeys:
         records = [
             self._record(name, numbers)
             for what, stem, values in (
-                ("material", _MATERIAL, material),
+                ("material", GIVEN_MATERIAL, material),
                 ("options", _OPTION, options),
             )
             for name, numbers in _keys(what, stem, values or {})
@@ -58,6 +56,14 @@ class GivenKeys:
         return Key(name.encode(), array, len(numbers))
 
 
+def _require_word(place: str, text: str) -> None:
+    try:
+        float(text)
+    except ValueError:
+        return
+    raise TypeError(f"{place} takes a number, got the text {text!r}: leave the quotes out")
+
+
 def _keys(what: str, stem: str, values: Values) -> list[tuple[str, list[float]]]:
     """Name and numbers of each key: a choice is spelled in the name."""
     if not isinstance(values, Mapping):
@@ -65,6 +71,7 @@ def _keys(what: str, stem: str, values: Values) -> list[tuple[str, list[float]]]
     keys = []
     for name, value in values.items():
         if isinstance(value, str):
+            _require_word(f"{what}[{name!r}]", value)
             keys.append((f"{stem}{name}/{value}", [1.0]))
             continue
         numbers = np.atleast_1d(value)

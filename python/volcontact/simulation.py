@@ -8,7 +8,6 @@ import os
 import re
 import time as clock
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import mujoco
@@ -16,6 +15,7 @@ import numpy as np
 
 from volcontact import scene as volumetric_scene
 from volcontact._mujoco_views import dense
+from volcontact.compiling import require_scene
 from volcontact.given_keys import GivenKeys, Values
 from volcontact.probes import Probe, probe
 from volcontact.recording import CHANNELS, SITE, SITE_IN_RUN, ContactKind, Frame, Recording
@@ -111,8 +111,7 @@ def native_model(scene: str | os.PathLike[str]) -> mujoco.MjModel:
     text = os.fspath(scene)
     if text.lstrip().startswith("<"):
         return mujoco.MjModel.from_xml_string(text)
-    if not Path(text).is_file():
-        raise FileNotFoundError(f"no such scene: {text}")
+    require_scene(text)
     if text.endswith(".mjb"):
         return mujoco.MjModel.from_binary_path(text)
     return mujoco.MjModel.from_xml_path(text)

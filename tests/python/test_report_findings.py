@@ -88,7 +88,7 @@ def test_findings_compare_pose_force_depth_places_energy_and_cost():
     assert "200 cm²" in places
     energy = sentence(made, "Energy")
     assert "the forces take 30.0 J from the motion and 30.0 J are dissipated" in energy
-    assert "(normal 30.0 J). The books close to" in energy
+    assert "(normal 30.0 J). Unaccounted for: " in energy
     assert "loses 23.0 J" in energy  # 30 J of height less the 7 J of motion that appear
     assert "it once stood 7.00 J above an earlier value" in energy
     assert "20.0 µs under volumetric and 10.0 µs" in sentence(made, "Cost")
@@ -166,4 +166,4 @@ def test_energy_says_what_the_step_made_of_impacts():
     assert "take 27.0 J from the motion and 30.0 J are dissipated" in text
     assert "(normal 30.0 J): 3.00 J too much, which is the error of a finite step" in text
     # The scene lost 30 J, and the forces took 27 of them.
-    assert "The books close to 3.00 J, at the end to 3.00 J." in text
+    assert "Unaccounted for: 3.00 J at most, 3.00 J at the end." in text

@@ -263,8 +263,8 @@ def _energy(comparison: Comparison) -> Finding:
         f"Under volumetric contact the forces take {quantity(-float(a.work[-1]), 'J')} from the "
         f"motion and {quantity(spent, 'J')} are dissipated"
         f"{f' ({channels})' if channels else ''}{_made_by_step(a)}. "
-        f"The books close to {quantity(float(np.abs(unbalance(a)).max()), 'J')}, at the end to "
-        f"{quantity(abs(float(unbalance(a)[-1])), 'J')}."
+        f"Unaccounted for: {quantity(float(np.abs(unbalance(a)).max()), 'J')} at most, "
+        f"{quantity(abs(float(unbalance(a)[-1])), 'J')} at the end."
     )
     change = b.energy[-1] - b.energy[0]
     verb = "gains" if change > 0.0 else "loses"
