@@ -45,6 +45,7 @@ SECTIONS = {
         "docs/studies/peg_in_hole_misalignment",
         "docs/studies/battery_insert_0g",
         "docs/identification",
+        "docs/identification/cube_tosses",
         "python/examples/README",
         "docs/troubleshooting",
         "docs/faq",

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 _EXAMPLES = """\
   volcontact identify study.toml --out results
   volcontact identify study.toml --check
+  volcontact identify study.toml --measurements /data/tosses.parquet --out results
   volcontact identify study.toml --workers 1 --json
 """
 _NOT_CONVERGED = 3
@@ -38,6 +39,14 @@ def add_to(commands: Subparsers) -> None:
         default=Path("volcontact-identified"),
         metavar="DIR",
         help="folder of the results; an interrupted run goes on in it (default: %(default)s)",
+    )
+    add_file(
+        parser,
+        "--measurements",
+        type=Path,
+        action="append",
+        metavar="FILE",
+        help="CSV or Parquet, instead of the files that the study names; may be repeated",
     )
     parser.add_argument(
         "--check", action="store_true", help="check file, scene and measurements, and fit nothing"
@@ -61,7 +70,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     from volcontact.identify.reading import read_settings
     from volcontact.identify.run import RESULT, check, run
 
-    settings = read_settings(arguments.study)
+    settings = read_settings(arguments.study, measurements=arguments.measurements)
     if arguments.check:
         found = check(settings)
         if terminal.json:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,7 @@ def identify(
     path: str | os.PathLike[str],
     out: str | os.PathLike[str] | None = None,
     *,
+    measurements: Sequence[str | os.PathLike[str]] | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> Identified:
@@ -30,6 +32,7 @@ def identify(
         path: of the identification file.
         out: folder for `identified.json`, `identified.xml` and `report.html`; an interrupted run
             goes on in it. None writes nothing.
+        measurements: files instead of those that the study names.
         workers: processes; None takes the cores, 1 runs everything in this one. The results are the
             same.
         progress: called with evaluations done, in all, and a note.
@@ -42,4 +45,6 @@ def identify(
     from volcontact.identify.run import run
 
     folder = None if out is None else Path(out)
-    return run(read_settings(path), folder, workers=workers, progress=progress)
+    return run(
+        read_settings(path, measurements=measurements), folder, workers=workers, progress=progress
+    )

@@ -179,7 +179,8 @@ def _in_si(measure: Measure, frame: Frame, values: np.ndarray, where: str) -> np
         return rotations.product(quat, values / length)
     values = measure.scale * values
     if measure.kind == "position":
-        return pos + rotations.rotate(quat, values)
+        result: np.ndarray = pos + rotations.rotate(quat, values)
+        return result
     if measure.kind in ("velocity", "angular_velocity") and measure.frame == "world":
         return rotations.rotate(quat, values)
     return values

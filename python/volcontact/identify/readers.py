@@ -107,7 +107,8 @@ def _sensor(model: mujoco.MjModel, data: mujoco.MjData, measure: Measure) -> np.
     if size != len(measure.columns):
         raise StudyError(f"the sensor has {size} numbers, and columns are {len(measure.columns)}")
     first = int(model.sensor_adr[number])
-    return data.sensordata[first : first + size]
+    result: np.ndarray = data.sensordata[first : first + size]
+    return result
 
 
 def _of_body(model: mujoco.MjModel, data: mujoco.MjData, measure: Measure) -> Reader:

@@ -7,6 +7,7 @@ import math
 import os
 import re
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -51,8 +52,14 @@ _TABLES = (
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
-def read_settings(path: str | os.PathLike[str]) -> Settings:
+def read_settings(
+    path: str | os.PathLike[str], *, measurements: Sequence[str | os.PathLike[str]] | None = None
+) -> Settings:
     """Reads and checks an identification file, all but what needs scene and measurements.
+
+    Args:
+        path: of the file.
+        measurements: files instead of those that it names.
 
     Raises:
         FileNotFoundError: there is no such file.
@@ -61,10 +68,16 @@ def read_settings(path: str | os.PathLike[str]) -> Settings:
     place = Path(path)
     if not place.is_file():
         raise FileNotFoundError(f"no such study: {place}")
-    return parse_settings(place.read_text(encoding="utf-8"), place.resolve().parent, place.name)
+    text = place.read_text(encoding="utf-8")
+    return parse_settings(text, place.resolve().parent, place.name, measurements)
 
 
-def parse_settings(text: str, folder: Path, file: str = "study.toml") -> Settings:
+def parse_settings(
+    text: str,
+    folder: Path,
+    file: str = "study.toml",
+    measurements: Sequence[str | os.PathLike[str]] | None = None,
+) -> Settings:
     """The settings of the text of a file whose paths begin at a folder.
 
     Raises:
@@ -92,7 +105,7 @@ def parse_settings(text: str, folder: Path, file: str = "study.toml") -> Setting
     }
     head.take("timestep", None)
     head.finish()
-    values |= _measurements(table("measurements"), folder)
+    values |= _measurements(table("measurements"), folder, measurements)
     values["frame"] = _frame(table("frame"))
     values["measures"] = _measures(tables["measure"], file)
     values["parameters"] = _parameters(tables["parameter"], file)
@@ -121,8 +134,12 @@ def _file(table: Table, key: str, name: str, folder: Path) -> Path:
     return place
 
 
-def _measurements(table: Table, folder: Path) -> dict[str, Any]:
+def _measurements(
+    table: Table, folder: Path, instead: Sequence[str | os.PathLike[str]] | None
+) -> dict[str, Any]:
     given = table.words("files", None) if table.has("files") else (table.word("file"),)
+    if instead:
+        given = tuple(str(Path(each).resolve()) for each in instead)
     if not given:
         raise table.error("files", list(given), "must name at least one file")
     files = []
@@ -295,9 +312,10 @@ def _parameter(name: str, content: Any, file: str) -> Parameter:
     table.take("start", None)
     prior = None
     if table.has("prior"):
-        prior = table.numbers("prior")
-        if len(prior) != 2 or not prior[1] > 0.0 or (log and prior[0] <= 0.0):
-            raise table.error("prior", list(prior), "must be [mean, standard deviation above 0]")
+        given = table.numbers("prior")
+        if len(given) != 2 or not given[1] > 0.0 or (log and given[0] <= 0.0):
+            raise table.error("prior", list(given), "must be [mean, standard deviation above 0]")
+        prior = given[0], given[1]
     table.take("prior", None)
     table.finish()
     return Parameter(name, targets, mode, low, high, start, log, prior, times)

@@ -23,7 +23,8 @@ def product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 def inverse(q: np.ndarray) -> np.ndarray:
     """The rotation back."""
-    return q * np.array([1.0, -1.0, -1.0, -1.0])
+    result: np.ndarray = q * np.array([1.0, -1.0, -1.0, -1.0])
+    return result
 
 
 def rotate(q: np.ndarray, v: np.ndarray) -> np.ndarray:

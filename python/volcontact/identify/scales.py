@@ -30,11 +30,13 @@ class Box:
     def point(self, values: Values) -> np.ndarray:
         """The point of values, shape (n,)."""
         scaled = np.array([_scaled(p, values[p.name]) for p in self.parameters])
-        return (scaled - self._low) / self._range
+        result: np.ndarray = (scaled - self._low) / self._range
+        return result
 
     def deviations(self, in_box: np.ndarray) -> np.ndarray:
         """Standard deviations, of the logarithm where a scale is logarithmic."""
-        return in_box * self._range
+        result: np.ndarray = in_box * self._range
+        return result
 
     def prior(self, point: np.ndarray) -> np.ndarray:
         """Errors against what is known beforehand, one of each parameter that has a prior."""

@@ -110,7 +110,8 @@ def _speed(
     settings: Settings, trial: Trial, measured: Measure | None, place: Measure
 ) -> np.ndarray:
     if measured is not None and len(trial.samples[measured.name].values):
-        return trial.samples[measured.name].values[0]
+        result: np.ndarray = trial.samples[measured.name].values[0]
+        return result
     samples = trial.samples[place.name]
     return _slope(trial.times[samples.index], samples.values, settings.start.samples)
 
@@ -120,7 +121,7 @@ def _spin(settings: Settings, trial: Trial, measured: Measure | None, turn: Meas
     samples = trial.samples[turn.name]
     first = samples.values[0]
     if measured is not None and len(trial.samples[measured.name].values):
-        spin = trial.samples[measured.name].values[0]
+        spin: np.ndarray = trial.samples[measured.name].values[0]
         if measured.frame == "body":
             return spin
         return rotations.rotate(rotations.inverse(first), spin)
@@ -136,7 +137,8 @@ def _slope(times: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
         return np.zeros(values.shape[1])
     powers = np.vander(t, min(3, len(t)), increasing=True)
     fitted, *_ = np.linalg.lstsq(powers, x, rcond=None)
-    return fitted[1]
+    result: np.ndarray = fitted[1]
+    return result
 
 
 def disturbed(

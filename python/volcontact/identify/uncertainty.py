@@ -144,14 +144,16 @@ def _inverse(curvature: np.ndarray) -> np.ndarray:
     for each in vectors[:, flat].T:
         moved = np.abs(each) > 1e-3
         inverse[moved, moved] = np.inf
-    return inverse / np.outer(scale, scale)
+    result: np.ndarray = inverse / np.outer(scale, scale)
+    return result
 
 
 def _correlation(covariance: np.ndarray) -> np.ndarray:
     deviations = np.sqrt(np.diag(covariance))
     known = np.isfinite(deviations) & (deviations > 0.0)
     safe = np.where(known, deviations, 1.0)
-    found = np.where(np.isfinite(covariance), covariance, 0.0) / np.outer(safe, safe)
+    finite = np.where(np.isfinite(covariance), covariance, 0.0)
+    found: np.ndarray = finite / np.outer(safe, safe)
     found[~known] = 0.0
     found[:, ~known] = 0.0
     np.fill_diagonal(found, 1.0)

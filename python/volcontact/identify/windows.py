@@ -65,12 +65,13 @@ def impacts(settings: Settings, trial: Trial) -> np.ndarray:
     if len(times) < 2:
         return np.empty(0)
     jump = np.linalg.norm(np.diff(speeds, axis=0), axis=1) / np.diff(times)
-    hits = times[:-1][jump > settings.window.acceleration]
+    hits: np.ndarray = times[:-1][jump > settings.window.acceleration]
     if not len(hits):
         return hits
     steps = np.diff(times).mean()
     first = np.concatenate([[True], np.diff(hits) > settings.window.gap + steps * 1e-6])
-    return hits[first]
+    result: np.ndarray = hits[first]
+    return result
 
 
 def _until(trial: Trial, end: float) -> Trial:
