@@ -61,7 +61,8 @@ MuJoCo {mujoco}, steps of {step:.4f} ms. Means over tosses, medians in brackets.
 The sum of volumetric contact is {difference:.2f} ({percent:.1f} %) {word} that of native contact;
 95 % interval of the difference by a bootstrap over tosses {low:.2f} to {high:.2f}. The fits were
 run once, with one seed: how much other seeds and other tosses for the fit would move the values is
-not in this interval.
+not in this interval. Both searches ended because their 300 evaluations ran out,
+not because they had settled.
 
 ## How errors grow
 
