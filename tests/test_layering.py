@@ -20,35 +20,39 @@ MAY_INCLUDE = {
     "c_api": {"base", "metrics", "shape", "pair", "force", "model"},
     "cgal": set(),  # a program of its own under another licence
 }
-# Rooms of volcontact/pair, and the files that lie in none; each may use those before it.
-PAIR_ROOMS = (
-    "engine",
-    "overlap",
-    "overlap_limits",
-    "engine_interface",
-    "quadrature",
-    "convex",
-    "window",
-    "closed_form",
-    "clip",
-    "sections",
-    "sections/bore",
-    "sections/torus",
-    "torus_pair",
-    "surface_sweep",
-    "mesh_columns/crossing",
-    "mesh_columns",
-    "mesh_columns/in_round",
-    "mesh_columns/radial",
-    "octree",
-    "engines",
-    "dispatch",
-    "interference",
-    "geometric_pair",
-    "pressure",
-    "picture",
-)
-MOST_FILES = 25  # in a folder of the plugin's core
+# Rooms of a floor, and the files that lie in none; each may use those before it. "" stands for all
+# other files of the floor itself.
+ROOMS = {
+    "volcontact/pair": (
+        "engine",
+        "overlap",
+        "overlap_limits",
+        "engine_interface",
+        "quadrature",
+        "convex",
+        "window",
+        "closed_form",
+        "clip",
+        "sections",
+        "sections/bore",
+        "sections/torus",
+        "torus_pair",
+        "surface_sweep",
+        "mesh_columns/crossing",
+        "mesh_columns",
+        "mesh_columns/in_round",
+        "mesh_columns/radial",
+        "octree",
+        "engines",
+        "dispatch",
+        "interference",
+        "geometric_pair",
+        "pressure",
+        "picture",
+    ),
+    "adaptor": ("mujoco", "keys", "geoms", "memory", "step", "scene", ""),
+}
+MOST_FILES = 25  # in a folder of the plugin
 # The only folder that may include each library of others.
 OWNER = {"mujoco": "adaptor", "CGAL": "cgal"}
 NOWHERE = {"nanobind", "pybind11", "Python.h"}
@@ -61,32 +65,33 @@ def floor_of(path: str) -> str | None:
     return next((floor for floor in MAY_INCLUDE if path.startswith(floor + "/")), None)
 
 
-def pair_room(path: str) -> str | None:
-    """The room of a file of volcontact/pair, None for another file or a room that is not known."""
-    inside = path.removeprefix("volcontact/pair/")
-    if inside == path:
-        return None
+def room_of(floor: str, path: str) -> str | None:
+    """The room of a file of a floor, None where that is not known."""
+    inside = path.removeprefix(f"{floor}/")
     room = inside.rsplit("/", 1)[0] if "/" in inside else inside.split(".")[0]
-    return room if room in PAIR_ROOMS else None
+    if "/" not in inside and "" in ROOMS[floor]:
+        room = ""
+    return room if room in ROOMS[floor] else None
 
 
 def room_fault(source: str, included: str) -> str | None:
-    """Why a file of volcontact/pair may not include another; None if it may."""
-    if not (source.startswith("volcontact/pair/") and included.startswith("volcontact/pair/")):
+    """Why a file of a floor with rooms may not include another of it; None if it may."""
+    floor = floor_of(source)
+    if floor not in ROOMS or floor_of(included) != floor:
         return None
-    rooms = pair_room(source), pair_room(included)
+    rooms = room_of(floor, source), room_of(floor, included)
     for path, room in zip((source, included), rooms, strict=True):
         if room is None:
-            return f"{path}: lies in no known room of volcontact/pair"
-    if PAIR_ROOMS.index(rooms[0]) < PAIR_ROOMS.index(rooms[1]):
+            return f"{path}: lies in no known room of {floor}"
+    if ROOMS[floor].index(rooms[0]) < ROOMS[floor].index(rooms[1]):
         return f"{source}: {rooms[0]} must not include {included}"
     return None
 
 
 def crowded_folders() -> list[str]:
-    """Folders of the core with more files than a reader takes in."""
+    """Folders of the plugin with more files than a reader takes in."""
     found = []
-    for folder in sorted(path for path in (PLUGIN / "volcontact").rglob("*") if path.is_dir()):
+    for folder in sorted(path for path in PLUGIN.rglob("*") if path.is_dir()):
         count = sum(path.is_file() for path in folder.iterdir())
         if count > MOST_FILES:
             found.append(f"{folder.relative_to(ROOT)}: {count} files, {MOST_FILES} at most")
@@ -192,6 +197,9 @@ def test_finds_each_kind_of_fault():
         ("volcontact/pair/octree/a.h", "volcontact/misc/b.h"),
         ("volcontact/pair/quadrature/a.h", "volcontact/pair/sections/b.h"),
         ("volcontact/pair/overlap.h", "volcontact/pair/interference.h"),
+        ("adaptor/step/a.h", "adaptor/scene/b.h"),
+        ("adaptor/scene/a.h", "adaptor/b.h"),
+        ("adaptor/attic/a.h", "adaptor/b.h"),
         ("volcontact/pair/cellar/a.h", "volcontact/pair/overlap.h"),
         ("misc/a.h", "vector"),
     ]:

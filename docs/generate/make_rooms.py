@@ -7,7 +7,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "architecture.md"
 BEGIN, END = "<!-- rooms -->\n", "<!-- end -->\n"
-PAIR = "volcontact/pair/"
+FLOOR = "volcontact/pair"
 
 
 def includes() -> tuple[list[str], set[tuple[str, str]]]:
@@ -17,14 +17,14 @@ def includes() -> tuple[list[str], set[tuple[str, str]]]:
     layering = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(layering)
     arrows = set()
-    for path in (ROOT / "plugin" / PAIR).rglob("*"):
+    for path in (ROOT / "plugin" / FLOOR).rglob("*"):
         if path.suffix not in {".h", ".cc", ".inc"}:
             continue
-        room = layering.pair_room(path.relative_to(ROOT / "plugin").as_posix())
+        room = layering.room_of(FLOOR, path.relative_to(ROOT / "plugin").as_posix())
         for included in layering.INCLUDE.findall(path.read_text()):
-            if included.startswith(PAIR):
-                arrows.add((room, layering.pair_room(included)))
-    return list(layering.PAIR_ROOMS), {(a, b) for a, b in arrows if a != b}
+            if included.startswith(f"{FLOOR}/"):
+                arrows.add((room, layering.room_of(FLOOR, included)))
+    return list(layering.ROOMS[FLOOR]), {(a, b) for a, b in arrows if a != b}
 
 
 def drawing() -> str:

@@ -6,7 +6,7 @@
 #include <exception>
 #include <string>
 
-#include "adaptor/mujoco_compat.h"
+#include "adaptor/mujoco/mujoco_compat.h"
 #include "adaptor/scene_registry.h"
 
 namespace volcontact::adaptor {

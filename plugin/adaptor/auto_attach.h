@@ -3,7 +3,7 @@
 
 #include <mujoco/mujoco.h>
 
-#include "adaptor/scene_contact.h"
+#include "adaptor/scene/scene_contact.h"
 
 namespace volcontact::adaptor {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "adaptor/mujoco_compat.h"
+#include "adaptor/mujoco/mujoco_compat.h"
 #include "adaptor/scene_registry.h"
 
 namespace volcontact::adaptor {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adaptor/engine_plugin.h"
 
-#include "adaptor/mujoco_compat.h"
+#include "adaptor/mujoco/mujoco_compat.h"
 
 // MuJoCo 2.3 has engine plugins, too, but fails where data with one are copied.
 #if mjVERSION_HEADER >= 300
@@ -11,16 +11,15 @@
 #include <exception>
 
 #include "adaptor/auto_attach.h"
-#include "adaptor/largest_state.h"
-#include "adaptor/look_ahead.h"
+#include "adaptor/mujoco/plugin_room.h"
 #include "adaptor/passive_callback.h"
-#include "adaptor/scene_drawing.h"
+#include "adaptor/scene/largest_state.h"
+#include "adaptor/scene/scene_drawing.h"
 #include "adaptor/scene_registry.h"
+#include "adaptor/step/look_ahead.h"
 
 namespace volcontact::adaptor {
 namespace {
-
-constexpr const char* kName = "volcontact";
 
 // The contact of a model with our instance; null where it is refused.
 const SceneContact* contact_in_plugin(const mjModel* m) noexcept {
@@ -59,18 +58,13 @@ void visualize(const mjModel* m, mjData* d, const mjvOption* option, mjvScene* s
   if (contact) draw_sites(*contact, m, d, option, scene, thread_scratch());
 }
 
-int slot_of_plugin() noexcept {
-  int slot = -1;
-  return mjp_getPlugin(kName, &slot) ? slot : -1;
-}
-
 }  // namespace
 
 void register_engine_plugin() {
-  if (mj_version() != mjVERSION_HEADER || slot_of_plugin() >= 0) return;
+  if (mj_version() != mjVERSION_HEADER || plugin_slot() >= 0) return;
   mjpPlugin plugin;
   mjp_defaultPlugin(&plugin);
-  plugin.name = kName;
+  plugin.name = kPluginName;
   plugin.capabilityflags = mjPLUGIN_PASSIVE;
   plugin.nstate = state_size;
   plugin.init = init;
@@ -80,19 +74,6 @@ void register_engine_plugin() {
   mjp_registerPlugin(&plugin);
 }
 
-PluginRoom plugin_room(const mjModel* m) noexcept {
-  const int slot = slot_of_plugin();
-  if (slot < 0) return {};
-  const int* instance = std::find(m->plugin, m->plugin + m->nplugin, slot);
-  if (instance == m->plugin + m->nplugin) return {};
-  const auto i = instance - m->plugin;
-  return {true, m->plugin_statenum[i], m->plugin_stateadr[i] + m->plugin_statenum[i]};
-}
-
-mjtNum* plugin_room_end(const mjData* d, const PluginRoom& room) noexcept {
-  return d->plugin_state + room.end;
-}
-
 }  // namespace volcontact::adaptor
 
 #else
@@ -100,10 +81,6 @@ mjtNum* plugin_room_end(const mjData* d, const PluginRoom& room) noexcept {
 namespace volcontact::adaptor {
 
 void register_engine_plugin() {}
-PluginRoom plugin_room(const mjModel* /*m*/) noexcept { return {}; }
-mjtNum* plugin_room_end(const mjData* /*d*/, const PluginRoom& /*room*/) noexcept {
-  return nullptr;
-}
 
 }  // namespace volcontact::adaptor
 

@@ -16,15 +16,4 @@ namespace volcontact::adaptor {
 /// MuJoCo runs than the one this was compiled for.
 void register_engine_plugin();
 
-/// Numbers of mjData.plugin_state that belong to our instance in the model.
-struct PluginRoom {
-  bool is_there = false;
-  int size = 0;
-  int end = 0;  ///< one past the last
-};
-PluginRoom plugin_room(const mjModel* m) noexcept;
-
-/// The first of `room` in `d`, plus `room.end`; null for releases without plugins.
-mjtNum* plugin_room_end(const mjData* d, const PluginRoom& room) noexcept;
-
 }  // namespace volcontact::adaptor

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "adaptor/scene_keys.h"
+#include "adaptor/keys/scene_keys.h"
 
 namespace volcontact::adaptor {
 

@@ -4,8 +4,8 @@
 #include <atomic>
 
 #include "adaptor/auto_attach.h"
-#include "adaptor/look_ahead.h"
 #include "adaptor/scene_registry.h"
+#include "adaptor/step/look_ahead.h"
 #include "adaptor/volcontact_mujoco.h"
 
 namespace volcontact::adaptor {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "adaptor/scene_contact.h"
+#include "adaptor/scene/scene_contact.h"
 
 namespace volcontact::adaptor {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "adaptor/model_content.h"
-#include "adaptor/scene_contact.h"
+#include "adaptor/scene/scene_contact.h"
 
 namespace volcontact::adaptor {
 

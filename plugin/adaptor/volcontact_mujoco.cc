@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "adaptor/auto_attach.h"
-#include "adaptor/contact_list.h"
+#include "adaptor/mujoco/mjgeoms.h"
 #include "adaptor/passive_callback.h"
-#include "adaptor/scene_description.h"
+#include "adaptor/scene/contact_list.h"
+#include "adaptor/scene/scene_description.h"
 #include "adaptor/scene_registry.h"
-#include "adaptor/solids_of_geoms.h"
 #include "adaptor/watched_steps.h"
 #include "volcontact/pair/picture/overlap_surface.h"
 

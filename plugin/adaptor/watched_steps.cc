@@ -6,9 +6,9 @@
 #include <limits>
 #include <numbers>
 
+#include "adaptor/mujoco/mjgeoms.h"
 #include "adaptor/passive_callback.h"
 #include "adaptor/scene_registry.h"
-#include "adaptor/solids_of_geoms.h"
 
 namespace volcontact::adaptor {
 namespace {

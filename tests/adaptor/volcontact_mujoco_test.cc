@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "adaptor/mujoco_compat.h"
+#include "adaptor/mujoco/mujoco_compat.h"
 #include "adaptor/support/models.h"
 
 namespace volcontact::adaptor::volcontact_mujoco_test {

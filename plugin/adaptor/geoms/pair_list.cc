@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/geoms/pair_list.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace volcontact::adaptor {
+namespace {
+
+bool masks_match(const mjModel* m, int a, int b) {
+  return (m->geom_contype[a] & m->geom_conaffinity[b]) != 0 ||
+         (m->geom_contype[b] & m->geom_conaffinity[a]) != 0;
+}
+
+bool are_parent_and_child(const mjModel* m, int weld_a, int weld_b) {
+  if (m->opt.disableflags & mjDSBL_FILTERPARENT) return false;
+  if (weld_a == 0 || weld_b == 0) return false;
+  const auto parent = [m](int weld) { return m->body_weldid[m->body_parentid[weld]]; };
+  return parent(weld_a) == weld_b || parent(weld_b) == weld_a;
+}
+
+std::map<std::pair<int, int>, int> explicit_pairs(const mjModel* m) {
+  std::map<std::pair<int, int>, int> pairs;
+  if (!collides_by_pairs(m)) return pairs;
+  for (int i = 0; i < m->npair; ++i) {
+    pairs.emplace(std::minmax(m->pair_geom1[i], m->pair_geom2[i]), i);
+  }
+  return pairs;
+}
+
+class PairRules {
+ public:
+  PairRules(const mjModel* m, const SceneKeys& keys, bool listed_only)
+      : m_(m),
+        keys_(keys),
+        listed_only_(listed_only),
+        explicit_(explicit_pairs(m)),
+        excluded_(m->exclude_signature, m->exclude_signature + m->nexclude) {}
+
+  // Whether the two can touch; fills in why.
+  bool admit(GeomPair& pair) const {
+    const int a = pair.a, b = pair.b;
+    if (!keys_.is_solid(a) || !keys_.is_solid(b)) return false;
+    const auto native = explicit_.find({a, b});
+    if (native != explicit_.end()) pair.native = native->second;
+    const auto listed = keys_.pair_of_geoms.find({a, b});
+    if (listed != keys_.pair_of_geoms.end()) {
+      pair.listed = listed->second;
+      pair.origin = PairOrigin::kListed;
+      return true;
+    }
+    if (listed_only_) return false;
+    if (m_->geom_type[a] == mjGEOM_PLANE && m_->geom_type[b] == mjGEOM_PLANE) return false;
+    const int body_a = m_->geom_bodyid[a], body_b = m_->geom_bodyid[b];
+    const int weld_a = m_->body_weldid[body_a], weld_b = m_->body_weldid[body_b];
+    if (weld_a == weld_b) return false;
+    pair.origin = PairOrigin::kExplicit;
+    if (pair.native >= 0) return true;
+    pair.origin = PairOrigin::kMasks;
+    return collides_by_masks(m_) && masks_match(m_, a, b) &&
+           !are_parent_and_child(m_, weld_a, weld_b) &&
+           !excluded_.count(exclude_signature(body_a, body_b));
+  }
+
+ private:
+  const mjModel* m_;
+  const SceneKeys& keys_;
+  bool listed_only_;
+  std::map<std::pair<int, int>, int> explicit_;
+  std::set<int> excluded_;
+};
+
+// With -max instead of max both ends are lower bounds of the same kind.
+Cull::Box world_bounds(const Shape& solid, const Pose& X_WG) noexcept {
+  return std::visit(
+      [&](const auto& s) {
+        Cull::Box box;
+        for (int i = 0; i < 3; ++i) {
+          const Vec3 axis = X_WG.rotation.row(i).transpose();
+          const double min = X_WG.translation[i] - s.support_height(-axis);
+          const double minus_max = -X_WG.translation[i] - s.support_height(axis);
+          box.ends[static_cast<std::size_t>(i)] = Cull::Two{min, minus_max};
+          box.reverse[static_cast<std::size_t>(i)] = Cull::Two{minus_max, min};
+        }
+        return box;
+      },
+      solid);
+}
+
+// Apart along an axis when min_a >= max_b or min_b >= max_a. Comparisons with NaN are false, so
+// that a pose that is no number reaches the engine, which reports it.
+bool are_apart(const Cull::Box& a, const Cull::Box& b) noexcept {
+  const auto apart = (a.ends[0] + b.reverse[0] >= 0.0) | (a.ends[1] + b.reverse[1] >= 0.0) |
+                     (a.ends[2] + b.reverse[2] >= 0.0);
+  return (apart[0] | apart[1]) != 0;
+}
+
+// Whether some of the solid at X_WG is below the plane geom's surface.
+bool reaches_plane(const mjData* d, int plane, const Shape& solid, const Pose& X_WG) noexcept {
+  const Pose X_WP = pose_of_geom(d, plane);
+  const Vec3 normal = X_WP.rotation.col(2);
+  const Vec3 down_G = -(X_WG.rotation.transpose() * normal);
+  const double height = normal.dot(X_WG.translation - X_WP.translation);
+  const double reach = std::visit([&](const auto& s) { return s.support_height(down_G); }, solid);
+  return !(height >= reach);
+}
+
+}  // namespace
+
+std::vector<GeomPair> pairs_that_can_touch(const mjModel* m, const SceneKeys& keys,
+                                           bool listed_only) {
+  const PairRules rules(m, keys, listed_only || keys.options.pairs == PairRule::kListed);
+  std::vector<GeomPair> pairs;
+  for (int a = 0; a < m->ngeom; ++a) {
+    for (int b = a + 1; b < m->ngeom; ++b) {
+      GeomPair pair{a, b, PairOrigin::kMasks, -1};
+      if (rules.admit(pair)) pairs.push_back(pair);
+    }
+  }
+  return pairs;
+}
+
+Cull::Cull(const std::vector<GeomPair>& pairs, const std::vector<Shape>& solids) {
+  std::map<int, int> index_of_geom;
+  const auto is_plane = [&](int geom) {
+    return std::holds_alternative<HalfSpace>(solids[static_cast<std::size_t>(geom)]);
+  };
+  const auto index_of = [&](int geom) {
+    const auto [entry, is_new] = index_of_geom.emplace(geom, static_cast<int>(bounded_.size()));
+    if (is_new) bounded_.push_back({geom, solids[static_cast<std::size_t>(geom)]});
+    return entry->second;
+  };
+  for (const GeomPair& pair : pairs) {
+    if (is_plane(pair.a)) {
+      candidates_.push_back({pair.a, index_of(pair.b), true});
+    } else if (is_plane(pair.b)) {
+      candidates_.push_back({pair.b, index_of(pair.a), true});
+    } else {
+      candidates_.push_back({index_of(pair.a), index_of(pair.b), false});
+    }
+  }
+}
+
+void Cull::run(const mjData* d, Scratch& scratch) const noexcept {
+  scratch.boxes.resize(bounded_.size());
+  for (std::size_t i = 0; i < bounded_.size(); ++i) {
+    scratch.boxes[i] = world_bounds(bounded_[i].solid, pose_of_geom(d, bounded_[i].geom));
+  }
+  scratch.near.clear();
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const Candidate& c = candidates_[i];
+    const auto second = static_cast<std::size_t>(c.second);
+    if (c.with_plane) {
+      const Bounded& other = bounded_[second];
+      if (reaches_plane(d, c.first, other.solid, pose_of_geom(d, other.geom))) {
+        scratch.near.push_back(static_cast<int>(i));
+      }
+      continue;
+    }
+    const Box& first = scratch.boxes[static_cast<std::size_t>(c.first)];
+    if (!are_apart(first, scratch.boxes[second])) scratch.near.push_back(static_cast<int>(i));
+  }
+}
+
+}  // namespace volcontact::adaptor

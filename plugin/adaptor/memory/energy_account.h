@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "adaptor/memory/userdata_layout.h"
+
+// How work and dissipated energy are summed over a simulation: docs/theory.md, "Energy".
+
+namespace volcontact::adaptor {
+
+/// The account at the evaluation `now` (whose `dissipated` is not looked at), when the power
+/// `mean_taken` acted for `elapsed` seconds since `before`. What bristles stored meanwhile is not
+/// dissipated; what they gave back, or lost with their site, is.
+inline EnergyAccount accounted(const EnergyAccount& before, const ByChannel& mean_taken,
+                               double elapsed, EnergyAccount now) {
+  now.dissipated = before.dissipated;
+  now.dissipated.normal += elapsed * mean_taken.normal;
+  now.dissipated.roll += elapsed * mean_taken.roll;
+  now.dissipated.slide += elapsed * mean_taken.slide - (now.slide_energy - before.slide_energy);
+  now.dissipated.spin += elapsed * mean_taken.spin - (now.spin_energy - before.spin_energy);
+  return now;
+}
+
+/// The same where one of the two is of an implicit step: the forces of `before` acted all the time,
+/// and all that they took from the motion counts, less what is stored now more than then.
+inline EnergyAccount accounted_whole(const EnergyAccount& before, double elapsed,
+                                     const EnergyAccount& now) {
+  ByChannel taken = before.taken;
+  taken.normal += before.stored;
+  EnergyAccount out = accounted(before, taken, elapsed, now);
+  const auto of_volumes = [](const EnergyAccount& e) {
+    return e.elastic - e.slide_energy - e.spin_energy;
+  };
+  out.dissipated.normal -= of_volumes(now) - of_volumes(before);
+  return out;
+}
+
+/// What is dissipated since the start at least, `elapsed` seconds after `before`, when `elastic` is
+/// stored now [J].
+inline double least_dissipated(const EnergyAccount& before, double elapsed, double elastic) {
+  const double since = elapsed * (before.taken.sum() + before.stored) - (elastic - before.elastic);
+  return before.dissipated.sum() + std::min(0.0, since);
+}
+
+/// Completes `now`, whose `dissipated` is there, by the `work` done and what mocap bodies have
+/// `driven` since `before` [J].
+inline void add_work(const EnergyAccount& before, double work, double driven, EnergyAccount& now) {
+  const double spent = now.dissipated.sum() - before.dissipated.sum();
+  now.work = before.work + work;
+  now.driven = before.driven + driven;
+  const double made = work + (now.elastic - before.elastic) - driven;
+  now.numerical = before.numerical - made - spent;
+  now.made = made - (now.released - before.released);
+}
+
+/// (1 - weight) a + weight b
+inline ByChannel between(const ByChannel& a, const ByChannel& b, double weight) {
+  const auto mix = [weight](double x, double y) { return (1.0 - weight) * x + weight * y; };
+  return {mix(a.normal, b.normal), mix(a.roll, b.roll), mix(a.slide, b.slide), mix(a.spin, b.spin)};
+}
+
+/// Opens the slot of an evaluation and says how the account goes on from its predecessors.
+class AccountKeeper {
+ public:
+  AccountKeeper(const UserdataBlock& block, double time, double step, bool runge_kutta)
+      : block_(block) {
+    // Runge-Kutta evaluates the middle of a step twice, with errors that cancel in the mean.
+    const bool redone = runge_kutta && block.count() > 0 && block.slot(0).time() == time;
+    const bool again = redone && block.slot(0).stage() == Stage::kMiddle;
+    if (again) first_middle_ = block.slot(0).energy();
+    // The last stage, at the end of a step, is the first evaluation there.
+    has_last_ = redone && block.count() > 1 && block.slot(1).stage() == Stage::kSecondMiddle;
+    if (has_last_) last_ = block.slot(0).energy();
+    elapsed_ = open_slot(block, time, step);
+    const bool half = runge_kutta && continues() && std::abs(2.0 * elapsed_ / step - 1.0) < 1e-6;
+    if (!half) return;
+    if (block.slot(1).stage() == Stage::kWhole) {
+      block.slot(0).set_stage(again ? Stage::kSecondMiddle : Stage::kMiddle);
+      is_within_step_ = true;
+    } else {
+      completes_ = block.count() > 2;
+      is_within_step_ = !redone;
+    }
+  }
+
+  bool continues() const { return block_.count() > 1; }
+  double elapsed() const { return elapsed_; }
+  /// Whether a step of Runge-Kutta goes on here, rather than begins.
+  bool is_within_step() const { return is_within_step_; }
+  /// The slot of the evaluation with which the step began that goes on or ends here, and the time
+  /// since then [s]; continues() only.
+  Slot begin() const { return block_.slot(completes_ ? 2 : 1); }
+  double since_begin() const { return completes_ ? 2.0 * elapsed_ : elapsed_; }
+
+  /// Writes the account of this evaluation: a whole Runge-Kutta step by its own rule, which is
+  /// Simpson's (work with the powers of its four stages), all else by the trapezoidal rule.
+  /// `later`: power of the forces of the evaluation before at the velocities of this one [W]. They
+  /// act over all of a step, so the mean of it and of their power then is the change of kinetic
+  /// energy that they make.
+  /// `driven`: the work of mocap bodies since then [J].
+  void write(EnergyAccount now, double later, double driven) const {
+    const Slot slot = block_.slot(0);
+    if (slot.stage() == Stage::kSecondMiddle) {
+      now.taken = between(first_middle_.taken, now.taken, 0.5);
+      now.force_power = std::midpoint(first_middle_.force_power, now.force_power);
+    }
+    if (!continues()) {
+      now.dissipated = {};
+    } else if (completes_) {
+      const EnergyAccount start = block_.slot(2).energy(), middle = block_.slot(1).energy();
+      if (start.implicit) {
+        now = accounted_whole(start, 2.0 * elapsed_, now);
+      } else {
+        const ByChannel& end = now.implicit && has_last_ ? last_.taken : now.taken;
+        const ByChannel ends = between(start.taken, end, 0.5);
+        now = accounted(start, between(ends, middle.taken, 2.0 / 3.0), 2.0 * elapsed_, now);
+      }
+      now.last_power = has_last_ ? last_.last_power : now.force_power;
+      const double mean = (start.force_power + 4.0 * middle.force_power + now.last_power) / 6.0;
+      add_work(start, 2.0 * elapsed_ * mean, driven, now);
+    } else {
+      const EnergyAccount before = block_.slot(1).energy();
+      now = before.implicit || now.implicit
+                ? accounted_whole(before, elapsed_, now)
+                : accounted(before, between(before.taken, now.taken, 0.5), elapsed_, now);
+      add_work(before, elapsed_ * std::midpoint(before.force_power, later), driven, now);
+    }
+    slot.set_energy(now);
+  }
+
+ private:
+  UserdataBlock block_;
+  double elapsed_ = 0.0;
+  bool completes_ = false;  // this evaluation ends a Runge-Kutta step
+  bool is_within_step_ = false;
+  EnergyAccount first_middle_;
+  bool has_last_ = false;
+  EnergyAccount last_;  // of the last stage
+};
+
+}  // namespace volcontact::adaptor

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// The forces of a solved step cannot be had from positions and velocities alone. SceneContact keeps
+// them: for whoever reads them, and for the later stages of a Runge-Kutta step, in which they go on
+// to act as they are, so that the work they do is the one that was solved for.
+#include <algorithm>
+#include <cstddef>
+
+#include "adaptor/scene/report_sums.h"
+#include "adaptor/scene/scene_contact.h"
+
+namespace volcontact::adaptor {
+namespace {
+
+void set_forces(const HeldSite& held, SiteReport& site) {
+  site.normal_force = held.normal_force();
+  site.force_on_A = held.force();
+  site.torque_on_A =
+      held.torque() + (held.centroid() - site.metrics.centroid).cross(site.force_on_A);
+}
+
+// Forces that were solved at other poses act at the present sites.
+void set_forces(const UserdataBlock& our, int first, int count, ContactReport& report) {
+  if (report.sites.empty()) return;
+  if (static_cast<std::size_t>(count) == report.sites.size()) {
+    for (int i = 0; i < count; ++i) {
+      set_forces(our.solved_site(first + i), report.sites[static_cast<std::size_t>(i)]);
+    }
+    return;
+  }
+  for (SiteReport& site : report.sites) {
+    site.normal_force = 0.0;
+    site.force_on_A.setZero();
+    site.torque_on_A.setZero();
+  }
+  SiteReport& largest = *std::max_element(
+      report.sites.begin(), report.sites.end(),
+      [](const auto& x, const auto& y) { return x.metrics.volume < y.metrics.volume; });
+  for (int i = first; i < first + count; ++i) {
+    SiteReport part = largest;
+    set_forces(our.solved_site(i), part);
+    largest.normal_force += part.normal_force;
+    largest.force_on_A += part.force_on_A;
+    largest.torque_on_A += part.torque_on_A;
+  }
+}
+
+// Walks through the kept sites, which are in the order of their pairs.
+class Kept {
+ public:
+  explicit Kept(const UserdataBlock& our) : our_(our) {}
+
+  /// Puts the forces of a pair into its report; false when none are kept. Ascending pairs only.
+  bool take(int pair, ContactReport& report) {
+    while (next_ < our_.solved() && our_.solved_site(next_).pair() < pair) ++next_;
+    const int first = next_;
+    while (next_ < our_.solved() && our_.solved_site(next_).pair() == pair) ++next_;
+    if (first == next_) return false;
+    set_forces(our_, first, next_ - first, report);
+    return true;
+  }
+
+ private:
+  UserdataBlock our_;
+  int next_ = 0;
+};
+
+}  // namespace
+
+void SceneContact::keep_solved(const UserdataBlock& our, const Scratch& scratch) const noexcept {
+  int count = 0;
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    const std::vector<SiteReport>& sites = scratch.reports[k].sites;
+    if (!scratch.held[k]) continue;
+    if (count + std::ssize(sites) > solved_rows_) break;
+    for (const SiteReport& site : sites) our.solved_site(count++).set(scratch.cull.near[k], site);
+  }
+  our.set_solved(count);
+}
+
+void SceneContact::recall_solved(const UserdataBlock& our, Scratch& scratch) const noexcept {
+  Kept kept(our);
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    kept.take(scratch.cull.near[k], scratch.reports[k]);
+  }
+}
+
+// At a later stage of Runge-Kutta.
+void SceneContact::hold_solved(const mjModel* m, mjData* d, const UserdataBlock& our,
+                               Scratch& scratch) const noexcept {
+  Kept kept(our);
+  scratch.stiff.clear();
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    ContactReport& report = scratch.reports[k];
+    scratch.held[k] = kept.take(scratch.cull.near[k], report) ? 1 : 0;
+    const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
+    for (std::size_t i = 0; i < report.sites.size(); ++i) {
+      const bool is_stiff = scratch.held[k] || this->is_stiff(m, d, pair, report, i,
+                                                              ExplicitBounds::of_stage(), scratch);
+      scratch.stiff.push_back(is_stiff ? 1 : 0);
+    }
+  }
+}
+
+void SceneContact::postpone_stiff(Scratch& scratch) const noexcept {
+  std::size_t site = 0;
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    ContactReport& report = scratch.reports[k];
+    bool is_stiff = false;
+    for (std::size_t i = 0; i < report.sites.size(); ++i) {
+      is_stiff = scratch.stiff[site++] != 0 || is_stiff;
+    }
+    if (is_stiff && !scratch.held[k]) take_share(0.0, report);
+  }
+}
+
+}  // namespace volcontact::adaptor

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// How SceneContact reads a scene.
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "adaptor/geoms/native_pairs.h"
+#include "adaptor/geoms/solids_of_geoms.h"
+#include "adaptor/keys/scene_key.h"
+#include "adaptor/scene/largest_state.h"
+#include "adaptor/scene/scene_contact.h"
+#include "volcontact/base/check.h"
+
+namespace volcontact::adaptor {
+namespace {
+
+// An engine may use the threads that are free: the guard of the evaluation sets how many there are.
+constexpr int kInnerThreads = 0;
+
+// Takes over and adds to `meshes`, by number; copies share their data.
+std::vector<Shape> solids_of(const mjModel* m, const SceneKeys& keys,
+                             const std::vector<GeomPair>& pairs, std::map<int, Shape>& meshes) {
+  std::vector<Shape> solids(static_cast<std::size_t>(m->ngeom), Shape(HalfSpace()));
+  std::set<int> geoms;
+  for (const GeomPair& pair : pairs) geoms.insert({pair.a, pair.b});
+  for (const int geom : geoms) {
+    Shape& solid = solids[static_cast<std::size_t>(geom)];
+    const ComposedGeoms* parts = keys.composed(geom);
+    if (parts) {
+      solid = composed_solid(m, *parts, keys);
+    } else if (m->geom_type[geom] == mjGEOM_MESH && !keys.given_shape(geom)) {
+      const int mesh = m->geom_dataid[geom];
+      const auto known = meshes.find(mesh);
+      solid = known != meshes.end() ? known->second : solid_of_geom(m, geom, keys.options.mesh);
+      meshes.emplace(mesh, solid);
+    } else {
+      solid = simple_solid(m, geom, keys);
+    }
+  }
+  return solids;
+}
+
+std::vector<GeomPair> pairs_of(const mjModel* m, const SceneKeys& keys, bool listed_only) {
+  require(m->ngeom > 0, "the model has no geoms: there is nothing that could touch");
+  return pairs_that_can_touch(m, keys, listed_only);
+}
+
+// The flag with which the author of the model turned contact off; empty where it is on, or where
+// the model asks for volumetric contact by keys or by our plugin. In an attached model the flag of
+// contacts is ours.
+std::string flag_without_contact(const mjModel* m, const SceneKeys& keys) {
+  if (keys.options.disabled == Disabled::kIgnore || has_scene_keys(m)) return {};
+  if (plugin_room(m).size > 0) return {};
+  if (m->opt.disableflags & mjDSBL_CONSTRAINT) return "constraint=\"disable\"";
+  const bool is_ours = (m->opt.disableflags & kAttachedMark) != 0;
+  return (m->opt.disableflags & mjDSBL_CONTACT) && !is_ours ? "contact=\"disable\"" : "";
+}
+
+int rows_of(const std::vector<GeomPair>& pairs) {
+  std::set<int> geoms;
+  for (const GeomPair& pair : pairs) geoms.insert({pair.a, pair.b});
+  return rows_for(pairs.size(), geoms.size());
+}
+
+// What to tell the author when the flags of the model make MuJoCo leave out the callback; empty
+// when they do not.
+std::string skipped_warning(const mjModel* m) {
+  const std::string flags = flags_that_skip_passive(m);
+  if (flags.empty()) return {};
+  return "MuJoCo does not call the passive callback with <flag " + flags +
+         "/>: there will be no contact at all";
+}
+
+}  // namespace
+
+SceneContact::SceneContact(const mjModel* m, const std::vector<GivenKey>& given,
+                           const SceneContact* before)
+    : keys_(read_scene_keys(m, given)),
+      no_contact_(before != nullptr ? before->no_contact_ : flag_without_contact(m, keys_)),
+      geom_pairs_(pairs_of(m, keys_, !no_contact_.empty())),
+      meshes_(before != nullptr && before->options().mesh == options().mesh
+                  ? before->meshes_
+                  : std::map<int, Shape>()),
+      solids_(solids_of(m, keys_, geom_pairs_, meshes_)),
+      cull_(geom_pairs_, solids_) {
+  warn_about_model(m);
+  if (!no_contact_.empty()) {
+    warn_once(
+        "the model has <flag " + no_contact_ +
+        "/>, so there is no contact; volcontact/option/disabled/ignore makes it volumetric all the "
+        "same");
+  } else if (geom_pairs_.empty()) {
+    warn_once("no two geoms can touch: check contype, conaffinity and volcontact/option/pairs");
+  }
+  warn_about_meshes(m);
+  pairs_.reserve(geom_pairs_.size());
+  for (const GeomPair& pair : geom_pairs_) add_pair(m, pair);
+  warn_about_friction(m);
+  if (sites_.row_size > 0) sites_.rows = rows_of(geom_pairs_);
+  if (options().implicit != Implicit::kNever) solved_rows_ = rows_of(geom_pairs_);
+  energies_ = {solved_rows_, PairEnergy::kNumbers};
+}
+
+void SceneContact::find_room(const mjModel* m, const SceneContact* before) {
+  const auto present = static_cast<long long>(m->nuserdata);
+  plugin_ = plugin_room(m);
+  // mjSTATE_FULLPHYSICS has plugin_state, but not the forces that the user applies.
+  if (is_in_plugin() && !keys_.has_target) keys_.options.target = Target::kPassive;
+  const int needed = layout(m).size();
+  if (is_in_plugin()) {
+    require(plugin_.size >= needed, "the state of the plugin has " + std::to_string(plugin_.size) +
+                                        " numbers and the scene needs " + std::to_string(needed) +
+                                        ": compile it anew with this volcontact");
+    return;
+  }
+  if (present >= needed) return;
+  const bool is_passive = options().target == Target::kPassive;
+  require(
+      !has_scene_keys(m) && (is_passive || !keys_.has_target),
+      "mjData.userdata is too small: volcontact needs " + std::to_string(needed) +
+          " numbers at its end and nuserdata is " + std::to_string(present) +
+          "; load the scene with volcontact.load, or write <size nuserdata=\"" +
+          std::to_string(needed + present) + "\"/> into it" +
+          (has_scene_keys(m) ? "" : "; without room there is volcontact/option/target/passive"));
+  keys_.options.target = Target::kPassive;
+  beside_ = before && before->beside_ ? before->beside_ : std::make_shared<SideStates>();
+  if (sites_.row_size == 0) return;
+  alert(
+      "the model has no room in userdata, so what laws with a memory keep, as bristle and "
+      "restitution do, lies beside mjData: it is not copied, reset or restored with it; load the "
+      "scene with volcontact.load");
+}
+
+void SceneContact::warn_about_meshes(const mjModel* m) {
+  std::set<std::string> hulls;
+  for (int geom = 0; geom < m->ngeom; ++geom) {
+    const Shape& solid = solids_[static_cast<std::size_t>(geom)];
+    const Mesh* mesh = std::get_if<Mesh>(&solid);
+    if (mesh != nullptr && mesh->topology().turned) {
+      warn_once("mesh '" + label(m, mjOBJ_MESH, m->geom_dataid[geom]) +
+                "': all its triangles pointed inwards; they were turned");
+    }
+    if (options().mesh == MeshForm::kExactOrHull && std::holds_alternative<ConvexPolytope>(solid)) {
+      hulls.insert(label(m, mjOBJ_MESH, m->geom_dataid[geom]));
+    }
+  }
+  if (hulls.empty()) return;
+  alert("the convex hull stands for meshes that bound no solid: " +
+        joined({hulls.begin(), hulls.end()}));
+}
+
+void SceneContact::warn_once(const std::string& warning) {
+  if (std::find(warnings_.begin(), warnings_.end(), warning) == warnings_.end()) {
+    warnings_.push_back(warning);
+  }
+}
+
+void SceneContact::alert(const std::string& warning) {
+  warn_once(warning);
+  alerts_.push_back(warning);
+}
+
+void SceneContact::add_pair(const mjModel* m, const GeomPair& geoms) {
+  const int native = geoms.native;
+  const auto side = [&](int geom) {
+    const int material = keys_.material_of_geom[static_cast<std::size_t>(geom)];
+    return Side{label(m, mjOBJ_GEOM, geom),
+                native < 0 ? m->geom_friction[3 * geom] : m->pair_friction[5 * native],
+                material < 0 ? nullptr : &keys_.materials[static_cast<std::size_t>(material)],
+                native < 0 ? "" : native_pair_label(m, native)};
+  };
+  const std::vector<std::string> unused =
+      native < 0 ? std::vector<std::string>() : native_pair_fields_unused(m, native);
+  if (!unused.empty()) {
+    warn_once(native_pair_label(m, native) + ": " + joined(unused) +
+              (unused.size() == 1 ? " has" : " have") +
+              " no meaning under volumetric contact; of a <pair> its sliding friction counts");
+  }
+  const KeyedValues* listed =
+      geoms.listed < 0 ? nullptr : &keys_.pairs[static_cast<std::size_t>(geoms.listed)].keyed;
+  PairLaws laws = combine(side(geoms.a), side(geoms.b), listed);
+  for (const std::string& warning : laws.warnings) warn_once(warning);
+  laws.laws.formulation = keys_.options.formulation;
+
+  const Shape& a = solids_[static_cast<std::size_t>(geoms.a)];
+  const Shape& b = solids_[static_cast<std::size_t>(geoms.b)];
+  const SceneOptions& options = keys_.options;
+  Engine engine = options.engine == Engine::kAuto ? engine_for(a, b) : options.engine;
+  const int most_cells = options.engine == Engine::kOctree ? kMostCells : kMostCellsInStep;
+  if (options.formulation == Formulation::kPotential) {
+    const std::string reason = why_no_pressure_field(a, b, options.engine);
+    require(reason.empty(), "volcontact/option/formulation/potential does not serve geoms '" +
+                                label(m, mjOBJ_GEOM, geoms.a) + "' and '" +
+                                label(m, mjOBJ_GEOM, geoms.b) + "', " + name_of(a) + " with " +
+                                name_of(b) + ": " + reason +
+                                "; or use formulation/gonthier, or exclude them");
+  }
+  if (!serves(engine, a, b)) {
+    warn_once(std::string("engine ") + to_string(engine) + " does not serve " + name_of(a) +
+              " with " + name_of(b) + "; auto serves them");
+    engine = engine_for(a, b);
+  }
+  ContactModel model({{a, b, Pose{}, Pose{}}}, laws.laws,
+                     {options.tolerance, engine, kInnerThreads, most_cells});
+  sites_.row_size = std::max(sites_.row_size, model.row_size());
+  pairs_.push_back({geoms, engine, std::move(laws), std::move(model), 0.0, 0.0, 0.0});
+  set_rates(m, pairs_.back());
+}
+
+void SceneContact::warn_about_model(const mjModel* m) {
+  const std::string skipped = skipped_warning(m);
+  if (!skipped.empty()) alert(skipped);
+  if (has_flexes(m)) warn_once("flexes have no volumetric contact: they touch nothing");
+  if (keys_.options.target != Target::kXfrc) {
+    for (int i = 0; i < m->nsensor; ++i) {
+      const int type = m->sensor_type[i];
+      if (type == mjSENS_FORCE || type == mjSENS_TORQUE) {
+        warn_once(
+            "force and torque sensors see the contact only with "
+            "volcontact/option/target/xfrc");
+      }
+    }
+  }
+  for (int i = 0; i < m->nsensor; ++i) {
+    if (m->sensor_type[i] == mjSENS_TOUCH) {
+      warn_once(
+          "touch sensors see native contacts only, until contact.update_touch(data) or "
+          "volcontact_update_touch writes them");
+    }
+  }
+}
+
+}  // namespace volcontact::adaptor

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/step/contact_islands.h"
+
+#include <algorithm>
+
+#include "adaptor/mujoco/sizes.h"
+
+namespace volcontact::adaptor {
+namespace {
+
+constexpr int kNone = -1;
+
+}  // namespace
+
+int ContactIslands::tree_of(const mjModel* m, int body) const {
+  if (m->body_weldid[body] == 0) return kNone;
+  return tree_of_root_[size(m->body_rootid[body])];
+}
+
+void ContactIslands::find_trees(const mjModel* m) {
+  trees_.clear();
+  tree_of_root_.assign(size(static_cast<int>(m->nbody)), kNone);
+  for (int dof = 0; dof < m->nv; ++dof) {
+    int& tree = tree_of_root_[size(m->body_rootid[m->dof_bodyid[dof]])];
+    if (tree == kNone) {
+      tree = static_cast<int>(trees_.size());
+      trees_.push_back({dof, dof});
+    }
+    trees_[size(tree)].end = dof + 1;
+  }
+}
+
+// The neighbours of each tree, one after the other; itself for a place that it has alone.
+void ContactIslands::link(const mjModel* m, std::span<const ContactPlace> places,
+                          std::span<const std::pair<int, int>> joined) {
+  ends_.clear();
+  pairs_.clear();
+  for (const ContactPlace& place : places) {
+    const auto& [a, b] = ends_.emplace_back(tree_of(m, place.body_a), tree_of(m, place.body_b));
+    if (a != kNone || b != kNone) pairs_.emplace_back(a == kNone ? b : a, b == kNone ? a : b);
+  }
+  for (const auto& [a, b] : joined) {
+    const int tree_a = tree_of(m, m->dof_bodyid[a]), tree_b = tree_of(m, m->dof_bodyid[b]);
+    if (tree_a != tree_b) pairs_.emplace_back(tree_a, tree_b);
+  }
+  link_begin_.assign(trees_.size() + 2, 0);
+  for (const auto& [a, b] : pairs_) {
+    ++link_begin_[size(a) + 2];
+    ++link_begin_[size(b) + 2];
+  }
+  for (std::size_t i = 2; i < link_begin_.size(); ++i) link_begin_[i] += link_begin_[i - 1];
+  links_.resize(size(link_begin_.back()));
+  for (const auto& [a, b] : pairs_) {
+    links_[size(link_begin_[size(a) + 1]++)] = b;
+    links_[size(link_begin_[size(b) + 1]++)] = a;
+  }
+}
+
+// Fills the queue with all trees that can be reached, near ones first.
+void ContactIslands::visit_from(int tree) {
+  queue_.clear();
+  queue_.push_back(tree);
+  seen_[size(tree)] = 1;
+  for (std::size_t i = 0; i < queue_.size(); ++i) {
+    const int at = queue_[i];
+    for (int k = link_begin_[size(at)]; k < link_begin_[size(at) + 1]; ++k) {
+      const int other = links_[size(k)];
+      if (seen_[size(other)]) continue;
+      seen_[size(other)] = 1;
+      queue_.push_back(other);
+    }
+  }
+}
+
+void ContactIslands::add_island(int tree) {
+  visit_from(tree);
+  const int far = queue_.back();
+  for (const int other : queue_) seen_[size(other)] = 0;
+  visit_from(far);
+  const int island = count();
+  const int begin = static_cast<int>(ordered_trees_.size());
+  for (std::size_t i = queue_.size(); i-- > 0;) {
+    const std::size_t member = size(queue_[i]);
+    island_of_[member] = island;
+    rank_[member] = static_cast<int>(ordered_trees_.size()) - begin;
+    ordered_trees_.push_back(trees_[member]);
+  }
+  islands_.push_back({0, 0, begin, static_cast<int>(ordered_trees_.size())});
+}
+
+void ContactIslands::sort_places() {
+  const auto island_of = [&](const std::pair<int, int>& ends) {
+    const int tree = std::max(ends.first, ends.second);
+    return tree == kNone ? kNone : island_of_[size(tree)];
+  };
+  for (const auto& ends : ends_) {
+    if (const int island = island_of(ends); island != kNone) ++islands_[size(island)].places_end;
+  }
+  int count = 0;
+  next_.clear();
+  for (Island& island : islands_) {
+    island.places_begin = count;
+    island.places_end = count += island.places_end;
+    next_.push_back(island.places_begin);
+  }
+  ordered_places_.resize(size(count));
+  for (std::size_t i = 0; i < ends_.size(); ++i) {
+    const int island = island_of(ends_[i]);
+    if (island != kNone) ordered_places_[size(next_[size(island)]++)] = static_cast<int>(i);
+  }
+}
+
+void ContactIslands::build(const mjModel* m, std::span<const ContactPlace> places,
+                           std::span<const std::pair<int, int>> joined) noexcept {
+  find_trees(m);
+  link(m, places, joined);
+  islands_.clear();
+  ordered_trees_.clear();
+  seen_.assign(trees_.size(), 0);
+  island_of_.assign(trees_.size(), kNone);
+  rank_.assign(trees_.size(), 0);
+  for (int tree = 0; tree < static_cast<int>(trees_.size()); ++tree) {
+    const bool alone = link_begin_[size(tree)] == link_begin_[size(tree) + 1];
+    if (!alone && !seen_[size(tree)]) add_island(tree);
+  }
+  sort_places();
+}
+
+std::span<const int> ContactIslands::places(int island) const {
+  const Island& at = islands_[size(island)];
+  return {ordered_places_.data() + at.places_begin, size(at.places_end - at.places_begin)};
+}
+
+std::span<const DofRange> ContactIslands::trees(int island) const {
+  const Island& at = islands_[size(island)];
+  return {ordered_trees_.data() + at.trees_begin, size(at.trees_end - at.trees_begin)};
+}
+
+std::pair<int, int> ContactIslands::trees_of(int place) const {
+  const auto [a, b] = ends_[size(place)];
+  return {a == kNone ? kNone : rank_[size(a)], b == kNone ? kNone : rank_[size(b)]};
+}
+
+int ContactIslands::island_of(const mjModel* m, int dof) const {
+  const int tree = tree_of(m, m->dof_bodyid[dof]);
+  return tree == kNone ? kNone : island_of_[size(tree)];
+}
+
+}  // namespace volcontact::adaptor

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// What ImplicitStep does about friction.
+#include <algorithm>
+#include <cmath>
+
+#include "adaptor/mujoco/sizes.h"
+#include "adaptor/step/implicit_step.h"
+
+namespace volcontact::adaptor {
+namespace {
+
+// The speed s at which friction of the damping c(s) leaves what would move at `free`:
+// s (1 + mobility c(s)) = free. Illinois' rule: c(s) s grows with s, or is constant.
+template <typename DampingAt>
+double speed_left(double free, double mobility, const DampingAt& damping_at) {
+  constexpr int kSteps = 12;
+  constexpr double kPrecision = 1e-6;
+  if (!(free > 0.0)) return 0.0;
+  double low = 0.0, high = free, below = -free, above = mobility * damping_at(free) * free;
+  double at = free;
+  int side = 0;  // of the last step
+  for (int i = 0; i < kSteps && above > 0.0 && high - low > kPrecision * high; ++i) {
+    at = (low * above - high * below) / (above - below);
+    const double error = at * (1.0 + mobility * damping_at(at)) - free;
+    if (error > 0.0) {
+      if (side > 0) below *= 0.5;
+      high = at;
+      above = error;
+      side = 1;
+    } else {
+      if (side < 0) above *= 0.5;
+      low = at;
+      below = error;
+      side = -1;
+    }
+    if (std::abs(error) <= kPrecision * free) break;
+  }
+  return at;
+}
+
+}  // namespace
+
+// Slip as the friction law sees it: along t_1, along t_2, lever times about n.
+Vec3 ImplicitStep::slip_of(const Site& site, const std::vector<double>& u,
+                           std::size_t i) const noexcept {
+  const double* at = &u[i * size(kRows) + 3];
+  return {at[0], at[1], site.tangent.friction.lever * at[2]};
+}
+
+// Friction under the normal forces of the last solution and at its slip: a spring and a damper
+// while it holds, Coulomb's where it would have to hold more.
+void ImplicitStep::set_friction(double step) noexcept {
+  for (std::size_t i = 0; i < island_.size(); ++i) {
+    Site& site = this->site(i);
+    if (!site.laws.has_friction()) continue;
+    const double normal_force = this->normal_force(i);
+    const Vec3 slip = slip_of(site, velocity_, i);
+    const Mat3& axes = site.tangent.axes;
+    const Vec3 along = axes.leftCols<2>() * slip.head<2>();
+    const double spin = velocity_[i * size(kRows) + 5];
+    if (!site.laws.friction_keeps()) {
+      set_damper(site, normal_force, along, spin, slip.norm());
+      continue;
+    }
+    const FrictionOutput still = site.laws.friction(normal_force, Vec3::Zero(), 0.0);
+    const FrictionSlope slope = site.laws.friction_slope(normal_force, along, spin);
+    site.tangent.friction = slope;
+    const double lever = slope.lever;
+    const Vec3 held(axes.col(0).dot(still.force), axes.col(1).dot(still.force),
+                    lever > 0.0 ? still.torque / lever : 0.0);
+    // What acts at present, after the last solution, and how much a force slows the slip.
+    const double* f = &force_[i * size(kRows) + 3];
+    const Vec3 acting(f[0], f[1], lever > 0.0 ? f[2] / lever : 0.0);
+    const Vec3 wanted = held - (slope.damping + step * slope.stiffness) * slip;
+    const double speed = slip.norm();
+    const Vec3 direction = speed > 0.0 ? Vec3(slip / speed) : Vec3::UnitX();
+    const Vec3 scaled(direction[0], direction[1], lever * direction[2]);
+    const double mobility = scaled.dot(space_.mobility(i).bottomRightCorner<3, 3>() * scaled);
+    // The speed at which Coulomb's friction leaves it, when what acts now is replaced by it.
+    const double left = speed - step * mobility * (slope.strength + acting.dot(direction));
+    if (wanted.norm() > slope.strength && left > 0.0) {
+      site.held.setZero();
+      site.rub = slope.strength / left;
+    } else {
+      site.held = {held[0], held[1], lever * held[2]};
+      site.rub = slope.damping + step * slope.stiffness;
+    }
+  }
+}
+
+// Friction that keeps nothing: a damper, that at the slip which it leaves. How much it slows the
+// slip is known from the last solution.
+void ImplicitStep::set_damper(Site& site, double normal_force, const Vec3& along, double spin,
+                              double speed) const noexcept {
+  const auto slope_at = [&](double at) {
+    const double share = speed > 0.0 ? at / speed : 0.0;
+    return site.laws.friction_slope(normal_force, share * along, share * spin);
+  };
+  double at = speed;
+  if (site.rub > 0.0 && speed > 0.0 && speed < site.free_speed) {
+    const double mobility = (site.free_speed / speed - 1.0) / site.rub;
+    at = speed_left(site.free_speed, mobility, [&](double s) { return slope_at(s).damping; });
+  }
+  const FrictionSlope slope = slope_at(at);
+  site.tangent.friction = slope;
+  site.held.setZero();
+  site.rub = slope.damping;
+}
+
+// The share that friction can hold of what it was solved to hold at a site.
+double ImplicitStep::held_share(std::size_t i) const noexcept {
+  const Site& site = this->site(i);
+  if (!site.laws.has_friction()) return 1.0;
+  const double* f = &force_[i * size(kRows)];
+  const Vec3 slip = slip_of(site, velocity_, i);
+  const Vec3 along = site.tangent.axes.leftCols<2>() * slip.head<2>();
+  const FrictionSlope slope =
+      site.laws.friction_slope(normal_force(i), along, velocity_[i * size(kRows) + 5]);
+  const double size_of_it = std::hypot(f[3], f[4], slope.lever > 0.0 ? f[5] / slope.lever : 0.0);
+  return size_of_it > slope.strength ? slope.strength / size_of_it : 1.0;
+}
+
+// Shortens what friction was solved to hold to what it can hold.
+void ImplicitStep::bound_friction() noexcept {
+  for (std::size_t i = 0; i < island_.size(); ++i) {
+    const double share = held_share(i);
+    if (share == 1.0) continue;
+    double* f = &force_[i * size(kRows)];
+    for (int k = 3; k < kRows; ++k) f[k] *= share;
+  }
+}
+
+// Makes dampers of what friction cannot hold, so weak that it can, and solves again.
+void ImplicitStep::damp_friction(double step) noexcept {
+  constexpr int kPasses = 3;
+  constexpr double kSlight = 0.99;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    bool changed = false;
+    for (std::size_t i = 0; i < island_.size(); ++i) {
+      const double share = held_share(i);
+      if (share > kSlight) continue;
+      Site& site = this->site(i);
+      const double speed = slip_of(site, velocity_, i).norm();
+      const double* f = &force_[i * size(kRows) + 3];
+      const double lever = site.tangent.friction.lever;
+      const double bears = std::hypot(f[0], f[1], lever > 0.0 ? f[2] / lever : 0.0);
+      site.held.setZero();
+      site.rub = speed > 0.0 ? share * bears / speed : 0.0;
+      changed = true;
+    }
+    if (!changed) return;
+    solve_active(true, step);
+  }
+}
+
+}  // namespace volcontact::adaptor

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "adaptor/memory/work_limit.h"
+#include "adaptor/step/contact_equations.h"
+#include "volcontact/model/site_laws.h"
+
+namespace volcontact::adaptor {
+
+/// What a step makes implicit.
+enum class ImplicitParts : int {
+  kStiff = 0,  ///< directions in which the patch is too stiff for an explicit step
+  kAll = 1,
+  kHeld = 2,  ///< all, of forces that are held through the stages of a Runge-Kutta step
+};
+
+/// An explicit step holds a damper up to h c/m = 2, and reverses the motion from 1 on: `auto` makes
+/// implicit what lies above this bound.
+inline constexpr double kStiffDamper = 0.5;
+
+/// What a step holds of explicit forces, with room to spare: h^2 k/m of a spring, h c/m of a
+/// damper.
+struct ExplicitBounds {
+  double spring, damper;
+  /// Whether friction that is too stiff makes no pair implicit. Runge-Kutta goes on to be of fourth
+  /// order where the slip reverses in an impact that it resolves, and may chatter at rest.
+  bool friction_is_explicit;
+
+  static constexpr ExplicitBounds of(bool is_rk4) noexcept {
+    return is_rk4 ? ExplicitBounds{0.5, 1.4, true}
+                  : ExplicitBounds{kStiffNumber, kStiffDamper, false};
+  }
+  /// Of the later stages of Runge-Kutta, for what the first of them held.
+  static constexpr ExplicitBounds of_stage() noexcept { return {1.0, 2.0, true}; }
+};
+
+/// Pairs whose patch, were it as large as the smaller solid, stays below this are always left to
+/// the explicit force.
+inline constexpr double kPossibleNumber = 0.5;
+
+/// Power that goes into the elastic energy of the volumes of a report that keeps its inputs [W].
+inline double stored_power(const ContactReport& report) noexcept {
+  double power = 0.0;
+  for (std::size_t i = 0; i < report.inputs.size(); ++i) {
+    power += report.inputs[i].normal_out.elastic * report.sites[i].approach_speed;
+  }
+  return power;
+}
+
+/// One step of the contact forces that is implicit in them, to first order: docs/theory.md,
+/// "Implicit step". For each site f = e - C u', with u' the relative motion at the end of the step;
+/// all sites of an island at once, none pulling, friction within what the solved normal force
+/// holds. An island without a stiff site keeps its explicit forces. Memory is reused from step to
+/// step.
+class ImplicitStep {
+ public:
+  void clear() noexcept;
+
+  /// The sites that follow are of another pair of geoms, whose work is limited.
+  void begin_pair(const WorkLimit& limit) noexcept { limits_.push_back(limit); }
+
+  /// A site of the last pair. The report keeps its inputs. `driven`: of a against b, the motion at
+  /// the site that no degree of freedom makes. `is_stiff`: an explicit step could not hold it.
+  void add(const ContactModel& model, ContactReport& report, std::size_t site, int body_a,
+           int body_b, const Twist& driven, bool is_stiff) noexcept;
+
+  bool empty() const noexcept { return sites_.empty(); }
+
+  /// Of the pair that began as number i: whether its forces were solved, and the work they do over
+  /// the step.
+  bool is_pair_solved(std::size_t i) const noexcept { return limits_[i].is_solved; }
+  double work(std::size_t i) const noexcept { return limits_[i].work(); }
+  double friction_work(std::size_t i) const noexcept { return limits_[i].friction_work; }
+  double released_at_most(std::size_t i) const noexcept { return limits_[i].released_at_most(); }
+
+  /// Solves, with the known forces of contact_space.h, and puts the results into the reports: the
+  /// forces, and as `taken` the power that the contact takes from the motion over the step.
+  void solve(const mjModel* m, mjData* d, ImplicitParts parts, const double* known) noexcept;
+
+  // For tests: the linear model of site i, f = e - C u', as last solved, and the solution.
+  ContactSpace::Block constant(std::size_t site) const noexcept;
+  Eigen::Matrix<double, 6, 6> slope(std::size_t site) const noexcept;
+  const ContactSpace::Block& force(std::size_t site) const noexcept { return sites_[site].force; }
+  bool is_solved(std::size_t site) const noexcept { return sites_[site].is_solved; }
+
+ private:
+  // A patch is borne at up to four points, which have its area and moments; none of them pulls.
+  struct Point {
+    Vec3 motion = Vec3::Zero();  // of the point along n, by the normal coordinates: (1, y, -x)
+    double constant = 0.0;       // f = constant - slope * speed
+    double full = 0.0;           // the constant without a limit
+    double slope = 0.0;
+    bool pushes = true;
+  };
+  struct Site {
+    SiteLaws laws;
+    const ContactModel* model;
+    ContactReport* report;
+    std::size_t index;
+    SiteTangent tangent;
+    std::array<Point, 4> points{};
+    int point_count = 0;
+    Mat3 rolls = Mat3::Zero();  // L of L L', the damping of turns where the points have none
+    std::size_t pair = 0;
+    bool is_stiff = false;
+    bool is_solved = false;
+    ContactSpace::Block force = ContactSpace::Block::Zero();
+
+    bool pushes() const {
+      return std::any_of(points.begin(), points.begin() + point_count,
+                         [](const Point& point) { return point.pushes; });
+    }
+    // Friction: force = held - rub * slip, or `rub` alone where it slides; as (t_1, t_2, about n).
+    Vec3 held = Vec3::Zero();
+    double rub = 0.0;
+    double free_speed = 0.0;  // slip at the end of the step without friction
+  };
+  // How friction is brought within what it can hold: cut after the solution, which is quick, or
+  // solved again as a damper, which can only dissipate.
+  enum class FrictionBound { kCut, kDamped };
+
+  Site& site(std::size_t i) noexcept { return sites_[static_cast<std::size_t>(island_[i])]; }
+  const Site& site(std::size_t i) const noexcept {
+    return sites_[static_cast<std::size_t>(island_[i])];
+  }
+  void solve_island(ImplicitParts parts, double step, double resting) noexcept;
+  void solve_contacts(FrictionBound bound, double step) noexcept;
+  void limit_work(double step, double resting) noexcept;
+  void add_up_work(double step, double resting) noexcept;
+  void set_shares() noexcept;
+  void share_deficit() noexcept;
+  template <typename Use>
+  void for_each_pair(Use use) noexcept;
+  void solve_with_constraints(const mjModel* m, mjData* d, ImplicitParts parts, int island,
+                              const double* known) noexcept;
+  void take_explicit() noexcept;
+  void write_explicit() noexcept;
+  void make_points(ImplicitParts parts, double step, double resting) noexcept;
+  void place_points(Site& site, const Mat3& mobility, const Vec3& falling, double resting,
+                    ImplicitParts parts, double step) noexcept;
+  double normal_force(std::size_t i) const noexcept { return std::max(0.0, force_[6 * i]); }
+  void solve_active(bool with_friction, double step) noexcept;
+  void solve_once(bool with_friction, double step) noexcept;
+  void set_friction(double step) noexcept;
+  void set_damper(Site& site, double normal_force, const Vec3& along, double spin,
+                  double speed) const noexcept;
+  void bound_friction() noexcept;
+  void damp_friction(double step) noexcept;
+  double held_share(std::size_t i) const noexcept;
+  bool is_settled() const noexcept;
+  void write_results() noexcept;
+  ByChannel taken(const Site& site, std::size_t i) const noexcept;
+  ContactSpace::Block mean_motion(std::size_t i) const noexcept;
+
+  Vec3 slip_of(const Site& site, const std::vector<double>& u, std::size_t i) const noexcept;
+
+  std::vector<Site> sites_;
+  std::vector<WorkLimit> limits_;  // by pair
+  std::vector<ContactPlace> places_;
+  ContactIslands islands_;
+  NativeConstraints constraints_;
+  Damping damping_ = Damping::kNone;
+  std::vector<double> acceleration_;
+  std::span<const int> island_;  // the sites of the one at hand; what follows is of these
+  ContactSpace space_;
+  ContactEquations equations_;
+  std::vector<double> force_, velocity_;  // f and u'
+  std::vector<double> before_;            // f of the pass before
+};
+
+}  // namespace volcontact::adaptor

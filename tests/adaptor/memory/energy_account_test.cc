@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/memory/energy_account.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace volcontact::adaptor::energy_account_test {
+namespace {
+
+// A simulation whose contacts take the power P(t) by sliding and store E(t) in bristles.
+class Simulation {
+ public:
+  Simulation(double step, bool runge_kutta)
+      : step_(step),
+        runge_kutta_(runge_kutta),
+        numbers_(static_cast<std::size_t>(UserdataLayout{}.size()), 0.0) {
+    block().claim();
+  }
+
+  // `wrong` is added to the power, as the first and second middle of a step have it wrong.
+  double evaluate(double time, double wrong = 0.0) {
+    const AccountKeeper account(block(), time, step_, runge_kutta_);
+    EnergyAccount now;
+    now.taken.slide = power(time) + wrong;
+    now.slide_energy = stored(time);
+    now.force_power = -power(time) - wrong;
+    account.write(now, -power(time), 0.0);
+    return block().slot(0).energy().dissipated.slide;
+  }
+  EnergyAccount account() { return block().slot(0).energy(); }
+  static double power(double t) { return 3.0 + 2.0 * t - t * t * t; }
+  static double stored(double t) { return 0.1 * std::sin(5.0 * t); }
+  /// Exact, from 0 to t.
+  static double dissipated(double t) {
+    return 3.0 * t + t * t - t * t * t * t / 4.0 - (stored(t) - stored(0.0));
+  }
+
+ private:
+  UserdataBlock block() { return {numbers_.data() + numbers_.size(), {}}; }
+
+  double step_;
+  bool runge_kutta_;
+  std::vector<double> numbers_;
+};
+
+TEST(EnergyAccount, TrapezoidalRuleLosesTheCurvatureOfThePower) {
+  Simulation simulation(0.1, false);
+  double sum = 0.0;
+  for (int i = 0; i <= 10; ++i) sum = simulation.evaluate(0.1 * i);
+  // Exact less h^2/12 (P'(1) - P'(0)) of the trapezoidal rule, exact itself for a cubic.
+  const double curvature = 0.01 / 12.0 * (-3.0);
+  EXPECT_NEAR(sum, Simulation::dissipated(1.0) + curvature, 1e-14);
+}
+
+TEST(EnergyAccount, RungeKuttaStepsAreSummedBySimpson) {
+  Simulation simulation(0.1, true);
+  double sum = 0.0;
+  for (double t = 0.0; t < 1.05; t += 0.1) {
+    sum = simulation.evaluate(t);
+    EXPECT_NEAR(sum, Simulation::dissipated(t), 1e-14);  // exact for a cubic
+    simulation.evaluate(t + 0.05, 0.3);                  // errors that cancel in the mean
+    simulation.evaluate(t + 0.05, -0.3);
+    simulation.evaluate(t + 0.1, 0.7);  // redone as the first of the next step
+  }
+  EXPECT_GT(sum, 3.0);
+}
+
+TEST(EnergyAccount, StepsThatAreRedoneCountOnce) {
+  Simulation plain(0.1, true), trials(0.1, true);
+  double expected = 0.0, found = 0.0;
+  for (double t = 0.0; t < 1.05; t += 0.1) {
+    for (int trial = 0; trial < 3; ++trial) {
+      for (const double stage : {t, t + 0.05, t + 0.05, t + 0.1}) trials.evaluate(stage, trial);
+    }
+    for (const double stage : {t, t + 0.05, t + 0.05, t + 0.1}) {
+      expected = plain.evaluate(stage);
+      found = trials.evaluate(stage);
+    }
+  }
+  EXPECT_EQ(found, expected);
+}
+
+TEST(EnergyAccount, WorkIsTheSumOfWhatIsSpentStoredAndMadeByTheStep) {
+  // All the power that the forces take, by either rule, is taken by sliding; the bristles' energy
+  // is not reported as elastic here, so what they keep is what remains.
+  for (const bool runge_kutta : {false, true}) {
+    Simulation simulation(0.1, runge_kutta);
+    for (double t = 0.0; t < 1.05; t += 0.1) {
+      simulation.evaluate(t);
+      if (!runge_kutta) continue;
+      simulation.evaluate(t + 0.05, 0.3);
+      simulation.evaluate(t + 0.05, -0.3);
+      simulation.evaluate(t + 0.1);
+    }
+    const EnergyAccount e = simulation.account();
+    const double end = runge_kutta ? 1.1 : 1.0;
+    const double kept = Simulation::stored(end) - Simulation::stored(0.0);
+    EXPECT_NEAR(e.work, -(Simulation::dissipated(end) + kept), runge_kutta ? 1e-14 : 3e-3);
+    EXPECT_NEAR(e.numerical, kept, 1e-14);
+    EXPECT_NEAR(e.work + e.dissipated.sum() + e.numerical, 0.0, 1e-14);
+  }
+}
+
+TEST(EnergyAccount, WhatTheLawsDoNotKnowIsNumerical) {
+  EnergyAccount before{0.5, {1.0, 2.0, 3.0, 4.0}, {}, {}, 0.0, 0.0};
+  before.work = -10.0;
+  before.numerical = 0.25;
+  EnergyAccount now{0.7, {1.5, 2.0, 3.0, 4.0}, {}, {}, 0.0, 0.0};
+  add_work(before, -1.0, 0.0, now);  // of 1 J taken 0.2 are stored, 0.5 dissipated
+  EXPECT_DOUBLE_EQ(now.work, -11.0);
+  EXPECT_DOUBLE_EQ(now.numerical, 0.25 + 0.3);
+}
+
+TEST(EnergyAccount, WhatABristleGivesBackIsDissipatedElsewhere) {
+  const EnergyAccount before{0.5, {1.0, 2.0, 3.0, 4.0}, {}, {}, 0.7, 0.2};
+  EnergyAccount now;
+  now.slide_energy = 0.0;  // its site ended: the energy is lost
+  now.spin_energy = 0.3;
+  const EnergyAccount after = accounted(before, {0.0, 0.0, 5.0, 5.0}, 0.1, now);
+  EXPECT_DOUBLE_EQ(after.dissipated.normal, 1.0);
+  EXPECT_DOUBLE_EQ(after.dissipated.roll, 2.0);
+  EXPECT_DOUBLE_EQ(after.dissipated.slide, 3.0 + 0.5 + 0.7);
+  EXPECT_DOUBLE_EQ(after.dissipated.spin, 4.0 + 0.5 - 0.1);
+}
+
+}  // namespace
+}  // namespace volcontact::adaptor::energy_account_test

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/memory/work_limit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace volcontact::adaptor::work_limit_test {
+namespace {
+
+PairEnergy::Now now(double elastic, double force = 0.0, double approach = 0.0) {
+  PairEnergy::Now out;
+  out.elastic = elastic;
+  out.force = force;
+  out.power = force * approach;
+  return out;
+}
+
+TEST(PairEnergy, KeepsWhatWentInButNoMoreThanTheLawHolds) {
+  PairEnergy energy;
+  energy.solve(-5.0);
+  EXPECT_EQ(energy.stored, 5.0);
+  energy.take_in(1e-3, now(3.0));
+  EXPECT_EQ(energy.stored, 3.0);
+  EXPECT_EQ(energy.most, 5.0);
+}
+
+// h f (v + v')/2.
+TEST(PairEnergy, ExplicitStepPutsInForceTimesMeanApproach) {
+  PairEnergy energy;
+  energy.force = 100.0;
+  energy.power = 100.0 * 0.4;
+  energy.take_in(1e-3, now(1.0, 50.0, 0.2));
+  EXPECT_NEAR(energy.stored, 1e-3 * 100.0 * 0.3, 1e-15);
+}
+
+TEST(PairEnergy, BodyWithinAnotherLosesNothing) {
+  PairEnergy energy;
+  energy.solve(-5.0);
+  PairEnergy::Now inside = now(0.0);
+  inside.is_within = true;
+  energy.take_in(1e-3, inside);
+  EXPECT_EQ(energy.stored, 5.0);
+}
+
+TEST(PairEnergy, SlowExitDrawsOnWhatWasFound) {
+  PairEnergy energy;
+  energy.found = 1.0;
+  energy.solve(1.5);
+  EXPECT_EQ(energy.stored, 0.0);
+  EXPECT_EQ(energy.found, 0.0);
+}
+
+// An explicit step may give back more than there was by what it errs by; it is owed.
+TEST(PairEnergy, ExplicitStepOwesWhatItGaveTooMuch) {
+  PairEnergy energy;
+  energy.stored = energy.most = 1.0;
+  energy.force = 1e3;
+  energy.power = -1e3;
+  energy.take_in(1.02e-3, now(0.0, 1.0, -1.0));
+  EXPECT_NEAR(energy.stored, -0.02, 1e-12);
+}
+
+// Else a pair that parts slowly makes the rounding of every step into motion.
+TEST(PairEnergy, SolvedStepOverdrawsOnceOnly) {
+  PairEnergy energy;
+  energy.solve(-1.0);
+  double given = 0.0;
+  for (int step = 0; step < 100; ++step) {
+    const double work = WorkLimit::of(energy, 0.0, 0.1).allowed();
+    energy.solve(work);
+    given += work;
+  }
+  EXPECT_NEAR(given, 1.0 + PairEnergy::kOverdraft, 1e-12);
+}
+
+TEST(PairEnergy, RowsAreWhatTheyWere) {
+  PairEnergy energy;
+  energy.stored = 1.0;
+  energy.found = 2.0;
+  energy.most = 4.0;
+  energy.rubbed = 4.5;
+  energy.force = 5.0;
+  energy.power = 6.0;
+  double row[PairEnergy::kNumbers], again[PairEnergy::kNumbers];
+  energy.write(row);
+  PairEnergy::from(row).write(again);
+  for (int i = 0; i < PairEnergy::kNumbers; ++i) EXPECT_EQ(row[i], again[i]) << i;
+}
+
+// What bristles give back, sliding has put in; and no more than they hold.
+TEST(PairEnergy, BristlesGiveBackWhatSlidingPutIn) {
+  PairEnergy energy;
+  energy.solve(0.0, -2.0);
+  EXPECT_EQ(energy.rubbed, 2.0);
+  PairEnergy::Now held = now(0.0);
+  held.bristle = 1.5;
+  energy.take_in(1e-3, held);
+  EXPECT_EQ(energy.rubbed, 1.5);
+  WorkLimit limit = WorkLimit::of(energy, 0.0, 0.1);
+  limit.friction_work = 1.4;
+  EXPECT_TRUE(limit.is_kept());
+  limit.friction_work = 1.6;
+  EXPECT_FALSE(limit.is_kept());
+}
+
+// Work of the share s: a s + b s^2, as of one site.
+double share_found(WorkLimit limit, double a, double b) {
+  limit.start();
+  for (int i = 0; i < 40; ++i) {
+    limit.normal_work = a * limit.share + b * limit.share * limit.share;
+    if (!limit.search()) break;
+  }
+  return limit.share;
+}
+
+TEST(WorkLimit, IsNotInTheWayOfWhatIsWithin) {
+  WorkLimit limit;
+  limit.stored = 2.0;
+  EXPECT_EQ(share_found(limit, 1.0, 1.0), 1.0);
+}
+
+TEST(WorkLimit, FindsAShareThatGivesBackMostOfWhatThereIs) {
+  for (const double stored : {1e-3, 0.1, 0.9, 5.0}) {
+    for (const double linear : {0.0, 1.0, 100.0}) {
+      WorkLimit limit;
+      limit.stored = stored;
+      const double share = share_found(limit, linear, 10.0);
+      const double work = linear * share + 10.0 * share * share;
+      EXPECT_LE(work, stored);
+      if (stored > 1e-3 * (linear + 10.0)) {
+        EXPECT_GT(work, 0.5 * stored) << stored << " " << linear;
+      }
+    }
+  }
+}
+
+TEST(WorkLimit, WithNothingStoredNothingComesBack) {
+  EXPECT_EQ(share_found(WorkLimit(), 1.0, 1.0), 0.0);
+}
+
+TEST(WorkLimit, FrictionThatDissipatesPaysForNothing) {
+  WorkLimit limit;
+  limit.stored = 1.0;
+  limit.normal_work = 1.5;
+  limit.friction_work = -10.0;
+  EXPECT_FALSE(limit.is_kept());
+  limit.normal_work = 0.5;
+  limit.friction_work = 0.7;
+  EXPECT_FALSE(limit.is_kept());
+}
+
+// A body of mass m that parts at v and is pushed by s f for h: h s f (v + h s f/(2 m)) = T.
+TEST(ExplicitShare, GivesBackWhatIsStored) {
+  constexpr double kForce = 300.0, kParting = 0.5, kMass = 2.0, kStep = 1e-2;
+  WorkLimit limit;
+  limit.stored = 0.6;
+  const double share = explicit_share(limit, kForce, kParting, 1.0 / kMass, 0.0, kStep);
+  const double impulse = kStep * share * kForce;
+  EXPECT_NEAR(impulse * (kParting + 0.5 * impulse / kMass), limit.stored, 1e-12);
+  limit.stored = 1e3;
+  EXPECT_EQ(explicit_share(limit, kForce, kParting, 1.0 / kMass, 0.0, kStep), 1.0);
+}
+
+TEST(ExplicitShare, ApproachIsNotHindered) {
+  EXPECT_EQ(explicit_share(WorkLimit(), 300.0, -2.0, 0.5, 0.0, 1e-3), 1.0);
+}
+
+TEST(ExplicitShare, WhatWasFoundComesOutSlowly) {
+  WorkLimit limit;
+  limit.slow = 1e6;
+  limit.exit_speed = 0.1;
+  const double share = explicit_share(limit, 1e5, 0.0, 0.5, 0.0, 1e-3);
+  EXPECT_NEAR(1e-3 * share * 1e5 * 0.5, 0.1, 1e-12);
+  EXPECT_EQ(explicit_share(limit, 1e5, 0.2, 0.5, 0.0, 1e-3), 0.0);
+}
+
+}  // namespace
+}  // namespace volcontact::adaptor::work_limit_test

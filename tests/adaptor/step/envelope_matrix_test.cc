@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/step/envelope_matrix.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <vector>
+
+#include "core/support/random.h"
+
+namespace volcontact::adaptor::envelope_matrix_test {
+namespace {
+
+using Eigen::MatrixXd;
+
+// A random positive definite matrix whose rows begin where `first` says.
+MatrixXd fill(const std::vector<int>& first, test::Random& random, EnvelopeMatrix& out) {
+  const int n = static_cast<int>(first.size());
+  MatrixXd dense = MatrixXd::Zero(n, n);
+  out.reset(first);
+  for (int i = 0; i < n; ++i) {
+    for (int k = out.first(i); k <= i; ++k) {
+      dense(i, k) = dense(k, i) = out(i, k) = random.uniform(-1.0, 1.0) + (i == k ? n : 0.0);
+    }
+  }
+  return dense;
+}
+
+TEST(EnvelopeMatrix, SolvesAsTheWholeMatrix) {
+  test::Random random(1);
+  for (const std::vector<int>& first : {std::vector<int>{0},
+                                        {0, 0, 0, 2, 2, 1, 0, 7, 7, 3, 9},
+                                        {0, 1, 2, 3},
+                                        {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}}) {
+    EnvelopeMatrix matrix;
+    const MatrixXd dense = fill(first, random, matrix);
+    const int n = matrix.size();
+    MatrixXd right(6, n);
+    for (int i = 0; i < 6 * n; ++i) right.data()[i] = random.uniform(-1.0, 1.0);
+    const MatrixXd truth = dense.llt().solve(right.transpose()).transpose();
+    matrix.factor();
+    Eigen::VectorXd one = right.row(2);
+    matrix.solve(one.data(), 0, n);
+    matrix.solve<6>(right.data(), 0, n);
+    EXPECT_LT((right - truth).norm(), 1e-13 * truth.norm());
+    EXPECT_LT((one - truth.row(2).transpose()).norm(), 1e-13 * truth.norm());
+  }
+}
+
+TEST(EnvelopeMatrix, SolvesAndMultipliesWhereItIsNotSymmetric) {
+  test::Random random(4);
+  const std::vector<int> first = {0, 0, 0, 2, 2, 1, 0, 7, 7, 3, 9};
+  const int n = static_cast<int>(first.size());
+  EnvelopeMatrix matrix, symmetric;
+  MatrixXd dense = fill(first, random, symmetric);
+  matrix.reset(first, false);
+  matrix.add(symmetric);
+  for (int i = 0; i < n; ++i) {
+    for (int k = matrix.first(i); k < i; ++k) {
+      const double below = random.uniform(-1.0, 1.0), above = random.uniform(-1.0, 1.0);
+      matrix(i, k) += below;
+      matrix.mirrored(i, k) += above;
+      dense(i, k) += below;
+      dense(k, i) += above;
+    }
+  }
+  Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(n, -1.0, 2.0), product(n);
+  matrix.multiply(x.data(), product.data());
+  EXPECT_LT((product - dense * x).norm(), 1e-14 * product.norm());
+  matrix.multiply_transposed(x.data(), product.data());
+  EXPECT_LT((product - dense.transpose() * x).norm(), 1e-14 * product.norm());
+  const Eigen::VectorXd truth = dense.partialPivLu().solve(x);
+  matrix.factor();
+  matrix.solve(x.data(), 0, n);
+  EXPECT_LT((x - truth).norm(), 1e-13 * truth.norm());
+}
+
+TEST(EnvelopeMatrix, SolvesForUnknownsThatStandAlone) {
+  test::Random random(2);
+  EnvelopeMatrix matrix;
+  const MatrixXd dense = fill({0, 0, 2, 2, 3, 5, 5}, random, matrix);
+  Eigen::Vector3d x(1.0, -2.0, 0.5);
+  const Eigen::Vector3d truth = dense.block<3, 3>(2, 2).llt().solve(x);
+  matrix.factor();
+  matrix.solve(x.data(), 2, 5);
+  EXPECT_LT((x - truth).norm(), 1e-14 * truth.norm());
+}
+
+TEST(EnvelopeMatrix, AddsANarrowerOne) {
+  test::Random random(3);
+  EnvelopeMatrix wide, narrow;
+  const MatrixXd sum = fill({0, 0, 0, 1}, random, wide) + fill({0, 1, 0, 3}, random, narrow);
+  wide.add(narrow);
+  for (int i = 0; i < 4; ++i) {
+    for (int k = wide.first(i); k <= i; ++k) EXPECT_EQ(wide(i, k), sum(i, k));
+  }
+}
+
+}  // namespace
+}  // namespace volcontact::adaptor::envelope_matrix_test
