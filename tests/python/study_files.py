@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -138,3 +141,24 @@ def bits(table) -> list[bytes]:
         else:
             columns.append(column.to_numpy().tobytes())
     return columns
+
+
+# Programs of their own that need not import everything anew: forked from one that has.
+_SERVER = multiprocessing.get_context("forkserver")
+_SERVER.set_forkserver_preload(["volcontact.cli.study", "volcontact.study.driver", "scipy.stats"])
+
+
+def start(*arguments: str, log: Path | None = None) -> multiprocessing.Process:
+    """Starts the program `volcontact` in a process; `log` takes what it says on stderr."""
+    process = _SERVER.Process(target=_program, args=(arguments, log))
+    process.start()
+    return process
+
+
+def _program(arguments: tuple[str, ...], log: Path | None) -> None:
+    from volcontact.cli import main
+
+    with open(os.devnull if log is None else log, "wb") as file:
+        os.dup2(file.fileno(), 2)
+        os.dup2(file.fileno(), 1)
+        sys.exit(main(list(arguments)))

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-from study_files import FUNCTION_STUDY, SCENE_STUDY, bits, function_study, scene_study
+from study_files import FUNCTION_STUDY, SCENE_STUDY, bits, function_study, scene_study, start
 
 import volcontact as vc
 from volcontact.cli import main
@@ -108,52 +108,87 @@ def children_of(pid: int) -> list[int]:
     return found
 
 
-def start(path: Path, out: Path, *more: str) -> subprocess.Popen[bytes]:
-    command = [sys.executable, "-m", "volcontact.cli", "study", "run", str(path), "--out", str(out)]
-    return subprocess.Popen([*command, *more], stdout=subprocess.DEVNULL)
+HELD = """\
+import pathlib, time
 
+here = pathlib.Path(__file__).with_name("held")
+begun = 0
 
-SLOW = FUNCTION_STUDY + '[vary.sleep]\ndistribution = "uniform"\nlow = 0.01\nhigh = 0.02\n'
+def trial(values, rng):
+    global begun
+    begun += 1
+    while begun > 30 and here.exists():
+        time.sleep(0.01)
+    return {"sum": values["x"] + values["y"], "noise": rng.normal()}
+"""
 
 
 def test_driver_that_is_killed_is_resumed_exactly_once(tmp_path):
-    path = function_study(tmp_path, SLOW)
+    """However busy the machine: its trials stop after thirty in each process, until it is dead."""
+    path = function_study(tmp_path, FUNCTION_STUDY.replace("time_limit = 1.0", "time_limit = 300"))
+    (tmp_path / "functions.py").write_text(HELD)
+    (tmp_path / "held").touch()
     out = tmp_path / "out"
-    driver = start(path, out, "--trials", "500", "--workers", "2")
+    asked = ("--out", str(out), "--trials", "500", "--workers", "2")
+    driver = start("study", "run", str(path), *asked)
     try:
-        for _ in range(600):
-            if len(list(out.glob("trials/*.parquet"))) >= 1:
-                break
-            time.sleep(0.05)
+        deadline = time.monotonic() + 240.0
+        while not Folder(out).parts() and time.monotonic() < deadline:
+            time.sleep(0.02)
         with pytest.raises(vc.StudyError, match="another run writes to this folder"):
             Folder(out).lock()
     finally:
         driver.kill()
-        driver.wait()
+        driver.join()
     before = Folder(out).done(500)
-    assert 0 < before.sum() < 500
+    assert 0 < before.sum() <= 60
     kept = {part: part.read_bytes() for part in Folder(out).parts()}
     (out / "trials" / "readme").write_text("not a part")
+    (tmp_path / "held").unlink()
     assert main(["study", "resume", str(out), "--workers", "2"]) == 0
     for part, content in kept.items():
         assert part.read_bytes() == content
     table = vc.Study.rows(out)
     assert table["trial"].to_pylist() == list(range(500))
     whole = tmp_path / "whole"
-    vc.Study(path, trials=500).run(whole, engine="processes", workers=2)
+    vc.Study(path, trials=500).run(whole, engine="serial")
     assert bits(table) == bits(vc.Study.rows(whole))
     assert not list(out.glob(".volcontact-*"))
+
+
+def test_rows_reach_the_disk_while_other_trials_take_long(tmp_path):
+    """A trial that goes on for minutes keeps no finished row of another in memory."""
+    path = function_study(tmp_path, FUNCTION_STUDY.replace("time_limit = 1.0", "time_limit = 300"))
+    (tmp_path / "functions.py").write_text(HELD.replace("begun > 30", "values['x'] > 1.0"))
+    (tmp_path / "held").touch()
+    out = tmp_path / "out"
+    driver = start("study", "run", str(path), "--out", str(out), "--workers", "2")
+    try:
+        deadline = time.monotonic() + 240.0
+        while not Folder(out).parts() and time.monotonic() < deadline:
+            time.sleep(0.02)
+        x = vc.Study.rows(out)["x"].to_numpy()
+        assert 0 < len(x) < 40 and (x <= 1.0).all()
+        (tmp_path / "held").unlink()
+        driver.join(120)
+        assert driver.exitcode == 0
+    finally:
+        driver.kill()
+        driver.join()
+    assert vc.Study.rows(out)["trial"].to_pylist() == list(range(40))
 
 
 def test_serial_driver_that_its_trial_kills_goes_on_behind_it(tmp_path):
     path = function_study(tmp_path, none=0.75, crash=0.25)
     out = tmp_path / "out"
-    driver = start(path, out, "--engine", "serial", "--trials", "6", "--seed", "2")
-    assert driver.wait() == -signal.SIGSEGV
+    asked = ("--out", str(out), "--trials", "6", "--seed", "2", "--engine", "serial")
+    driver = start("study", "run", str(path), *asked)
+    driver.join()
+    assert driver.exitcode == -signal.SIGSEGV
     for _ in range(6):
-        command = [sys.executable, "-m", "volcontact.cli", "study", "resume", str(out)]
-        done = subprocess.run([*command, "--engine", "serial"], capture_output=True)
-        if done.returncode == 0:
+        driver = start("study", "resume", str(out), "--engine", "serial")
+        driver.join()
+        if driver.exitcode == 0:
             break
     rows = vc.Study.rows(out).to_pylist()
     assert [row["trial"] for row in rows] == list(range(6))

@@ -227,7 +227,7 @@ def _run_rounds(
 
 
 def _run_round(part: Round, engine: Engine, writer: _Writer, done: np.ndarray) -> None:
-    batches = _batches(part, done, writer)
+    batches = _batches(part, done, writer, engine.workers)
     tickets: list[Any] = []
     more = True
     while more or tickets:
@@ -238,17 +238,22 @@ def _run_round(part: Round, engine: Engine, writer: _Writer, done: np.ndarray) -
             else:
                 tickets.append(engine.submit(batch))
         if tickets:
-            results, tickets = engine.wait(tickets)
-            for _, result in results:
+            results, tickets = engine.wait(tickets, writer.until_flush())
+            for result in results:
                 writer.add(result.rows, result.seconds)
+            writer.flush_in_time()
 
 
-def _batches(part: Round, done: np.ndarray, writer: _Writer) -> Iterator[Batch]:
-    """Batches of about a second of work, of the trials that have no row."""
+def _batches(part: Round, done: np.ndarray, writer: _Writer, workers: int) -> Iterator[Batch]:
+    """Batches of about a second of work, of the trials that have no row.
+
+    Towards the end they get smaller, so that no worker is left with a long one.
+    """
     here = np.flatnonzero(~done[part.first : part.first + part.count]) + part.first
     place = 0
     while place < len(here):
-        size = writer.batch_size
+        share = (len(here) - place) // (2 * workers)
+        size = max(min(writer.batch_size, share), writer.batch_size // 20, 1)
         trials = here[place : place + size]
         place += size
         yield Batch(trials.tolist(), row_values(part.values(trials)))
@@ -290,12 +295,21 @@ class _Writer:
         rate = self._trials / max(self._seconds, 1e-9)
         wanted = int(min(max(rate * _BATCH_SECONDS, 1.0), _MOST_TRIALS))
         self.batch_size = min(wanted, 4 * self.batch_size)
-        now = time.monotonic()
-        period = min(max(_FLUSH, 0.01 * (now - self._begin)), _SLOWEST_FLUSH)
-        if now - self._flushed >= period:
-            self.flush()
         if self._progress is not None:
             self._progress(self._count, self._total, self._outcomes)
+
+    def until_flush(self) -> float:
+        """Time until rows must reach the disk [s]; without any, for a good while."""
+        now = time.monotonic()
+        if not self._rows:
+            return _SLOWEST_FLUSH
+        period = min(max(_FLUSH, 0.01 * (now - self._begin)), _SLOWEST_FLUSH)
+        return max(self._flushed + period - now, 0.0)
+
+    def flush_in_time(self) -> None:
+        """Writes what was gathered when it is time to."""
+        if self._rows and self.until_flush() == 0.0:
+            self.flush()
 
     def flush(self) -> None:
         """Writes what was gathered.

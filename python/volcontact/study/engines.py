@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import concurrent.futures
 import contextlib
+import functools
 import importlib
 import os
 import signal
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -19,6 +20,12 @@ from volcontact.study.settings import Settings, StudyError
 
 ENGINES = ("serial", "processes", "ray", "dask")
 _LOST_WORKERS = 20  # of a Dask batch, until something must be wrong
+# How often Dask looks at its own processes; by default that takes an eighth of a core.
+_SELDOM = {
+    "distributed.worker.profile.interval": "200ms",
+    "distributed.admin.tick.interval": "1s",
+    "distributed.admin.system-monitor.interval": "5s",
+}
 
 
 class Engine(Protocol):
@@ -30,8 +37,8 @@ class Engine(Protocol):
         """Begins a batch; the ticket is for `wait`."""
         ...
 
-    def wait(self, tickets: list[Any]) -> tuple[list[tuple[Any, BatchResult]], list[Any]]:
-        """Results that are there, at least one, and the tickets that are left."""
+    def wait(self, tickets: list[Any], seconds: float) -> tuple[list[BatchResult], list[Any]]:
+        """Results that are there and the tickets that are left; waits so long for the first."""
         ...
 
     def close(self) -> None:
@@ -95,11 +102,12 @@ class _Serial:
     def submit(self, batch: Batch) -> Batch:
         return batch
 
-    def wait(self, tickets: list[Batch]) -> tuple[list[tuple[Batch, BatchResult]], list[Batch]]:
+    def wait(self, tickets: list[Batch], seconds: float) -> tuple[list[BatchResult], list[Batch]]:
         begin = time.monotonic()
         batch, rest = tickets[0], tickets[1:]
-        rows = [self._run(t, v) for t, v in zip(batch.trials, batch.values, strict=True)]
-        return [(batch, BatchResult(rows, time.monotonic() - begin))], rest
+        with _alarm() as arm:
+            rows = [self._run(t, v, arm) for t, v in zip(batch.trials, batch.values, strict=True)]
+        return [BatchResult(rows, time.monotonic() - begin)], rest
 
     def close(self) -> None:
         self._runner.forget()
@@ -107,15 +115,20 @@ class _Serial:
             os.close(self._mark)
             self._marker.unlink(missing_ok=True)
 
-    def _run(self, trial: int, values: dict[str, Any]) -> dict[str, Any]:
+    def _run(
+        self, trial: int, values: dict[str, Any], arm: Callable[[float], object]
+    ) -> dict[str, Any]:
         limit = self._settings.time_limit
         if trial == self._suspect:
             return run_batch(self._settings, Batch([trial], [values])).rows[0]
         if self._mark >= 0:
             os.pwrite(self._mark, f"{trial:<20}".encode(), 0)
         try:
-            with _alarm(limit):
+            arm(limit)
+            try:
                 return self._runner.run(trial, values)
+            finally:
+                arm(0.0)
         except TimeoutError:
             self._runner.forget()
             reason = f"no result after the time limit of {limit:g} s"
@@ -123,21 +136,22 @@ class _Serial:
 
 
 @contextlib.contextmanager
-def _alarm(seconds: float) -> Iterator[None]:
-    """Within it a trial that takes too long is interrupted, where Python can be."""
+def _alarm() -> Iterator[Callable[[float], object]]:
+    """Gives what interrupts a trial that takes longer than so many seconds, where Python can be.
+
+    With 0 seconds nothing rings any more.
+    """
     if threading.current_thread() is not threading.main_thread():
-        yield
+        yield lambda seconds: None
         return
 
     def ring(*_: object) -> None:
         raise TimeoutError
 
     before = signal.signal(signal.SIGALRM, ring)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
     try:
-        yield
+        yield functools.partial(signal.setitimer, signal.ITIMER_REAL)
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
 
 
@@ -152,10 +166,10 @@ class _Processes:
     def submit(self, batch: Batch) -> concurrent.futures.Future[BatchResult]:
         return self._threads.submit(run_batch, self._settings, batch)
 
-    def wait(self, tickets: list[Any]) -> tuple[list[tuple[Any, BatchResult]], list[Any]]:
+    def wait(self, tickets: list[Any], seconds: float) -> tuple[list[BatchResult], list[Any]]:
         first = concurrent.futures.FIRST_COMPLETED
-        done, rest = concurrent.futures.wait(tickets, return_when=first)
-        return [(ticket, ticket.result()) for ticket in done], list(rest)
+        done, rest = concurrent.futures.wait(tickets, timeout=seconds, return_when=first)
+        return [ticket.result() for ticket in done], list(rest)
 
     def close(self) -> None:
         self._threads.shutdown(wait=True, cancel_futures=True)
@@ -180,9 +194,9 @@ class _Ray:
     def submit(self, batch: Batch) -> Any:
         return self._run.remote(self._settings, batch)
 
-    def wait(self, tickets: list[Any]) -> tuple[list[tuple[Any, BatchResult]], list[Any]]:
-        done, rest = self._ray.wait(tickets, num_returns=1)
-        return [(ticket, self._ray.get(ticket)) for ticket in done], list(rest)
+    def wait(self, tickets: list[Any], seconds: float) -> tuple[list[BatchResult], list[Any]]:
+        done, rest = self._ray.wait(tickets, num_returns=1, timeout=seconds)
+        return [self._ray.get(ticket) for ticket in done], list(rest)
 
     def close(self) -> None:
         if self._own:
@@ -197,12 +211,13 @@ class _Dask:
         self._distributed = distributed
         self._cluster: Any = None
         if address is None:
-            self._cluster = distributed.LocalCluster(
-                n_workers=workers or os.cpu_count(),
-                threads_per_worker=1,
-                processes=True,
-                dashboard_address=":0",
-            )
+            with importlib.import_module("dask").config.set(_SELDOM):
+                self._cluster = distributed.LocalCluster(
+                    n_workers=workers or os.cpu_count(),
+                    threads_per_worker=1,
+                    processes=True,
+                    dashboard_address=":0",
+                )
         self._client = distributed.Client(self._cluster if address is None else address)
         threads = sum(self._client.nthreads().values())
         self.workers = max(min(workers or threads, threads), 1)
@@ -217,20 +232,21 @@ class _Dask:
         self._lost[ticket.key] = batch, lost
         return ticket
 
-    def wait(self, tickets: list[Any]) -> tuple[list[tuple[Any, BatchResult]], list[Any]]:
-        while True:
-            state = self._distributed.wait(tickets, return_when="FIRST_COMPLETED")
-            tickets, found = list(state.not_done), []
-            for ticket in state.done:
-                batch, lost = self._lost.pop(ticket.key)
-                try:
-                    found.append((ticket, ticket.result()))
-                except self._distributed.KilledWorker:
-                    if lost == _LOST_WORKERS:
-                        raise
-                    tickets.append(self._begin(batch, lost + 1))
-            if found:
-                return found, tickets
+    def wait(self, tickets: list[Any], seconds: float) -> tuple[list[BatchResult], list[Any]]:
+        try:
+            state = self._distributed.wait(tickets, seconds, return_when="FIRST_COMPLETED")
+        except self._distributed.TimeoutError:
+            return [], tickets
+        left, found = list(state.not_done), []
+        for ticket in state.done:
+            batch, lost = self._lost.pop(ticket.key)
+            try:
+                found.append(ticket.result())
+            except self._distributed.KilledWorker:
+                if lost == _LOST_WORKERS:
+                    raise
+                left.append(self._begin(batch, lost + 1))
+        return found, left
 
     def close(self) -> None:
         self._client.close()
