@@ -224,7 +224,7 @@ _SIGNATURES = {
         )
     ),
     "describe": _Signature((ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int), has_message=True),
-    "live_error": _Signature((ctypes.c_void_p,), has_message=True),
+    "live_error": _Signature((ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int)),
 }
 
 
@@ -265,6 +265,16 @@ class Adaptor:
         """The passive callback, as `mujoco.set_mjcb_passive` takes it."""
         return self._library.volcontact_passive
 
+    def function(self, name: str) -> Callable[..., int]:
+        """A function without a message that fails only in a library that does not fit."""
+        native = self._functions[name]
+
+        def checked(*arguments: Any) -> int:
+            result = native(*arguments)
+            return result if result >= 0 else self.call(name, *arguments)
+
+        return checked
+
     def call(self, name: str, *arguments: Any) -> int:
         """Calls a function and returns its result, at least 0."""
         return self.call_with_message(name, *arguments)[0]
@@ -294,6 +304,8 @@ class Adaptor:
     def text(self, name: str, *arguments: Any) -> str:
         """Calls a function that writes a text of any length."""
         length = self.call(name, *arguments, None, 0)
+        if length == 0:
+            return ""
         buffer = ctypes.create_string_buffer(length + 1)
         self.call(name, *arguments, buffer, length + 1)
         return buffer.value.decode("utf-8", "replace")

@@ -16,7 +16,7 @@ import numpy as np
 
 from volcontact._adaptor import Number, Range, RawWatch, adaptor
 
-__all__ = ["OUTCOMES", "Kind", "Number", "Range", "Watch", "number", "read"]
+__all__ = ["OUTCOMES", "Kind", "Number", "Range", "Reading", "Watch", "number", "read"]
 
 OUTCOMES = ("", "success", "jammed", "force_limit", "torque_limit", "diverged")
 
@@ -50,21 +50,32 @@ def number(kind: Kind, index: int = 0, place: Sequence[float] | np.ndarray = ())
     return Number(int(kind), index, (ctypes.c_double * 4)(*(float(x) for x in place)))
 
 
+class Reading:
+    """Reads some numbers of a scene, as often as asked.
+
+    Args:
+        numbers: which; those of contact sites are as `watch` felt them, NaN without.
+        watch: of the scene.
+    """
+
+    def __init__(self, numbers: Sequence[Number], watch: Watch | None = None) -> None:
+        self._numbers = (Number * len(numbers))(*numbers)
+        self._values = np.empty(len(numbers))
+        self._into = len(numbers), self._values.ctypes.data
+        self._felt = ctypes.byref(watch.felt) if watch else None
+        self._read = adaptor().function("read_numbers")
+
+    def __call__(self, model: mujoco.MjModel, data: mujoco.MjData) -> list[float]:
+        """The numbers as they are now."""
+        self._read(model._address, data._address, self._felt, self._numbers, *self._into)
+        return self._values.tolist()
+
+
 def read(
     model: mujoco.MjModel, data: mujoco.MjData, numbers: Sequence[Number], watch: Watch | None
 ) -> np.ndarray:
     """Numbers of a scene as it is now, shape (n,); those of contact sites as `watch` felt them."""
-    values = np.empty(len(numbers))
-    adaptor().call(
-        "read_numbers",
-        model._address,
-        data._address,
-        ctypes.byref(watch.felt) if watch else None,
-        (Number * len(numbers))(*numbers),
-        len(numbers),
-        values.ctypes.data,
-    )
-    return values
+    return np.array(Reading(numbers, watch)(model, data))
 
 
 class Watch:
@@ -137,19 +148,17 @@ class Watch:
             self.felt.force_axes[i] = each
         for i, each in enumerate(torque):
             self.felt.torque_axes[i] = each
-        self.restart()
+        self.felt.geom_a = self.felt.geom_b = -1
+        self.felt.first_touch = math.nan
+        self.felt.good_since = self.felt.jammed_since = math.inf
+        self._fresh = bytes(self.felt)
+        self._step = adaptor().function("step_watched")
 
     def restart(self) -> None:
         """Forgets what was felt: for another run."""
-        felt = self.felt
-        felt.outcome = felt.is_good = 0
-        felt.geom_a = felt.geom_b = -1
-        felt.sites = felt.force = felt.torque = felt.site_force = 0.0
-        felt.peak_force = felt.peak_torque = felt.peak_site_force = felt.most_sites = 0.0
-        felt.first_touch = math.nan
-        felt.good_since = felt.jammed_since = math.inf
-        self.peaks[:] = -np.inf
-        self.place_peaks[:] = 0.0
+        ctypes.memmove(ctypes.byref(self.felt), self._fresh, len(self._fresh))
+        self.peaks.fill(-np.inf)
+        self.place_peaks.fill(0.0)
 
     @property
     def outcome(self) -> str:
@@ -162,6 +171,4 @@ class Watch:
         The model may be attached or not. Contact is watched at the state each step began with,
         everything else at the state it led to.
         """
-        return adaptor().call(
-            "step_watched", model._address, data._address, steps, ctypes.byref(self.felt)
-        )
+        return self._step(model._address, data._address, steps, ctypes.byref(self.felt))

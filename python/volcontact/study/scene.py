@@ -11,6 +11,7 @@ import numpy as np
 from volcontact import scene as volumetric_scene
 from volcontact.given_keys import GivenKeys
 from volcontact.simulation import native_model
+from volcontact.study.ending import Ending
 from volcontact.study.quantities import Quantities, keyframe_id
 from volcontact.study.settings import Settings, StudyError
 from volcontact.study.table import nearest
@@ -31,8 +32,8 @@ class Scene:
         contact: volumetric, else None.
         live: what of the inputs is changed in the compiled model.
         quantities: the numbers by name.
-        places: geoms of each place of the study, shape (m, ngeom).
         watch: of all trials, one after the other.
+        ending: reads the row of a trial that has ended.
         key: keyframe that trials start from; negative: none.
     """
 
@@ -51,8 +52,17 @@ class Scene:
         self._kept = _Kept(self.model) if settings.prepare else None
         self.data = mujoco.MjData(self.model)
         self.quantities = Quantities(self.model, settings.pose)
-        self.places = _members(self.model, settings.record.places)
-        self.watch = _watch(settings, self.quantities, self.places)
+        places = _members(self.model, settings.record.places)
+        self.watch = _watch(settings, self.quantities, places)
+        self.ending = Ending(
+            settings,
+            self.model,
+            self.data,
+            attached=self.contact is not None,
+            quantities=self.quantities,
+            places=places,
+            watch=self.watch,
+        )
         start = "start" if settings.keyframe is None else settings.keyframe
         key = mujoco.mj_name2id(self.model, int(mujoco.mjtObj.mjOBJ_KEY), start)
         if settings.keyframe is not None:

@@ -9,7 +9,7 @@ from typing import Any
 import mujoco
 
 from volcontact.recording import CHANNELS
-from volcontact.study.control import check_control, make_controller
+from volcontact.study.control import POLICIES, check_control, make_controller
 from volcontact.study.designs import trial_generator
 from volcontact.study.episode import Episode, Watcher
 from volcontact.study.functions import Functions
@@ -44,6 +44,8 @@ class Runner:
             else None
         )
         self._record = [get(name, "[record] functions") for name in settings.record.functions]
+        policy = settings.control.get("policy", POLICIES[0])
+        self._has_own_code = any((self._prepare, self._success, policy not in POLICIES))
         self._document: Document | None = None
         if settings.scene is not None:
             self._document = Document(settings.scene)
@@ -55,6 +57,8 @@ class Runner:
         self._scene: Scene | None = None
         self._scene_values: tuple[Any, ...] = ()
         self.columns = self._columns()
+        empty = {"float": math.nan, "text": "", "bool": False, "int": 0}
+        self._empty = {name: empty[kind] for name, kind in self.columns.items()}
 
     def _columns(self) -> dict[str, str]:
         """Names and kinds of all columns of a row, in their order."""
@@ -97,10 +101,7 @@ class Runner:
 
     def empty_row(self, trial: int, values: Row) -> Row:
         """A row with nothing but the inputs."""
-        empty = {"float": math.nan, "text": "", "bool": False, "int": 0}
-        row = {name: empty[kind] for name, kind in self.columns.items()}
-        row |= {"trial": trial, **values}
-        return row
+        return {**self._empty, "trial": trial, **values}
 
     def failed(self, trial: int, values: Row, outcome: str, reason: str) -> Row:
         """The row of a trial that did not end by itself."""
@@ -171,19 +172,29 @@ class Runner:
             generator = trial_generator(self.settings.sample.seed, trial)
             self._prepare(model, data, values, generator)
         mujoco.mj_forward(model, data)
-        if scene.contact is not None:
-            wrong = scene.contact.live_error()
-            if wrong:
-                raise StudyError(wrong)
+        _check_contact(scene)
         control = None
         if self.settings.control:
             gains = {gain: float(values[column]) for gain, column in self._gains.items()}
             control = make_controller(self.settings.control, gains, model, self._functions)
         row = self.empty_row(trial, values)
         Episode(self.settings, scene, control, self._success, watcher).run(row)
+        if self._has_own_code:
+            _check_contact(scene)
         for name, function in zip(self.settings.record.functions, self._record, strict=True):
             row[name] = float(function(model, data))
         return row
+
+
+def _check_contact(scene: Scene) -> None:
+    """The numbers that the model has now are in force."""
+    if scene.contact is None:
+        return
+    wrong = scene.contact.live_error()
+    if wrong:
+        raise StudyError(wrong)
+    if not scene.contact.is_installed():
+        raise StudyError("MuJoCo's passive callback was replaced: volumetric contact does not act")
 
 
 def _told(error: Exception) -> str:
