@@ -370,7 +370,7 @@ def test_status_from_the_folder(tmp_path, capsys):
     assert low < good / 40 < high
 
 
-def test_report_is_one_file_that_can_be_quoted(tmp_path):
+def test_report_is_one_file_that_can_be_quoted(tmp_path, capsys):
     study = vc.Study(scene_study(tmp_path), trials=160)
     out = tmp_path / "out"
     study.run(out, engine="processes", workers=2)
@@ -383,11 +383,30 @@ def test_report_is_one_file_that_can_be_quoted(tmp_path):
     assert page.count("<svg") >= 3 + 3
     assert "<script" not in page and 'src="http' not in page and "<link" not in page
     assert "The worst trials" not in page
+    command = ["study", "report", str(out), "--out", str(file), "--no-pictures"]
+    assert main([*command, "--map", "frictoin"]) == 1
+    assert "--map 'frictoin': the study has no such input; did you mean" in capsys.readouterr().err
+    assert main([*command, "--map", "friction"]) == 0  # with the two others
+    assert file.read_text(encoding="utf-8").count("<svg") == page.count("<svg") - 1
     few = tmp_path / "few"
     vc.Study(scene_study(tmp_path), trials=2).run(few, engine="serial")
     assert main(["study", "report", str(few)]) == 0
     drawn = (few / "report.html").read_text(encoding="utf-8")
     assert drawn.count('src="data:image/png;base64,') == 2
+
+
+def test_map_over_a_word_and_a_number():
+    """A cell of the map has the trials of its word: here the share of each is known."""
+    from volcontact.study.figures import _Cells, maps
+
+    words = np.array(["dry", "oiled", "dry", "oiled"] * 50)
+    numbers = np.repeat([0.0, 1.0], 100)
+    figure = maps(words, numbers, (words == "dry") & (numbers > 0.5), None, ["film", "tilt"])
+    shares = figure.axes[0].collections[0].get_array()
+    assert shares[0].tolist() == [0.0, 0.0] and shares[-1].tolist() == [1.0, 0.0]
+    assert [label.get_text() for label in figure.axes[0].get_xticklabels()] == ["dry", "oiled"]
+    cells = _Cells.of(np.array([0.0, 0.1, 0.5, 1.0]), 2)
+    assert cells.cell.tolist() == [0, 0, 0, 1]  # the edge lies a rounding above the middle
 
 
 def test_trajectories_of_the_trials_asked_for(tmp_path):

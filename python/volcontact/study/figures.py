@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -67,31 +68,51 @@ def tallies(counts: dict[str, int], title: str) -> Figure:
 def maps(
     x: np.ndarray, y: np.ndarray, success: np.ndarray, force: np.ndarray | None, names: list[str]
 ) -> Figure:
-    """Share of successes, and median peak force [N], over two inputs."""
+    """Share of successes, and median peak force [N], over two inputs, numbers or words."""
     panels: list[tuple[str, np.ndarray, Any]] = [("success", success.astype(float), np.mean)]
     if force is not None:
         panels.append(("peak force [N], median", force, np.median))
     figure = Figure(figsize=(3.6 * len(panels), 3.0), layout="constrained")
     bins = int(np.clip(np.sqrt(len(x) / 12.0), 3, _BINS))
-    edges = [np.linspace(v.min(), v.max() + 1e-12 * (1 + abs(v.max())), bins + 1) for v in (x, y)]
-    cells = [
-        np.clip(np.searchsorted(edge, v, side="right") - 1, 0, bins - 1)
-        for edge, v in zip(edges, (x, y), strict=True)
-    ]
+    across, up = _Cells.of(x, bins), _Cells.of(y, bins)
     for place, (title, values, summary) in enumerate(panels):
-        grid = np.full((bins, bins), np.nan)
-        for i in range(bins):
-            for j in range(bins):
-                inside = values[(cells[0] == i) & (cells[1] == j)]
-                inside = inside[np.isfinite(inside)]
-                if len(inside):
-                    grid[j, i] = summary(inside)
+        grid = np.full((len(up.edges) - 1, len(across.edges) - 1), np.nan)
+        for j, i in np.ndindex(*grid.shape):
+            inside = values[(across.cell == i) & (up.cell == j)]
+            inside = inside[np.isfinite(inside)]
+            if len(inside):
+                grid[j, i] = summary(inside)
         axes = figure.add_subplot(1, len(panels), place + 1)
         low, high = (0.0, 1.0) if place == 0 else (None, None)
-        mesh = axes.pcolormesh(edges[0], edges[1], grid, cmap="viridis", vmin=low, vmax=high)
+        mesh = axes.pcolormesh(across.edges, up.edges, grid, cmap="viridis", vmin=low, vmax=high)
         figure.colorbar(mesh, ax=axes)
         axes.set_title(title, fontsize=9)
         axes.set_xlabel(names[0], fontsize=8)
         axes.set_ylabel(names[1], fontsize=8)
+        axes.locator_params(nbins=4)
+        if across.words:
+            axes.set_xticks(range(len(across.words)), across.words)
+        if up.words:
+            axes.set_yticks(range(len(up.words)), up.words)
         axes.tick_params(labelsize=7)
     return figure
+
+
+@dataclass(frozen=True)
+class _Cells:
+    """The cells of a map along one axis: of which cell each trial is, and where they end."""
+
+    cell: np.ndarray
+    edges: np.ndarray
+    words: tuple[str, ...] = ()
+
+    @staticmethod
+    def of(values: np.ndarray, bins: int) -> _Cells:
+        """Of numbers so many cells, of words one each."""
+        if values.dtype.kind in "USO":
+            words, cell = np.unique(values.astype(str), return_inverse=True)
+            return _Cells(cell, np.arange(len(words) + 1) - 0.5, tuple(words.tolist()))
+        low, high = float(values.min()), float(values.max())
+        edges = np.linspace(low, high + 1e-12 * (1.0 + abs(high)), bins + 1)
+        inside = np.searchsorted(edges, values, side="right") - 1
+        return _Cells(np.clip(inside, 0, bins - 1), edges)

@@ -21,7 +21,8 @@ from volcontact.study import figures
 from volcontact.study.driver import settings_of
 from volcontact.study.estimates import rare_event, sensitivity, wilson
 from volcontact.study.results import Folder
-from volcontact.study.settings import Settings
+from volcontact.study.settings import Settings, StudyError
+from volcontact.study.table import nearest
 
 _PAGE = """\
 <!doctype html>
@@ -69,11 +70,11 @@ def write_study_report(
         out: folder of the study; it may still be running.
         file: HTML file to write.
         inputs: that success and peak force are mapped over, in pairs; none takes the four that
-            decide most.
+            decide most, a single one goes with each of them.
         pictures: whether the worst trials are drawn.
 
     Raises:
-        StudyError: no folder of a study, or without trials.
+        StudyError: no folder of a study, or without trials; or it has no such input.
     """
     folder = Folder(out)
     settings = settings_of(folder)
@@ -163,14 +164,10 @@ def _sections(
     bars = [_svg(figures.bars(each)) for each in shown if each is not None]
     if bars:
         found.append(("Which input decides", bars))
-    varied = [n for n in settings.columns if len(set(rows[n].to_pylist())) > 1]
-    varied = [n for n in varied if not isinstance(rows[n][0].as_py(), str)]
-    first = list(by_success.names) if by_success is not None else varied
-    chosen = list(inputs) or [n for n in first if n in varied][:4]
     force = rows["peak_force"].to_numpy() if "peak_force" in names else None
     maps = [
         _svg(figures.maps(rows[a].to_numpy(), rows[b].to_numpy(), success, force, [a, b]))
-        for a, b in itertools.combinations(chosen, 2)
+        for a, b in _pairs(settings, rows, by_success, inputs)
     ]
     if maps:
         found.append(("Maps over two inputs", maps))
@@ -185,6 +182,24 @@ def _sections(
         title = "largest force at the end of trials without success"
         found.append(("Where it ends", [_svg(figures.tallies(counts, title))]))
     return found
+
+
+def _pairs(
+    settings: Settings, rows: pa.Table, by_success: Any, inputs: tuple[str, ...]
+) -> list[tuple[str, str]]:
+    """Which inputs are mapped."""
+    for name in inputs:
+        if name not in settings.columns:
+            raise StudyError(
+                f"--map {name!r}: the study has no such input{nearest(name, settings.columns)}"
+            )
+    varied = [n for n in settings.columns if len(set(rows[n].to_pylist())) > 1]
+    varied = [n for n in varied if not isinstance(rows[n][0].as_py(), str)]
+    first = list(by_success.names) if by_success is not None else varied
+    decide = [n for n in first if n in varied][:4]
+    if len(inputs) == 1:
+        return [(inputs[0], other) for other in decide if other != inputs[0]]
+    return list(itertools.combinations(inputs or decide, 2))
 
 
 def _worst(settings: Settings, folder: Folder, rows: pa.Table) -> tuple[str, list[dict[str, Any]]]:
