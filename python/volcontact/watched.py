@@ -68,7 +68,8 @@ class Reading:
     def __call__(self, model: mujoco.MjModel, data: mujoco.MjData) -> list[float]:
         """The numbers as they are now."""
         self._read(model._address, data._address, self._felt, self._numbers, *self._into)
-        return self._values.tolist()
+        values: list[float] = self._values.tolist()
+        return values
 
 
 def read(
