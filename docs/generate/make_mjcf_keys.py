@@ -103,7 +103,8 @@ def words_after(what: str, name: str = "") -> list[str]:
     """The words that may stand after a key; none after the name of a number."""
     given = {name: WRONG} if name else {WRONG: 1.0}
     after = f"{name}/" if name else ""
-    found = re.search(rf"/{after}' comes one of (.+?)(?: \(did.*)?$", refusal(**{what: given}))
+    place = rf"(?:/{after}' comes|material(?:\['{name}'\])? takes)"
+    found = re.search(rf"{place} one of (.+?)(?: \(did.*)?$", refusal(**{what: given}))
     return found[1].split(", ") if found else []
 
 

@@ -313,10 +313,10 @@ class Adaptor:
 
 def _in_words_of_python(message: str) -> str:
     """A message about a key of `material`, which no file has, as Python spells it."""
+    message = re.sub(rf"after '{GIVEN_MATERIAL}(\w+)/' comes", r"material['\1'] takes", message)
+    message = message.replace(f"after '{GIVEN_MATERIAL}' comes", "material takes")
     message = re.sub(rf"{GIVEN_MATERIAL}(\w+)", r"material['\1']", message)
-    return message.replace(GIVEN_MATERIAL, "material: ").replace(
-        GIVEN_MATERIAL.rstrip("/"), "material"
-    )
+    return message.replace(GIVEN_MATERIAL.rstrip("/"), "material")
 
 
 @functools.cache
