@@ -78,6 +78,7 @@ SECTIONS = {
         "Building and loading it </plugin/README>",
         "docs/own_laws",
         "docs/c_container",
+        "docs/fmu",
         "docs/hosts",
     ],
     "Measured": [

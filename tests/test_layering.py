@@ -18,6 +18,7 @@ MAY_INCLUDE = {
     "volcontact/model": {"base", "metrics", "shape", "pair", "force"},
     "adaptor": {"base", "metrics", "shape", "pair", "force", "model"},
     "c_api": {"base", "metrics", "shape", "pair", "force", "model"},
+    "fmu": {"base", "metrics", "model", "c_api"},  # of the model, where a row of states lies
     "cgal": set(),  # a program of its own under another licence
 }
 # Rooms of a floor, and the files that lie in none; each may use those before it. "" stands for all
@@ -108,7 +109,7 @@ def fault(source: str, included: str) -> str | None:
         return f"{source}: {floor} must not include <{included}>"
     target = floor_of(included)
     if target is None:
-        if library in {"volcontact", "adaptor", "c_api", "cgal"}:
+        if library in {"volcontact", "adaptor", "c_api", "fmu", "cgal"}:
             return f"{source}: {included} lies in no known folder"
         return None
     if target != floor and target.removeprefix("volcontact/") not in MAY_INCLUDE[floor]:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -16,6 +17,8 @@
 #include "adaptor/scene/scene_description.h"
 #include "adaptor/scene_registry.h"
 #include "adaptor/watched_steps.h"
+#include "volcontact/base/check.h"
+#include "volcontact/model/model_text.h"
 #include "volcontact/pair/picture/overlap_surface.h"
 
 // No exception leaves this file.
@@ -352,6 +355,21 @@ int volcontact_describe(const mjModel* m, char* text, int capacity, char* messag
     const SceneContact* contact = contact_of(m);
     const std::string description = contact ? describe(m, *contact) : describe(m, SceneContact(m));
     return copy_text(description, text, capacity);
+  });
+}
+
+int volcontact_pair_text(const mjModel* m, int pair, char* text, int capacity, char* message,
+                         int message_size) {
+  return guarded(message, message_size, [&] {
+    const SceneContact* contact = contact_of(m);
+    std::optional<SceneContact> own;
+    if (!contact) contact = &own.emplace(m);
+    const int count = static_cast<int>(contact->pairs().size());
+    volcontact::require(pair >= 0 && pair < count, "pair " + std::to_string(pair) +
+                                                       " is none of the " + std::to_string(count) +
+                                                       " of the scene");
+    return copy_text(volcontact::text_of(contact->pairs()[static_cast<std::size_t>(pair)].model),
+                     text, capacity);
   });
 }
 

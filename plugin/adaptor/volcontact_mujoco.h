@@ -267,6 +267,11 @@ VOLCONTACT_API int volcontact_read_numbers(const mjModel* m, const mjData* d,
 VOLCONTACT_API int volcontact_describe(const mjModel* m, char* text, int capacity, char* message,
                                        int message_size);
 
+// The contact model of pair `pair` of the description as text, in the frames of its two geoms, as
+// vc_model_create_text of the C container reads it. Writes and returns as volcontact_describe.
+VOLCONTACT_API int volcontact_pair_text(const mjModel* m, int pair, char* text, int capacity,
+                                        char* message, int message_size);
+
 // Why numbers that were changed in an attached model are not in force; empty when they are. Returns
 // the length of the text.
 VOLCONTACT_API int volcontact_live_error(const mjModel* m, char* message, int message_size);

@@ -4,15 +4,11 @@
 
 #include "c_api/guarded.h"
 #include "c_api/model.h"
+#include "c_api/workspace.h"
 #include "volcontact/base/check.h"
 
 using namespace volcontact;
 using namespace volcontact::c_api;
-
-struct vc_workspace {
-  ContactModel::Workspace scratch;
-  ContactReport report;
-};
 
 namespace {
 
@@ -155,6 +151,8 @@ int vc_evaluate(const vc_model* model, vc_workspace* workspace, const vc_motion*
                             twist_from(motion->V_WA, "vc_evaluate: V_WA"),
                             twist_from(motion->V_WB, "vc_evaluate: V_WB")};
     ContactReport& report = workspace->report;
+    report.keeps_inputs = true;  // for vc_tangent_of
+    workspace->model = nullptr;
     contact.evaluate(bodies, memory, workspace->scratch, report);
     if (!is_finite(report)) {
       report.sites.clear();
@@ -164,6 +162,7 @@ int vc_evaluate(const vc_model* model, vc_workspace* workspace, const vc_motion*
                   "large");
     }
     *result = plain(report);
+    workspace->model = &contact;
     result->forgotten = keep(report, row, next_state, state_size);
     return 0;
   });

@@ -97,6 +97,31 @@ int vc_check_version(int version_of_header) {
   });
 }
 
+int vc_check_layout(int version_of_header, int motion_size, int site_size, int result_size,
+                    int tangent_size) {
+  const int code = vc_check_version(version_of_header);
+  if (code != 0) return code;
+  const struct {
+    const char* name;
+    int theirs, ours;
+  } records[] = {{"vc_motion", motion_size, sizeof(vc_motion)},
+                 {"vc_site", site_size, sizeof(vc_site)},
+                 {"vc_result", result_size, sizeof(vc_result)},
+                 {"vc_tangent", tangent_size, sizeof(vc_tangent)}};
+  for (const auto& record : records) {
+    if (record.theirs == record.ours) continue;
+    return guarded([&] {
+      return fail(VC_ERROR_VERSION,
+                  (std::string("the ") + record.name + " of the program has " +
+                   std::to_string(record.theirs) + " bytes and that of the library " +
+                   std::to_string(record.ours) +
+                   "; compile the program with the library's own volcontact.h")
+                      .c_str());
+    });
+  }
+  return 0;
+}
+
 const char* vc_error(void) { return volcontact::c_api::message(); }
 
 }  // extern "C"

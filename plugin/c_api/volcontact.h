@@ -105,6 +105,16 @@ typedef struct vc_result {
   int forgotten;         /* sites for which next_state had no room: new ones at the next call */
 } vc_result;
 
+/* How the wrenches change with the motion. 12 by 12, row by row, world frame: rows are the torque
+ * and force on A, then those on B; columns the turn [rad] and displacement [m] of A's frame, then
+ * of B's, or their speeds. Analytic and at fixed states: the patch is taken as flat
+ * (docs/theory.md, "Stiffness of a site"). What bristles hold against a way since `state` is in it
+ * where that way is, so with elapsed > 0. */
+typedef struct vc_tangent {
+  double by_motion[144]; /* dW/dx */
+  double by_speed[144];  /* dW/dv */
+} vc_tangent;
+
 typedef struct vc_solid vc_solid;
 typedef struct vc_model vc_model;
 typedef struct vc_workspace vc_workspace;
@@ -114,6 +124,14 @@ VC_API int vc_version(void);
 
 /* 0, or VC_ERROR_VERSION where a program compiled with that VC_VERSION cannot use this library. */
 VC_API int vc_check_version(int version_of_header);
+
+/* The same, and whether the records of the program have the size they have in the library: another
+ * compiler or packing is found before it does harm. VC_CHECK() fills in the sizes. */
+VC_API int vc_check_layout(int version_of_header, int motion_size, int site_size, int result_size,
+                           int tangent_size);
+#define VC_CHECK()                                                          \
+  vc_check_layout(VC_VERSION, (int)sizeof(vc_motion), (int)sizeof(vc_site), \
+                  (int)sizeof(vc_result), (int)sizeof(vc_tangent))
 
 /* What the last failed call of this thread has to say; valid until its next failed call. */
 VC_API const char* vc_error(void);
@@ -138,6 +156,12 @@ VC_API int vc_solid_create_polytope(const double* points, int point_count, vc_so
 VC_API int vc_solid_combine(const char* operation, const vc_solid* a, const vc_solid* b,
                             const double* X_AB, vc_solid** solid);
 
+/* A solid from a line of text, and its text: written and read, it is the same to the bit.
+ * vc_solid_text writes up to `capacity` characters with the final zero and returns the length of
+ * the whole text without it. docs/c_container.md, "A model as text". */
+VC_API int vc_solid_create_text(const char* text, vc_solid** solid);
+VC_API int vc_solid_text(const vc_solid* solid, char* text, int capacity);
+
 /* Sets a parameter of a simple shape: 1 or 3 numbers. */
 VC_API int vc_solid_set(vc_solid* solid, const char* name, const double* numbers, int count);
 
@@ -153,6 +177,10 @@ VC_API void vc_solid_free(vc_solid* solid);
 
 /* A model without pairs, of normal law hunt_crossley and without friction. */
 VC_API int vc_model_create(vc_model** model);
+
+/* A whole model from text, and its text, as above. */
+VC_API int vc_model_create_text(const char* text, vc_model** model);
+VC_API int vc_model_text(const vc_model* model, char* text, int capacity);
 
 /* Adds a pair: solid a fixed on body A at X_Aa, solid b on body B at X_Bb (null: identity). Returns
  * the pair's index. */
@@ -209,6 +237,18 @@ VC_API void vc_workspace_free(vc_workspace* workspace);
 VC_API int vc_evaluate(const vc_model* model, vc_workspace* workspace, const vc_motion* motion,
                        const double* state, double* next_state, int state_size, double elapsed,
                        vc_result* result);
+
+/* For a solver that integrates the states of the laws along with the motion. The states of the rows
+ * are those of now; where the bodies stood when the rows were written only says which site is
+ * which. The wrenches follow from these states, and `next_state` gets the rows of the sites of
+ * now. `rates`, of the same length, gets the time derivative of every state of `next_state`, and 0
+ * elsewhere. Costs three evaluations where the laws keep something and bodies touch. */
+VC_API int vc_evaluate_rates(const vc_model* model, vc_workspace* workspace,
+                             const vc_motion* motion, const double* state, double* next_state,
+                             double* rates, int state_size, vc_result* result);
+
+/* The tangent of the last vc_evaluate or vc_evaluate_rates of this model in this workspace. */
+VC_API int vc_tangent_of(const vc_model* model, vc_workspace* workspace, vc_tangent* tangent);
 
 /* Writes up to `capacity` sites of the workspace's last evaluation and returns how many there are.
  */

@@ -8,6 +8,7 @@
 #include "bindings.h"
 #include "python_law.h"
 #include "volcontact/model/contact_model.h"
+#include "volcontact/model/model_text.h"
 
 namespace volcontact::python {
 namespace {
@@ -180,6 +181,10 @@ Raises:
     ValueError: a forced engine or the formulation does not serve a pair)")
       .def_prop_ro("row_size", &ContactModel::row_size,
                    "Numbers kept for each contact site; 0 when the laws keep nothing")
+      .def_prop_ro(
+          "text", [](const ContactModel& model) { return text_of(model); },
+          "All of it as text, as the C container reads it (docs/c_container.md). Raises ValueError "
+          "with a SignedDistance or a law of your own")
       .def("evaluate", &evaluate, nb::kw_only(), nb::arg("X_WA") = nb::none(),
            nb::arg("X_WB") = nb::none(), nb::arg("V_WA") = nb::none(), nb::arg("V_WB") = nb::none(),
            nb::arg("state") = nb::none(), nb::arg("elapsed") = 0.0,

@@ -40,6 +40,7 @@ from volcontact._volcontact import (
     series_stiffness,
 )
 from volcontact.audit import Audit
+from volcontact.fmu import export_fmu, merge_fmus
 from volcontact.identify import identify
 from volcontact.own_laws import FrictionLaw, LawField, LawState, NormalLaw
 from volcontact.recorder import Recorder
@@ -92,12 +93,14 @@ __all__ = [
     "__version__",
     "attach",
     "contact_forces",
+    "export_fmu",
     "identify",
     "interference",
     "layer_stiffness",
     "load",
     "make_friction",
     "make_normal",
+    "merge_fmus",
     "series_damping",
     "series_restitution",
     "series_stiffness",

@@ -224,6 +224,9 @@ _SIGNATURES = {
         )
     ),
     "describe": _Signature((ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int), has_message=True),
+    "pair_text": _Signature(
+        (ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_int), has_message=True
+    ),
     "live_error": _Signature((ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int)),
 }
 

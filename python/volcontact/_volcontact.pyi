@@ -1195,6 +1195,12 @@ class ContactModel:
     def row_size(self) -> int:
         """Numbers kept for each contact site; 0 when the laws keep nothing"""
 
+    @property
+    def text(self) -> str:
+        """
+        All of it as text, as the C container reads it (docs/c_container.md). Raises ValueError with a SignedDistance or a law of your own
+        """
+
     def evaluate(self, *, X_WA: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, X_WB: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, V_WA: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')] | None = None, V_WB: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')] | None = None, state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C')] | None = None, elapsed: float = 0.0) -> ContactReport:
         """
         Wrenches on both bodies from their poses and twists.

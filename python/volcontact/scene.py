@@ -206,6 +206,10 @@ class Contact(Closing):
         description: dict[str, Any] = json.loads(text.rstrip("\0"))
         return description
 
+    def _pair_text(self, pair: int) -> str:
+        """The contact model of a pair of the description, in the frames of its geoms."""
+        return self._adaptor.text("pair_text", self._require_open()._address, pair)
+
     def sites(self, data: mujoco.MjData) -> np.ndarray:
         """Contact sites at the state of the last evaluation.
 

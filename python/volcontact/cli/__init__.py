@@ -24,6 +24,7 @@ from volcontact.cli import (
     compare,
     completion,
     doctor,
+    fmu,
     identify,
     mesh,
     metrics,
@@ -36,7 +37,20 @@ from volcontact.cli.terminal import Terminal
 
 __all__ = ["main", "make_parser"]
 
-_COMMANDS = (new, check, run, compare, view, metrics, mesh, study, identify, doctor, completion)
+_COMMANDS = (
+    new,
+    check,
+    run,
+    compare,
+    view,
+    metrics,
+    mesh,
+    study,
+    identify,
+    fmu,
+    doctor,
+    completion,
+)
 _ERROR, _INTERRUPTED = 1, 130
 
 _EXAMPLES = """\
@@ -50,6 +64,7 @@ examples:
   volcontact mesh check part.stl                   whether a mesh is a solid
   volcontact study run study.toml --out results    thousands of trials of a scene
   volcontact identify study.toml --out results     parameters from measured motions
+  volcontact fmu scene.xml --bodies ball world     its contact for other simulators, as an FMU
   volcontact doctor                                what is installed and whether it works
 
 exit status:

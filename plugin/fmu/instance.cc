@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fmu/instance.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "volcontact/base/check.h"
+
+namespace volcontact::fmu {
+namespace {
+
+constexpr double kMagic = 2804.0;  // of a serialized state: head, then numbers
+constexpr std::size_t kHead = 2;
+
+const char* mode_name(Mode mode) {
+  switch (mode) {
+    case kInstantiated:
+      return "Instantiated";
+    case kInitialization:
+      return "Initialization Mode";
+    case kEvent:
+      return "Event Mode";
+    case kContinuous:
+      return "Continuous-Time Mode";
+    case kStep:
+      return "Step Mode";
+    case kIntermediate:
+      return "Intermediate Update Mode";
+    case kTerminated:
+      break;
+  }
+  return "Terminated";
+}
+
+const char* type_name(Instance::Type type) {
+  constexpr const char* kNames[] = {"a real number", "an integer", "a Boolean"};
+  return kNames[static_cast<int>(type)];
+}
+
+const Group& checked(const Group* group, unsigned reference, Instance::Type type) {
+  const bool fits = group && (group->is_integer() == (type == Instance::Type::kInteger)) &&
+                    (group->is_boolean() == (type == Instance::Type::kBoolean));
+  require(fits, "value reference " + std::to_string(reference) + " is not that of " +
+                    type_name(type) + " of this FMU; see modelDescription.xml");
+  return *group;
+}
+
+}  // namespace
+
+std::string wrong_mode_message(const char* function, Mode mode) {
+  return std::string(function) + " is not allowed in " + mode_name(mode);
+}
+
+Instance::Instance(const std::string& resources, const char* token, bool exchange)
+    : unit(resources), is_exchange(exchange) {
+  require(token && unit.file().token == token,
+          "the token of the modelDescription.xml is not that of the resources (" +
+              unit.file().token + "); export the FMU again");
+}
+
+const Group& Instance::group(unsigned reference, Type type) const {
+  return checked(unit.group(reference), reference, type);
+}
+const Group& Instance::group_of(unsigned reference, Type type) const {
+  return checked(unit.group_around(reference), reference, type);
+}
+
+double Instance::get(unsigned reference) {
+  if (mode == kTerminated) return unit.memory().values[reference];
+  return unit.get(reference);
+}
+
+// Whether a value has no business being set at all, or no longer.
+bool Instance::is_unchangeable(const Group& group) const {
+  const bool before_start = mode == kInstantiated || mode == kInitialization;
+  if (group.is_input()) return false;
+  if (group.is_state()) return !before_start;
+  if (!group.is_parameter()) return true;
+  return !before_start && !(group.is_tunable && (mode == kEvent || mode == kStep));
+}
+
+void Instance::set(const Group& group, int offset, const double* numbers, int count) {
+  require(!is_unchangeable(group), "value reference " + std::to_string(group.first + offset) +
+                                       " cannot be set in " + mode_name(mode));
+  unit.set(group, offset, numbers, count);
+}
+
+void Instance::enter_initialization(double start) {
+  require(std::isfinite(start), "the start time is no finite number");
+  unit.set_time(start);
+  mode = kInitialization;
+}
+
+void Instance::exit_initialization() {
+  if (!is_exchange) unit.begin();
+  mode = is_exchange ? kEvent : kStep;
+}
+
+void Instance::reset() {
+  unit.reset();
+  mode = kInstantiated;
+}
+
+void Instance::check_step(double now, double step) const {
+  require(step > 0.0 && std::isfinite(step),
+          "the communication step is " + std::to_string(step) + " [s], must be above 0");
+  const double off = std::abs(now - unit.time());
+  require(off <= 1e-9 * (1.0 + std::abs(now)) && std::isfinite(now),
+          "the communication point is " + std::to_string(now) + " [s] and the unit stands at " +
+              std::to_string(unit.time()) + " [s]; go back with a saved state");
+}
+
+std::unique_ptr<Saved> Instance::save() const {
+  return std::make_unique<Saved>(Saved{unit.memory(), mode});
+}
+
+void Instance::restore(const Saved& saved) {
+  unit.restore(saved.memory);
+  mode = saved.mode;
+}
+
+std::size_t Instance::saved_size(const Saved& saved) const {
+  return sizeof(double) * (kHead + saved.memory.packed().size());
+}
+
+void Instance::serialize(const Saved& saved, void* bytes, std::size_t size) const {
+  require(bytes && size >= saved_size(saved), "the buffer is smaller than the state");
+  std::vector<double> numbers{kMagic, static_cast<double>(saved.mode)};
+  const std::vector<double> packed = saved.memory.packed();
+  numbers.insert(numbers.end(), packed.begin(), packed.end());
+  std::memcpy(bytes, numbers.data(), sizeof(double) * numbers.size());
+}
+
+std::unique_ptr<Saved> Instance::deserialize(const void* bytes, std::size_t size) const {
+  auto saved = save();
+  require(bytes && size == saved_size(*saved), "the bytes are not a state of this unit");
+  std::vector<double> numbers(size / sizeof(double));
+  std::memcpy(numbers.data(), bytes, size);
+  const auto mode_bits = static_cast<unsigned>(numbers[1]);
+  require(numbers[0] == kMagic && mode_bits <= kAnyMode && (mode_bits & (mode_bits - 1)) == 0,
+          "the bytes are not a state of this unit");
+  saved->mode = static_cast<Mode>(mode_bits);
+  saved->memory.unpack(numbers.data() + kHead, numbers.size() - kHead);
+  return saved;
+}
+
+}  // namespace volcontact::fmu

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`volcontact fmu`: contact as a Functional Mock-up Unit for other simulators."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from volcontact.cli.arguments import add_file, add_keys, plain_command
+from volcontact.cli.terminal import Terminal
+
+if TYPE_CHECKING:
+    from volcontact.cli.arguments import Subparsers
+
+_EXAMPLES = """\
+  volcontact fmu scene.xml --bodies ball world --out ball.fmu
+  volcontact fmu scene.xml --bodies lid box --fmi 3 --kind me --orientation matrix --out lid.fmu
+  volcontact fmu merge linux/ball.fmu windows/ball.fmu --out ball.fmu
+"""
+_MERGE = "merge"
+
+
+def add_to(commands: Subparsers) -> None:
+    """Adds the command to the program."""
+    parser = plain_command(
+        commands,
+        "fmu",
+        "write the contact of some bodies as a Functional Mock-up Unit (FMI 2.0, 3.0)",
+        _EXAMPLES,
+    )
+    add_file(
+        parser,
+        "scene",
+        metavar="SCENE",
+        nargs="+",
+        help="MJCF file; or the word merge and FMUs of one unit made on several platforms",
+    )
+    parser.add_argument(
+        "--bodies", nargs="+", default=[], metavar="BODY", help="their names; world is one"
+    )
+    parser.add_argument(
+        "--fmi", type=int, choices=(2, 3), default=2, help="version (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--kind",
+        choices=("me", "cs", "both"),
+        default="both",
+        help="Model Exchange, Co-Simulation (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--orientation",
+        choices=("quaternion", "matrix"),
+        default="quaternion",
+        help="how bodies are turned (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--frame",
+        choices=("world", "body"),
+        default="world",
+        help="of twists and wrenches (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--slots",
+        type=int,
+        default=4,
+        metavar="N",
+        help="contact sites with values of their own (default: %(default)s)",
+    )
+    parser.add_argument("--out", type=Path, metavar="FILE", help="of the FMU (default: SCENE.fmu)")
+    parser.add_argument("--json", action="store_true", help="print the result as JSON")
+    add_keys(parser)
+    parser.set_defaults(execute=execute)
+
+
+def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
+    """Runs the command and returns the exit status."""
+    from volcontact.fmu import export_fmu, merge_fmus
+
+    first, *rest = arguments.scene
+    if first == _MERGE:
+        out = arguments.out or Path("merged.fmu")
+        folders = merge_fmus(rest, out)
+        _tell(terminal, {"fmu": str(out), "binaries": folders})
+        return 0
+    if rest:
+        raise ValueError(f"one scene at a time, not {' '.join(arguments.scene)}")
+    if not Path(first).is_file():
+        raise ValueError(f"no such file: {first}")
+    out = export_fmu(
+        first,
+        arguments.out or Path(first).with_suffix(".fmu").name,
+        bodies=arguments.bodies,
+        fmi=arguments.fmi,
+        kind=arguments.kind,
+        orientation=arguments.orientation,
+        frame=arguments.frame,
+        slots=arguments.slots,
+        material=dict(arguments.material),
+        options=dict(arguments.option),
+    )
+    _tell(
+        terminal,
+        {"fmu": str(out), "fmi": arguments.fmi, "kind": arguments.kind, "bodies": arguments.bodies},
+    )
+    return 0
+
+
+def _tell(terminal: Terminal, result: dict[str, object]) -> None:
+    if terminal.json:
+        terminal.result(result)
+        return
+    terminal.out.print(f"wrote {result['fmu']}", markup=False)

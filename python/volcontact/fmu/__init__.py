@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Functional Mock-up Units of contact, for any simulator that imports FMI 2.0 or 3.0."""
+
+from __future__ import annotations
+
+from volcontact.fmu.export import export_fmu
+from volcontact.fmu.merge import merge_fmus
+
+__all__ = ["export_fmu", "merge_fmus"]
