@@ -110,7 +110,7 @@ def add_navigation(app: Sphinx, page: str, source: list[str]) -> None:
                 f":caption: {section}", (page if ">" in page else f"/{page}" for page in pages)
             )
     elif page == "mjcf_models/README":
-        source[0] += toctree(":glob:", ["/mjcf_models/*/README"])
+        source[0] += toctree(":glob:", ["/mjcf_models/*/README", "/mjcf_models/*/*/README"])
 
 
 def toctree(option: str, pages: Iterable[str]) -> str:
