@@ -34,6 +34,7 @@ class TorusSections {
     sum_.depth = major_ * sine_ + minor_ - height_;
   }
   const TiltedSum& sum() const { return sum_; }
+  double error() const { return error_; }  ///< of V, beside rounding
 
  private:
   // The values of cos(phi) where the chord touches the disc: discs are whole below the lower one
@@ -102,6 +103,7 @@ class TorusSections {
       add_panels(center, to, splits - 1);
       return;
     }
+    const double before = sum_.volume;
     for (const GaussNode& node : kGauss12) {
       for (const double x : {-node.x, node.x}) {
         const double turn = center + reach * x;
@@ -112,6 +114,9 @@ class TorusSections {
                     2.0 * reach * node.weight * half_ * std::sin(turn) / std::sqrt(square));
       }
     }
+    // Where the plane touches the tube a singularity lies on the range, or next to it.
+    constexpr double kUnresolved = 2e-4;
+    if (nearest < kClear * kClear * reach * reach) error_ += kUnresolved * (sum_.volume - before);
   }
 
   // The section at cos(phi) = c: chord at the distance g / n from the middle of the disc; u from
@@ -161,6 +166,7 @@ class TorusSections {
   double touch_low_ = -kInfinity, touch_high_ = kInfinity;
   double first_ = -1.0, last_ = 1.0;  // range of cos(phi) with segments
   double middle_ = 0.0, half_ = 1.0;
+  double error_ = 0.0;
   std::complex<double> singular_[3] = {{0.0, kInfinity}, {0.0, kInfinity}, {0.0, kInfinity}};
   TiltedSum sum_;
 };
@@ -175,7 +181,10 @@ inline VolumeMetrics closed_form(const HalfSpace&, const Torus& b, const Pose& X
   if (!(height > -reach)) {
     return immersed_solid(b.own_metrics(), X_AB, 4.0 * kPi * kPi * R * r, 2.0 * reach);
   }
-  return TorusSections(b, tilt, height).sum().metrics(X_AB.translation, tilt, R + r);
+  const TorusSections sections(b, tilt, height);
+  VolumeMetrics metrics = sections.sum().metrics(X_AB.translation, tilt, R + r);
+  metrics.volume_error += sections.error();
+  return metrics;
 }
 
 }  // namespace volcontact

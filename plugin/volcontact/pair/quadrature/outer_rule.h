@@ -44,10 +44,16 @@ struct LegendreTable {
   }
 };
 
-/// Estimate of the error of the rule with 8 nodes, from how fast the Legendre coefficients of the
-/// integrand fall; `terms` are its values times the weights of the rule. Two coefficients next to
-/// each other are small together only by chance: the fall is taken over all of them but the first.
-inline double legendre_error(const double* terms) {
+/// Estimates of the error of the rule with 8 nodes. Where the integrand is smooth the error falls
+/// on as the Legendre coefficients do; where a kink was overlooked it does not.
+struct LegendreError {
+  double smooth, kinked;
+};
+
+/// From how fast the Legendre coefficients of the integrand fall; `terms` are its values times the
+/// weights of the rule. Two coefficients next to each other are small together only by chance: the
+/// fall is taken over all of them but the first.
+inline LegendreError legendre_errors(const double* terms) {
   static constexpr LegendreTable kTable;
   double c[LegendreTable::kCount] = {};
   for (int i = 0; i < LegendreTable::kCount; ++i) {
@@ -55,8 +61,11 @@ inline double legendre_error(const double* terms) {
   }
   const double last = std::abs(c[6]) + std::abs(c[7]), first = std::abs(c[2]) + std::abs(c[3]);
   const double fall = first > 0.0 ? std::min(1.0, last / first) : 0.0;  // of two pairs
-  return last * fall * std::sqrt(fall);
+  // Where coefficients do not fall at all, all that follow may be as large; as measured.
+  const double root = std::sqrt(fall);
+  return {last * fall * root, last * root * (1.0 + 4.0 * fall)};
 }
+inline double legendre_error(const double* terms) { return legendre_errors(terms).smooth; }
 
 /// The same of even steps over a whole smooth turn, from the sums of every second step each: twice
 /// the steps square the error.

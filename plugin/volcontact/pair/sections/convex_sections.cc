@@ -78,6 +78,13 @@ class LinesRun {
     return metrics;
   }
 
+  // All of a solid, of which the columns tell the area: it may be a part of a larger one.
+  static VolumeMetrics whole(VolumeMetrics own, const VolumeMetrics& by_columns) {
+    own.area = by_columns.area;
+    own.counter_area = by_columns.counter_area;
+    return contained(own);
+  }
+
   bool is_open(double tolerance) const {
     return window_.kind == LinesWindow::Kind::kOverlap &&
            open_ > tolerance * s_.fan.total().moments[0];
@@ -282,15 +289,15 @@ class LinesRun {
     }
     s_.fan.integrate(s_.path, u, v, weight, section);
     for (int i = 0; i < kLanes; ++i) section[i] *= weight[i];
-    const double error = legendre_error(section);
+    const LegendreError error = legendre_errors(section);
     double volume = 0.0;
     for (double part : section) volume += part;
     volume_scale_ = std::max(volume_scale_, volume);
-    if (error > target_ * options_.tolerance * volume_scale_ && arc.depth < depth_) {
+    if (error.smooth > target_ * options_.tolerance * volume_scale_ && arc.depth < depth_) {
       divide(arc);
       return;
     }
-    error_ += error;
+    error_ += error.kinked;
     s_.fan.accept_batch();
   }
 
@@ -312,11 +319,11 @@ class LinesRun {
     if (!result.touching()) return result;
     if (result.area == 0.0) {
       const VolumeMetrics own = b_.own_metrics();
-      if (result.volume > kWhole * own.volume) return contained(transformed(own, X_AB_));
+      if (result.volume > kWhole * own.volume) return whole(transformed(own, X_AB_), result);
     }
     if (result.counter_area == 0.0) {
       const VolumeMetrics own = a_.own_metrics();
-      if (result.volume > kWhole * own.volume) return contained(own);
+      if (result.volume > kWhole * own.volume) return whole(own, result);
     }
     result.depth_moment = sums.depth_moment;
     result.depth = std::max(sums.high, s_.breaks.high) - std::min(sums.low, s_.breaks.low);

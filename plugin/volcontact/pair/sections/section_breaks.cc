@@ -126,6 +126,8 @@ class BreakSearch {
       const Vec3 normal = f.map.transpose() * f.weighted(y);
       intersect(p, {normal, f.level() - f.weighted(y).dot(f.map * (frame_.center - f.center))}, r,
                 kTouch);
+    } else {
+      intersect(p, polar(r, frame_.t), r, kTouch);  // that point is at infinity
     }
     if (f.part == CapsulePart::kTube) {
       const Segment& s = faces_.capsule[index(f.owner)];

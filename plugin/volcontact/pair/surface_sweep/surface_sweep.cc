@@ -17,6 +17,7 @@ constexpr double kSamePlace = 1e-6;  // of the box: two ends in one place
 constexpr int kRounds = 4;           // of looking at curves that neighbours tell of
 constexpr double kSpeck = 1e-10;     // of V: a region that is none
 constexpr double kContained = 1e-6;  // of V: all of a solid
+constexpr double kDoubt = 5.0;       // error of V by how far the surface is from closed, as measured
 
 class ShellRun {
  public:
@@ -316,14 +317,18 @@ class ShellRun {
     sum.volume = volume_of(region);
     sum.first = a.first + b.first;
     sum.second = a.second + b.second;
-    sum.area_vector = 0.5 * (a.normal - b.normal);
-    const Mat3 turn = 0.5 * (a.moment - b.moment);
+    // The error of a vector goes with its area, and a small area bounds what it can be.
+    const double square_a = a.area * a.area, square_b = b.area * b.area;
+    const double share_b =
+        square_a + square_b > 0.0 ? square_a / (square_a + square_b) : 0.5;
+    sum.area_vector = (1.0 - share_b) * a.normal - share_b * b.normal;
+    const Mat3 turn = (1.0 - share_b) * a.moment - share_b * b.moment;
     sum.area_moment =
         Vec3(turn(1, 2) - turn(2, 1), turn(2, 0) - turn(0, 2), turn(0, 1) - turn(1, 0));
     sum.area = a.area;
     sum.counter_area = b.area;
     VolumeMetrics metrics = sum.metrics();
-    metrics.volume_error = error_of(region);
+    metrics.volume_error = kDoubt * error_of(region);
     if (a.area == 0.0 || b.area == 0.0) return contained(metrics, a.area == 0.0 ? 1 : 0);
     const auto of_region = [&](int strip) {
       const int at = root(strip);

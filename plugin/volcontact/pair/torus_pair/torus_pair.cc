@@ -335,8 +335,11 @@ class RingPairRun {
     sum.volume = volume.sum() / 3.0;
     sum.first = 0.25 * (a.first + b.first);
     sum.second = 0.2 * (a.second + b.second);
-    sum.area_vector = 0.5 * (a.vector - b.vector);
-    sum.area_moment = 0.5 * (a.moment - b.moment);
+    // The error of a vector goes with its area, and a small area bounds what it can be.
+    const double square_a = a.area * a.area, square_b = b.area * b.area;
+    const double share_b = square_a + square_b > 0.0 ? square_a / (square_a + square_b) : 0.5;
+    sum.area_vector = (1.0 - share_b) * a.vector - share_b * b.vector;
+    sum.area_moment = (1.0 - share_b) * a.moment - share_b * b.moment;
     sum.area = a.area;
     sum.counter_area = b.area;
     VolumeMetrics metrics = sum.metrics();

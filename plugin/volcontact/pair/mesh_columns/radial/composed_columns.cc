@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "volcontact/base/disjoint_sets.h"
 #include "volcontact/pair/mesh_columns/contained.h"
@@ -143,6 +144,8 @@ class ComposedColumns {
   // Along the radius to the walls. False when the overlap is bounded by other faces as well.
   bool add_radial(const ConvexView& body, const CarvedPiece& piece, int number,
                   bool& presses_wall) {
+    std::uint64_t walls = 0, left = 0;  // bores at whose wall there is a patch; that leave one
+    if (s_.bores.size() > 64) return false;
     for (std::size_t k = 0; k < s_.bores.size(); ++k) {
       const Pose X_SQ{basis_with_z(s_.bores[k].axis), s_.bores[k].center};
       if (!set_solid(body, piece, k, X_SQ)) return false;
@@ -155,6 +158,9 @@ class ComposedColumns {
       RadialSum all;
       for (const RadialPatch& patch : s_.radial.patches) {
         if (patch.at_wall && patch.at_other) return false;
+        const std::uint64_t bit = std::uint64_t{1} << k;
+        if (patch.at_wall) walls |= bit;
+        if (!patch.at_wall && patch.at_other) left |= bit;
         if (!patch.at_wall && (patch.at_other || k > 0)) continue;
         const Vec3& area = patch.sum.moments.area_vector;
         presses_wall &= std::abs(area.z()) <= kAlongAxis * area.norm();
@@ -173,7 +179,9 @@ class ComposedColumns {
         add_site(patch.sum, X_AQ, number);
       }
     }
-    return true;
+    // What one bore leaves to another must have been found there: bores that run into each other
+    // may both see the patch behind the other one's wall.
+    return left == 0 || (walls & (walls - 1)) != 0 || (walls != 0 && (left & walls) == 0);
   }
 
   // The piece in the frame Q of its bore k. False when its body has faces without a formula here.

@@ -288,7 +288,8 @@ class BoreRun {
     double volume = 0.0;
     for (int i = 0; i < kLanes; ++i) volume += section[i] *= weight[i];
     // Near an end the section is no analytic function of x: coefficients fall more slowly.
-    const double error = (arc.begins || arc.ends ? kEndError : 1.0) * legendre_error(section);
+    const LegendreError errors = legendre_errors(section);
+    const double error = (arc.begins || arc.ends ? kEndError : 1.0) * errors.smooth;
     volume_scale_ = std::max(volume_scale_, volume);
     if (error > outer_rule::kTarget * options_.tolerance * volume_scale_ &&
         depth < outer_rule::kMaxDepth) {
@@ -297,7 +298,7 @@ class BoreRun {
       integrate_arc(arc, middle, x_to, depth + 1);
       return;
     }
-    error_ += error;
+    error_ += std::max(error, errors.kinked);
     s_.fan.accept_batch();
   }
 

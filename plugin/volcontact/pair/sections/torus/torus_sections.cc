@@ -229,7 +229,8 @@ class RingRun {
     s_.fan.integrate(s_.path, u, v, weight, section);
     double volume = 0.0;
     for (int i = 0; i < kLanes; ++i) volume += section[i] *= weight[i];
-    const double error = (arc.begins || arc.ends ? kEndError : 1.0) * legendre_error(section);
+    const LegendreError errors = legendre_errors(section);
+    const double error = (arc.begins || arc.ends ? kEndError : 1.0) * errors.smooth;
     volume_scale_ = std::max(volume_scale_, volume);
     if (error > target() * volume_scale_ && divisions < depth()) {
       const double middle = 0.5 * (x_from + x_to);
@@ -237,7 +238,7 @@ class RingRun {
       integrate_arc(arc, middle, x_to, divisions + 1);
       return;
     }
-    error_ += error;
+    error_ += std::max(error, errors.kinked);
     s_.fan.accept_batch();
   }
 
@@ -287,6 +288,31 @@ class RingRun {
     }
     sum.area_vector = of_torus;
     sum.area_moment = Vec3(sums.moment[0], sums.moment[1], 0.0);
+    if (flat || !(of_torus.norm() > sum.counter_area)) return;
+    // No vector is longer than its area: where the body shows next to none, it is told by the body,
+    // or else by a face through the axis.
+    const Vec3 of_body = vector_of_body();
+    const double lost = (of_torus - of_body).norm();
+    if (has_axial_plane() && lost >= kLostFace * sum.area) {
+      sum.counter_area += lost;
+    } else {
+      sum.area_vector = of_body;
+    }
+  }
+
+  Vec3 vector_of_body() const {
+    const RingSums& sums = s_.fan.total();
+    const FanFaces& fan = s_.fan.faces().fan;
+    Vec3 vector = Vec3::Zero();
+    for (int i = 0; i < fan.active_planes; ++i) {
+      vector -= sums.planes[i].sums[0] * s_.faces.planes[s_.fan.plane_face(i)].normal;
+    }
+    for (int i = 0; i + 1 < fan.round_count; ++i) {
+      const FanRound& r = fan.rounds[i];
+      const double* x = sums.rounds[i].sums;
+      vector -= x[0] * Vec3(r.g) + x[1] * Vec3(r.g_u) + x[2] * Vec3(r.g_v) + x[3] * Vec3(r.g_t);
+    }
+    return vector;
   }
 
   bool has_axial_plane() const {

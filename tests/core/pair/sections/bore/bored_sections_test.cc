@@ -323,6 +323,27 @@ TEST(BoredLines, CornersThatReachPastALobe) {
   }
 }
 
+// What two faces along the bore leave of a ball about its axis: half-planes through the axis meet
+// them edge on, and the place where a face takes over from the ball is a break.
+TEST(BoredLines, ABallCutByFacesAlongTheBore) {
+  const double r = 0.15, half = 0.1, bore = 0.05, high = std::sqrt(r * r - bore * bore);
+  const Shape block = Csg(Csg::Operation::kDifference, Csg(Box({.half_sizes = {half, 0.3, 0.4}})),
+                          Csg(Cylinder({.radius = bore, .half_length = 0.5})));
+  const Shape ball = Sphere({.radius = r});
+  const double slab = 2.0 * kPi * (r * r * half - half * half * half / 3.0);
+  const double core = 4.0 / 3.0 * kPi * (r * r * r - high * high * high);
+  for (const double turn : {0.0, 0.6, 2.5}) {
+    const Pose X{Eigen::AngleAxisd(turn, Vec3::UnitY()).toRotationMatrix(), Vec3::Zero()};
+    for (const bool ball_first : {false, true}) {
+      const Interference out =
+          ball_first ? evaluated(ball, block, X) : evaluated(block, ball, X.inverse());
+      EXPECT_EQ(out.engine, Engine::kLines);
+      EXPECT_LE(std::abs(out.total.volume - (slab - core)), out.total.volume_error)
+          << "turn " << turn;
+    }
+  }
+}
+
 TEST(BoredLines, AFreePegTouchesNothing) {
   const Shape peg = Cylinder({.radius = kBore - 2e-5, .half_length = 0.04});
   for (double shift : {0.0, 1e-5, 1.9e-5}) {

@@ -50,6 +50,23 @@ TEST(ComposedLines, ASeamJoinsItsSides) {
   EXPECT_LE((out.total.area_vector - area * Vec3::UnitZ()).norm(), 1e-6 * area);
 }
 
+// The part below the blind hole lies in the half-space as a whole: its surface counts as well.
+TEST(ComposedLines, APartInsideAsAWholeHasItsArea) {
+  const double r = 0.25, half = 0.1, bore = 0.12, floor = 0.02, level = 0.05;
+  const Shape pot = Csg(Csg::Operation::kDifference, Csg(Cylinder({.radius = r, .half_length = half})),
+                        Csg(Cylinder({.radius = bore, .half_length = half}))
+                            .posed({Mat3::Identity(), {0.0, 0.0, floor + half}}));
+  const Pose X{Mat3::Identity(), {0.1, 0.0, -level}};
+  const Interference out = evaluated(HalfSpace(), pot, X);
+  EXPECT_EQ(out.engine, Engine::kLines);
+  ASSERT_EQ(out.sites.size(), 1u);
+  const double ring = kPi * (r * r - bore * bore);
+  const double walls = 2.0 * kPi * (r * (half + level) + bore * (level - floor));
+  EXPECT_NEAR(out.total.area, ring, 1e-5 * ring);
+  EXPECT_NEAR(out.total.counter_area, kPi * (r * r + bore * bore) + walls, 1e-5);
+  EXPECT_NEAR(out.total.area_vector.z(), ring, 1e-5 * ring);
+}
+
 TEST(ComposedLines, StaysWithinTheCertifiedBoundsOfTheOctree) {
   const Csg block(Box({.half_sizes = {0.3, 0.25, 0.2}}));
   const Csg bore(Cylinder({.radius = 0.1, .half_length = 0.5}));
