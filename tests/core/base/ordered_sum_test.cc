@@ -13,11 +13,11 @@ namespace {
 // Terms of very different size and sign: any other order gives other bits.
 double term(int i) { return std::sin(1.7 * i) * std::pow(10.0, i % 17 - 8); }
 
-// The sum of `count` terms on a crew of so many threads.
+// The sum of `count` terms on a team of so many threads.
 double sum_on(int threads, int count, int grain, std::vector<double>& partial) {
-  Crew crew;
+  ThreadTeam team;
   double sum = 0.0;
-  crew.run(threads, [&] { sum = ordered_sum<double>(crew, count, grain, partial, term); });
+  team.run(threads, [&] { sum = ordered_sum<double>(team, count, grain, partial, term); });
   return sum;
 }
 
@@ -35,7 +35,7 @@ TEST(OrderedSum, SameBitsForAnyNumberOfThreads) {
 // The test above means something only if order matters for these terms.
 TEST(OrderedSum, TermsOfTheTestDependOnTheOrder) {
   std::vector<double> partial;
-  Crew alone;
+  ThreadTeam alone;
   const double forward = sum_on(1, 5000, 64, partial);
   const double backward =
       ordered_sum<double>(alone, 5000, 64, partial, [](int i) { return term(4999 - i); });

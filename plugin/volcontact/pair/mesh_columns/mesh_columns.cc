@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "volcontact/base/crew.h"
+#include "volcontact/base/thread_team.h"
 #include "volcontact/pair/mesh_columns/contained.h"
 #include "volcontact/pair/mesh_columns/nearest_face.h"
 

@@ -15,12 +15,12 @@ constexpr int kLeavesPerTask = 16;
 // The leaves and their regions: disjoint sets.
 class Regions {
  public:
-  Regions(Crew& crew, std::span<const Cell> cells, const std::vector<int>& leaves,
+  Regions(ThreadTeam& team, std::span<const Cell> cells, const std::vector<int>& leaves,
           SiteScratch& scratch)
       : s_(scratch), count_(static_cast<int>(leaves.size())) {
     make_sets(s_.parent, leaves.size());
     s_.leaves.resize(leaves.size());
-    crew.for_each(count_, kLeavesPerTask, [&](int i) {
+    team.for_each(count_, kLeavesPerTask, [&](int i) {
       const Cell& cell = cells[leaves[i]];
       s_.leaves[i] = {{cell.center + cell.content_low, cell.center + cell.content_high},
                       cell.sums.volume,
@@ -119,11 +119,11 @@ void Regions::join_specks(double rounding) {
 
 }  // namespace
 
-void sort_by_site(Crew& crew, std::span<const Cell> cells, double slack, double rounding,
+void sort_by_site(ThreadTeam& team, std::span<const Cell> cells, double slack, double rounding,
                   std::vector<int>& leaves, std::vector<int>& ends, SiteScratch& scratch) {
   ends.clear();
   if (leaves.empty()) return;
-  Regions regions(crew, cells, leaves, scratch);
+  Regions regions(team, cells, leaves, scratch);
   regions.join_neighbours(slack);
   regions.join_specks(rounding);
   const int count = static_cast<int>(leaves.size());

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "volcontact/base/crew.h"
+#include "volcontact/base/thread_team.h"
 #include "volcontact/pair/octree/cell.h"
 
 namespace volcontact {
@@ -30,7 +30,7 @@ struct SiteScratch {
 /// `slack` [m], belong together when both hold volume. A speck of which no more volume is certain
 /// than `rounding` [m^3] is no site of its own and goes with the nearest region that is.
 /// docs/theory.md, "Sites".
-void sort_by_site(Crew& crew, std::span<const Cell> cells, double slack, double rounding,
+void sort_by_site(ThreadTeam& team, std::span<const Cell> cells, double slack, double rounding,
                   std::vector<int>& leaves, std::vector<int>& ends, SiteScratch& scratch);
 
 }  // namespace volcontact

@@ -192,7 +192,7 @@ void CellTree::evaluate(int first, double rough_above) {
     for (int i = 0; i < born; ++i) bear(first + i, s_.births[i]);
     sample_fields(first);
   }
-  task_.crew.for_each(count, kEvaluateGrain, [&](int i) {
+  task_.team.for_each(count, kEvaluateGrain, [&](int i) {
     if (!sampled && i < born) bear(first + i, s_.births[i]);
     Cell& cell = s_.cells[first + i];
     s_.cutters[task_.thread()].evaluate(s_.faces, cell, rough_above);
@@ -253,7 +253,7 @@ bool CellTree::precise() const {
 // bounds.
 void CellTree::smooth() {
   const int count = static_cast<int>(s_.pending.size());
-  task_.crew.for_each(count, kEvaluateGrain, [&](int i) {
+  task_.team.for_each(count, kEvaluateGrain, [&](int i) {
     OctreeScratch::Leaf& leaf = s_.pending[i];
     Cell& cell = s_.cells[leaf.cell];
     if (!cell.rough) return;
@@ -293,14 +293,14 @@ bool CellTree::divide_worst() {
 }
 
 // Whether others would help, who are not at hand yet.
-bool CellTree::wants_crew() const {
-  return !task_.crew.open() && task_.worth_sharing(2 * static_cast<int>(s_.pending.size()));
+bool CellTree::wants_team() const {
+  return !task_.team.open() && task_.worth_sharing(2 * static_cast<int>(s_.pending.size()));
 }
 
 bool CellTree::refine() {
   do {
     while (!precise() && !approximate_) {
-      if (wants_crew()) return false;
+      if (wants_team()) return false;
       approximate_ = !divide_worst();
     }
     smooth();

@@ -13,7 +13,7 @@ class CellTree {
   CellTree(OctreeTask& task, OctreeScratch& scratch) : task_(task), s_(scratch) {}
 
   /// Leaves the leaves that may hold volume in `scratch.leaves`. False when the rest is worth
-  /// sharing and the crew of the task is not open: then to be called again.
+  /// sharing and the team of the task is not open: then to be called again.
   bool grow();
   double high() const { return high_; }
   bool approximate() const { return approximate_; }
@@ -37,7 +37,7 @@ class CellTree {
   bool precise() const;
   void smooth();
   bool divide_worst();
-  bool wants_crew() const;
+  bool wants_team() const;
   bool refine();
   double threshold() const;
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "volcontact/base/crew.h"
 #include "volcontact/base/ordered_sum.h"
+#include "volcontact/base/thread_team.h"
 #include "volcontact/pair/octree/cell_tree.h"
 #include "volcontact/pair/octree/octree_depth.h"
 
@@ -82,7 +82,7 @@ VolumeMetrics metrics_of(const OctreeTask& task, OctreeScratch& s, LeafRange lea
                          bool approximate) {
   const int count = leaves.last - leaves.first;
   const auto t = ordered_sum<OctreeScratch::Totals>(
-      task.crew, count, kSumGrain, s.partial_totals,
+      task.team, count, kSumGrain, s.partial_totals,
       [&](int i) { return totals_of(s.cells[s.leaves[leaves.first + i]]); });
   VolumeMetrics metrics = metrics_from(t);
   metrics.volume_error = std::max(t.high - t.volume, t.volume - t.low) + task.rounding;
@@ -121,7 +121,7 @@ void measure(const OctreeTask& task, OctreeScratch& s, const CellTree& tree, Int
   if (task.a.convex && task.b.convex) {  // the overlap is convex too
     s.site_ends.assign(1, static_cast<int>(s.leaves.size()));
   } else {
-    sort_by_site(task.crew, {s.cells.data(), static_cast<std::size_t>(s.cell_count)},
+    sort_by_site(task.team, {s.cells.data(), static_cast<std::size_t>(s.cell_count)},
                  1e-12 * task.scale, task.rounding, s.leaves, s.site_ends, s.sites);
   }
   LeafRange leaves;
@@ -147,7 +147,7 @@ void run(OctreeTask& task, OctreeScratch& s, Interference& out) {
   if (s.columns.size() < threads) s.columns.resize(threads);
   CellTree tree(task, s);
   if (tree.grow()) return measure(task, s, tree, out);
-  task.crew.run(task.thread_limit, [&] {
+  task.team.run(task.thread_limit, [&] {
     tree.grow();
     measure(task, s, tree, out);
   });
@@ -192,7 +192,7 @@ void octree_interference(const SolidView& a, const SolidView& b, const Pose& X_A
   if (is_nothing(a) || is_nothing(b)) return;
   const OverlapWindow window = find_window(a, b, X_AB, scratch.hull, scratch.part);
   if (window.apart) return;
-  Crew crew;
+  ThreadTeam team;
   OctreeTask task{.a = a,
                   .b = b,
                   .window = window,
@@ -200,7 +200,7 @@ void octree_interference(const SolidView& a, const SolidView& b, const Pose& X_A
                   .most_cells = options.most_cells,
                   .asked_threads = options.threads,
                   .thread_limit = thread_limit(options.threads),
-                  .crew = crew};
+                  .team = team};
   run(task, scratch, out);
 }
 

@@ -136,7 +136,7 @@ OctreeScratch::ColumnSum ColumnPass::sum(LeafRange leaves, int levels, bool fine
   const int count = leaves.last - leaves.first, grain = fields ? count : kDepthLeavesPerTask;
   const int tasks = (count + grain - 1) / grain;
   if (s_.partial_columns.size() < static_cast<std::size_t>(tasks)) s_.partial_columns.resize(tasks);
-  task_.crew.for_each(tasks, 1, [&](int task) {
+  task_.team.for_each(tasks, 1, [&](int task) {
     OctreeScratch::Columns& columns = s_.columns[task_.thread()];
     columns.starts.clear();
     const int last = std::min(count, (task + 1) * grain);
@@ -242,7 +242,7 @@ double farthest(const OctreeTask& task, OctreeScratch& s, LeafRange leaves, cons
   const int count = leaves.last - leaves.first;
   const int tasks = (count + kDepthLeavesPerTask - 1) / kDepthLeavesPerTask;
   s.partial_heights.assign(tasks, height);
-  task.crew.for_each(tasks, 1, [&](int k) {
+  task.team.for_each(tasks, 1, [&](int k) {
     const int last = std::min(leaves.last, leaves.first + (k + 1) * kDepthLeavesPerTask);
     for (int i = leaves.first + k * kDepthLeavesPerTask; i < last; ++i) {
       s.partial_heights[k] = farthest_in(task, s, s.leaves[i], e, s.partial_heights[k]);

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "volcontact/base/crew.h"
+#include "volcontact/base/thread_team.h"
 #include "volcontact/pair/octree/cell_cut.h"
 #include "volcontact/pair/octree/cell_sites.h"
 #include "volcontact/pair/overlap.h"
@@ -83,7 +83,7 @@ struct OctreeTask {
   int most_cells;
   int asked_threads;  ///< 0: by work
   int thread_limit;
-  Crew& crew;
+  ThreadTeam& team;
   double scale = 0.0;     ///< size of the numbers that the faces are computed from [m]
   double rounding = 0.0;  ///< of a volume [m^3]
 
@@ -95,7 +95,7 @@ struct OctreeTask {
     return thread_limit > 1 && cells >= (asked_threads == 0 ? kWorthThreads : kWorthAsking);
   }
   /// Number of the calling thread, below thread_limit; 0 for a caller that is one of many.
-  int thread() const { return thread_limit == 1 ? 0 : Crew::number(); }
+  int thread() const { return thread_limit == 1 ? 0 : ThreadTeam::number(); }
 };
 
 }  // namespace volcontact

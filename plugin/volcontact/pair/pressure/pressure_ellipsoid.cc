@@ -59,7 +59,7 @@ class EllipsoidField {
         corner[i] = {u_.dot(offset), v_.dot(offset)};
       }
       if (misses_disc(corner)) return {};
-      for (int i = 0; i < 3; ++i) add_fan(corner[i], corner[(i + 1) % 3]);
+      for (int i = 0; i < 3; ++i) add_sections(corner[i], corner[(i + 1) % 3]);
     }
     return sum_;
   }
@@ -140,7 +140,7 @@ class EllipsoidField {
   }
 
   // The part of the disc between its middle and an edge, with the sign of its turn.
-  void add_fan(const Vec2& p, const Vec2& q) {
+  void add_sections(const Vec2& p, const Vec2& q) {
     const double cross = p.x() * q.y() - p.y() * q.x(), length = (q - p).norm();
     if (std::abs(cross) < kNoArea) return;
     sign_ = cross > 0.0 ? 1.0 : -1.0;

@@ -9,8 +9,8 @@
 
 namespace volcontact {
 
-/// How the half-planes of a fan are spread over its angle, and what error that leaves. All errors
-/// are estimates, of V.
+/// How the half-planes of a set of sections are spread over its angle, and what error that leaves.
+/// All errors are estimates, of V.
 namespace outer_rule {
 inline constexpr double kTarget = 5e-2;      ///< share of the tolerance asked: no more division
 inline constexpr double kEvenTarget = 1e-2;  ///< the same of even steps, where a kink may be hidden

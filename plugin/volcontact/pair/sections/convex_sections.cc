@@ -48,8 +48,8 @@ class LinesRun {
         break;
     }
     choose_frame();
-    s_.fan.choose_rule(options_.tolerance);
-    s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
+    s_.sections.choose_rule(options_.tolerance);
+    s_.sections.set(s_.faces.active, s_.faces.idle, frame_);
     recenter();
     find_breaks(s_.faces.active, frame_, tolerance(), s_.breaks);
     const bool smooth = s_.breaks.complete && s_.breaks.directions.empty();
@@ -62,14 +62,15 @@ class LinesRun {
   // the volume.
   bool beyond() const { return is_open(std::max(options_.tolerance, outer_rule::kLeastOpen)); }
 
-  // Nothing where the window saw something: the fan stands on a place from where it does not see.
+  // Nothing where the window saw something: the sections stand on a place from where they do not
+  // see.
   bool lost(const VolumeMetrics& metrics, double least_volume) const {
     return window_.kind == LinesWindow::Kind::kOverlap && !metrics.touching() &&
            window_.volume > kLeastSeen * least_volume;
   }
 
   void add_patches(std::vector<LinesRegion::PlanePatch>& patches) const {
-    volcontact::add_patches(s_.fan, s_.faces.active, frame_, patches);
+    volcontact::add_patches(s_.sections, s_.faces.active, frame_, patches);
   }
 
  private:
@@ -87,13 +88,13 @@ class LinesRun {
 
   bool is_open(double tolerance) const {
     return window_.kind == LinesWindow::Kind::kOverlap &&
-           open_ > tolerance * s_.fan.total().moments[0];
+           open_ > tolerance * s_.sections.total().moments[0];
   }
 
   // Once more, with more columns in between.
   void look_closer(bool smooth) {
-    s_.fan.look_closer();
-    s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
+    s_.sections.look_closer();
+    s_.sections.set(s_.faces.active, s_.faces.idle, frame_);
     target_ *= outer_rule::kCloserTarget;
     depth_ += outer_rule::kCloserDepth;
     if (!smooth || !integrate_smooth() || is_open(options_.tolerance)) integrate_arcs();
@@ -137,7 +138,7 @@ class LinesRun {
     RimShape rim;
     even_directions(kLanes, 0, rim.u, rim.v);
     for (int step = 0; step < kMaxRecenterings; ++step) {
-      s_.fan.ends(s_.path, rim.u, rim.v, rim.rho, rim.height);
+      s_.sections.ends(s_.path, rim.u, rim.v, rim.rho, rim.height);
       const bool aligned = !along_normal_ || align(rim);
       const bool round = rim.longest() < kRoundRim * rim.shortest();
       recenter(rim);
@@ -165,7 +166,7 @@ class LinesRun {
   }
 
   void recenter(const RimShape& rim) {
-    FanFrame frame = frame_;
+    SectionFrame frame = frame_;
     double low = 0.0, high = 0.0;
     if (rim.round_off(frame) && column(frame.center, low, high)) {
       frame.center += 0.5 * (low + high) * frame.t;
@@ -173,7 +174,7 @@ class LinesRun {
     } else {
       rim.go_inwards(frame_);
     }
-    s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
+    s_.sections.set(s_.faces.active, s_.faces.idle, frame_);
   }
 
   // Without corners the rim is smooth and nearly round: equal steps of the angle converge fastest.
@@ -183,9 +184,9 @@ class LinesRun {
     std::fill_n(weight, kLanes, kPi / kLanes);
     for (int half = 0; half < 2; ++half) {
       even_directions(2 * kLanes, half, u, v);
-      s_.fan.integrate(s_.path, u, v, weight, section);
-      s_.fan.accept_batch();
-      volume[half] = s_.fan.batch().moments[0];
+      s_.sections.integrate(s_.path, u, v, weight, section);
+      s_.sections.accept_batch();
+      volume[half] = s_.sections.batch().moments[0];
     }
     error_ = even_error(volume[0], volume[1]);
     measure_opening();
@@ -193,7 +194,7 @@ class LinesRun {
   }
 
   void integrate_arcs() {
-    s_.fan.clear();
+    s_.sections.clear();
     error_ = 0.0;
     volume_scale_ = window_.volume;
     set_corners();
@@ -202,7 +203,7 @@ class LinesRun {
     measure_opening();
   }
   void measure_opening() {
-    open_ = s_.faces.active.has_bore ? 0.0 : openness(s_.fan, s_.faces.active, frame_);
+    open_ = s_.faces.active.has_bore ? 0.0 : openness(s_.sections, s_.faces.active, frame_);
   }
 
   // The part of the line x + height t inside of both; false when it is empty.
@@ -254,7 +255,7 @@ class LinesRun {
         u[i] = p.x();
         v[i] = p.y();
       }
-      s_.fan.ends(s_.path, u, v, rho, height);
+      s_.sections.ends(s_.path, u, v, rho, height);
       for (std::size_t i = 0; i < kLanes && from + i < places.size(); ++i)
         places[from + i] *= rho[i];
     }
@@ -287,7 +288,7 @@ class LinesRun {
       v[i] = place.y();
       weight[i] = OuterRule::kWeights[i] * cross(place, along);
     }
-    s_.fan.integrate(s_.path, u, v, weight, section);
+    s_.sections.integrate(s_.path, u, v, weight, section);
     for (int i = 0; i < kLanes; ++i) section[i] *= weight[i];
     const LegendreError error = legendre_errors(section);
     double volume = 0.0;
@@ -298,7 +299,7 @@ class LinesRun {
       return;
     }
     error_ += error.kinked;
-    s_.fan.accept_batch();
+    s_.sections.accept_batch();
   }
 
   void divide(const LinesScratch::Arc& arc) {
@@ -308,14 +309,14 @@ class LinesRun {
       u[i] = middles[i / 4].x();
       v[i] = middles[i / 4].y();
     }
-    s_.fan.ends(s_.path, u, v, rho, height);
+    s_.sections.ends(s_.path, u, v, rho, height);
     s_.arcs.push_back({arc.from, middles[0] * rho[0], arc.through, arc.depth + 1});
     s_.arcs.push_back({arc.through, middles[1] * rho[4], arc.to, arc.depth + 1});
   }
 
   VolumeMetrics metrics() const {
-    const FanSums& sums = s_.fan.total();
-    VolumeMetrics result = moments_of(s_.fan, s_.faces.active, frame_).metrics();
+    const SectionSums& sums = s_.sections.total();
+    VolumeMetrics result = moments_of(s_.sections, s_.faces.active, frame_).metrics();
     if (!result.touching()) return result;
     if (result.area == 0.0) {
       const VolumeMetrics own = b_.own_metrics();
@@ -339,7 +340,7 @@ class LinesRun {
   const InterferenceOptions& options_;
   LinesScratch& s_;
   LinesWindow window_;
-  FanFrame frame_;
+  SectionFrame frame_;
   bool along_normal_ = false;  // the columns are to follow the normal, which is yet to be found
   double error_ = 0.0;
   double open_ = 0.0;  // how far the surface is from closed

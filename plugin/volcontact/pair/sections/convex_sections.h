@@ -21,8 +21,8 @@ struct LinesScratch {
   };
   SimdPath path = best_simd_path();
   LinesFaces faces;
-  Fan fan;
-  FanBreaks breaks;
+  Sections sections;
+  SectionBreaks breaks;
   std::vector<Eigen::Vector2d> corners;
   std::vector<Arc> arcs;
 };

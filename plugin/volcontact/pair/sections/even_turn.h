@@ -32,24 +32,25 @@ inline void even_directions(int count, int first, double* u, double* v) {
   }
 }
 
-/// Integrates a fan that is round all about and has no corners, by equal steps of the angle. False,
-/// and the fan cleared, when 32 of them are too few for the tolerance; `error` is an estimate.
-template <typename AnyFan>
-bool integrate_even_turn(AnyFan& fan, SimdPath path, double tolerance, double& error) {
+/// Integrates a set of sections that is round all about and has no corners, by equal steps of the
+/// angle. False, and the sections cleared, when 32 of them are too few for the tolerance; `error`
+/// is an estimate.
+template <typename AnySections>
+bool integrate_even_turn(AnySections& sections, SimdPath path, double tolerance, double& error) {
   for (const int batches : {2, 4}) {
     double u[kLanes], v[kLanes], weight[kLanes], section[kLanes], volume[2] = {0.0, 0.0};
     std::fill_n(weight, kLanes, 2.0 * kPi / (batches * kLanes));
-    fan.clear();
+    sections.clear();
     for (int k = 0; k < batches; ++k) {
       even_directions(batches * kLanes, k, u, v);
-      fan.integrate(path, u, v, weight, section);
-      fan.accept_batch();
-      volume[k % 2] += fan.batch().moments[0];
+      sections.integrate(path, u, v, weight, section);
+      sections.accept_batch();
+      volume[k % 2] += sections.batch().moments[0];
     }
     error = even_error(volume[0], volume[1]);
     if (error <= outer_rule::kEvenTarget * tolerance * (volume[0] + volume[1])) return true;
   }
-  fan.clear();
+  sections.clear();
   error = 0.0;
   return false;
 }

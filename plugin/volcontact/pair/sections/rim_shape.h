@@ -8,8 +8,8 @@
 
 namespace volcontact {
 
-/// How the rim of an overlap lies about the axis of a fan: the ways to it in eight even directions,
-/// as Fan::ends() finds them.
+/// How the rim of an overlap lies about the axis of a set of sections: the ways to it in eight even
+/// directions, as Sections::ends() finds them.
 struct RimShape {
   double u[kLanes], v[kLanes], rho[kLanes], height[kLanes];
 
@@ -18,7 +18,7 @@ struct RimShape {
 
   /// A frame about the middle of the rim in which it is rounder; false where the rim is too thin to
   /// tell.
-  bool round_off(FanFrame& frame) const {
+  bool round_off(SectionFrame& frame) const {
     double area = 0.0;
     Eigen::Vector2d first = Eigen::Vector2d::Zero();
     Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
@@ -41,7 +41,7 @@ struct RimShape {
 
   /// From a far corner, whose rim tells little: a frame half way to the place of the rim that is
   /// farthest off.
-  void go_inwards(FanFrame& frame) const {
+  void go_inwards(SectionFrame& frame) const {
     const auto far = std::max_element(rho, rho + kLanes) - rho;
     const double x = 0.5 * rho[far] * u[far], y = 0.5 * rho[far] * v[far];
     if (frame.central) {

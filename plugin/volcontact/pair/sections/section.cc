@@ -11,7 +11,7 @@
 namespace volcontact {
 namespace {
 
-using namespace fan_limits;
+using namespace section_limits;
 constexpr double kSteep = 1e-9;  // a plane whose normal is this normal to the columns is a wall
 constexpr double kOnSilhouette = 1e-6;  // a root this small is zero, per the largest one
 constexpr double kBeforeWall = 1e-10;   // of rho: there the tube along the columns is wide open
@@ -26,7 +26,7 @@ constexpr double kSameApex = 1e-10;     // a cone whose apex is this near to the
 
 namespace volcontact {
 
-FanFrame round_frame(const Vec3& center, const Mat3& spread, const Vec3& t) {
+SectionFrame round_frame(const Vec3& center, const Mat3& spread, const Vec3& t) {
   const Mat3 basis = basis_with_z(t);
   const Mat3 seen = basis.transpose() * spread;
   const Eigen::Matrix2d square = (seen * seen.transpose()).topLeftCorner<2, 2>();
@@ -34,18 +34,18 @@ FanFrame round_frame(const Vec3& center, const Mat3& spread, const Vec3& t) {
   return {center, basis.col(0) * l(0, 0) + basis.col(1) * l(1, 0), basis.col(1) * l(1, 1), t};
 }
 
-void Fan::clear(FanSums& sums, std::vector<FanSums::OnPlane>& planes) const {
+void Sections::clear(SectionSums& sums, std::vector<SectionSums::OnPlane>& planes) const {
   std::fill_n(sums.moments, 10, 0.0);
   sums.depth_moment = 0.0;
   sums.bore = {};
-  std::fill_n(sums.rounds, faces_.round_count, FanSums::OnRound{});
+  std::fill_n(sums.rounds, faces_.round_count, SectionSums::OnRound{});
   sums.low = kFar;
   sums.high = -kFar;
-  planes.assign(faces_.active_planes, FanSums::OnPlane{});
+  planes.assign(faces_.active_planes, SectionSums::OnPlane{});
   sums.planes = planes.data();
 }
 
-void Fan::accept_batch() {
+void Sections::accept_batch() {
   for (int i = 0; i < 10; ++i) total_.moments[i] += batch_.moments[i];
   total_.depth_moment += batch_.depth_moment;
   total_.bore.depth_moment += batch_.bore.depth_moment;
@@ -74,12 +74,12 @@ namespace {
 int group_of(double n_t, Owner owner, bool idle) {
   const bool upper = n_t > 0.0, a = owner == Owner::kA, wall = std::abs(n_t) < kSteep;
   if (idle) {
-    if (wall || a == upper) return FanFaces::kGroups;
-    return a ? FanFaces::kIdleLowerA : FanFaces::kIdleUpperB;
+    if (wall || a == upper) return SectionFaces::kGroups;
+    return a ? SectionFaces::kIdleLowerA : SectionFaces::kIdleUpperB;
   }
-  if (wall) return FanFaces::kWall;
-  if (a) return upper ? FanFaces::kUpperA : FanFaces::kLowerA;
-  return upper ? FanFaces::kUpperB : FanFaces::kLowerB;
+  if (wall) return SectionFaces::kWall;
+  if (a) return upper ? SectionFaces::kUpperA : SectionFaces::kLowerA;
+  return upper ? SectionFaces::kUpperB : SectionFaces::kLowerB;
 }
 
 void put(const Vec3& x, double* out) {
@@ -89,15 +89,15 @@ void put(const Vec3& x, double* out) {
 // The places where columns pierce a face: the roots of a z^2 + 2 b z + c, where z is the height. Of
 // the three images under the map of the face one goes with z, `ahead`, and one does not, `base`;
 // `side_u` and `side_v` come with rho. The level of the face goes with z^2 or does not.
-FanRound pierced(const RoundFace& face, const Vec3& ahead, const Vec3& base, const Vec3& side_u,
-                 const Vec3& side_v, bool level_ahead) {
-  FanRound r;
+SectionRound pierced(const RoundFace& face, const Vec3& ahead, const Vec3& base, const Vec3& side_u,
+                     const Vec3& side_v, bool level_ahead) {
+  SectionRound r;
   const Vec3 dj = face.weighted(ahead);
   const double a = ahead.dot(dj) - (level_ahead ? face.level() : 0.0);
   const double cone = face.cone ? -1.0 : 1.0;
   r.squares = 3;
   for (int i = 0; i < 3; ++i) r.sign[i] = i < 2 ? cone : 1.0;
-  // Of a central fan the apex of a cone, or nearly so; else a tube along the columns.
+  // Of central sections the apex of a cone, or nearly so; else a tube along the columns.
   const double size = level_ahead ? base.squaredNorm() : face.map.squaredNorm();
   const double least = level_ahead ? kSameApex : kWallTilt;
   r.cone = face.cone;
@@ -138,10 +138,11 @@ FanRound pierced(const RoundFace& face, const Vec3& ahead, const Vec3& base, con
   return r;
 }
 
-FanRound seen_from(const RoundFace& face, const FanFrame& frame) {
+SectionRound seen_from(const RoundFace& face, const SectionFrame& frame) {
   const Vec3 o = face.map * (frame.center - face.center);
   const Vec3 u = face.map * frame.u, v = face.map * frame.v, d = face.map * frame.t;
-  FanRound r = frame.central ? pierced(face, o, d, u, v, true) : pierced(face, d, o, u, v, false);
+  SectionRound r =
+      frame.central ? pierced(face, o, d, u, v, true) : pierced(face, d, o, u, v, false);
   const Mat3 back = face.map.transpose();
   put(back * face.weighted(o), r.g);
   put(back * face.weighted(u), r.g_u);
@@ -153,21 +154,21 @@ FanRound seen_from(const RoundFace& face, const FanFrame& frame) {
 }
 
 // n_t height + rho (n_u cos + n_v sin) <= gap.
-FanPlane seen_from(const PlaneFace& plane, int face, const FanFrame& frame) {
+SectionPlane seen_from(const PlaneFace& plane, int face, const SectionFrame& frame) {
   const Vec3& n = plane.normal;
   const double along = n.dot(frame.t), gap = plane.offset - n.dot(frame.center);
   if (frame.central) return {n.dot(frame.u), n.dot(frame.v), -gap, -along, face};
   return {n.dot(frame.u), n.dot(frame.v), along, gap, face};
 }
 
-FanSeam seen_from(const Segment& segment, const FanFrame& frame) {
-  FanSeam seam{segment.present,
-               segment.along(frame.center),
-               segment.axis.dot(frame.u),
-               segment.axis.dot(frame.v),
-               segment.axis.dot(frame.t),
-               segment.half_length,
-               0.0};
+SectionSeam seen_from(const Segment& segment, const SectionFrame& frame) {
+  SectionSeam seam{segment.present,
+                   segment.along(frame.center),
+                   segment.axis.dot(frame.u),
+                   segment.axis.dot(frame.v),
+                   segment.axis.dot(frame.t),
+                   segment.half_length,
+                   0.0};
   if (frame.central) {
     std::swap(seam.along, seam.along_t);
     std::swap(seam.half_length, seam.half_slope);
@@ -177,39 +178,40 @@ FanSeam seen_from(const Segment& segment, const FanFrame& frame) {
 
 }  // namespace
 
-void Fan::set(const FaceSet& faces, const std::vector<PlaneFace>& idle, const FanFrame& frame) {
+void Sections::set(const FaceSet& faces, const std::vector<PlaneFace>& idle,
+                   const SectionFrame& frame) {
   seen_.clear();
-  std::array<int, FanFaces::kGroups> next{};  // sizes of the groups, then where they go on
+  std::array<int, SectionFaces::kGroups> next{};  // sizes of the groups, then where they go on
   const double unit = frame.central ? frame.t.norm() : 1.0;
   for (const bool is_idle : {false, true}) {
     const std::vector<PlaneFace>& list = is_idle ? idle : faces.planes;
     for (std::size_t i = 0; i < list.size(); ++i) {
-      const FanPlane plane = seen_from(list[i], static_cast<int>(i), frame);
+      const SectionPlane plane = seen_from(list[i], static_cast<int>(i), frame);
       const int group = group_of(plane.n_t / unit, list[i].owner, is_idle);
-      if (group == FanFaces::kGroups) continue;
+      if (group == SectionFaces::kGroups) continue;
       seen_.push_back({plane, group});
       ++next[group];
     }
   }
   faces_.first[0] = 0;
-  for (int group = 0; group < FanFaces::kGroups; ++group) {
+  for (int group = 0; group < SectionFaces::kGroups; ++group) {
     faces_.first[group + 1] = faces_.first[group] + next[group];
     next[group] = faces_.first[group];
   }
   planes_.resize(seen_.size());
   for (const Seen& s : seen_) planes_[next[s.group]++] = s.plane;
-  faces_.active_planes = faces_.first[FanFaces::kIdleLowerA];
+  faces_.active_planes = faces_.first[SectionFaces::kIdleLowerA];
   faces_.planes = planes_.data();
 
   faces_.round_count = 0;
   faces_.rounding = faces_.plane_rounding = 0.0;
-  for (int i = 0; i < faces_.first[FanFaces::kWall]; ++i) {
-    const FanPlane& p = planes_[i];
+  for (int i = 0; i < faces_.first[SectionFaces::kWall]; ++i) {
+    const SectionPlane& p = planes_[i];
     const double size = std::abs(p.gap) + std::abs(p.n_u) + std::abs(p.n_v);
     faces_.plane_rounding = std::max(faces_.plane_rounding, 1e-15 * size / std::abs(p.n_t));
   }
   for (const RoundFace& face : faces.rounds) {
-    const FanRound r = seen_from(face, frame);
+    const SectionRound r = seen_from(face, frame);
     faces_.rounds[faces_.round_count++] = r;
     faces_.rounding =
         std::max(faces_.rounding, 1e-14 * (std::abs(r.mid) + std::sqrt(std::abs(r.reach))));
@@ -220,30 +222,30 @@ void Fan::set(const FaceSet& faces, const std::vector<PlaneFace>& idle, const Fa
   faces_.area_scale = frame.area_scale();
   faces_.start = faces.has_bore ? 1.0 : 0.0;
   clear();
-  const std::size_t on_planes = faces_.active_planes * sizeof(portable::FanBatch::OnPlane);
+  const std::size_t on_planes = faces_.active_planes * sizeof(portable::SectionBatch::OnPlane);
   const std::size_t size =
-      portable::FanSlices::work_size(faces_) + on_planes / sizeof(portable::Vec8);
+      portable::SectionSlices::work_size(faces_) + on_planes / sizeof(portable::Vec8);
   if (work_.size() < size) work_.resize(size);
 }
 
-void Fan::clear() { clear(total_, total_planes_); }
+void Sections::clear() { clear(total_, total_planes_); }
 
-void Fan::choose_rule(double tolerance) {
+void Sections::choose_rule(double tolerance) {
   faces_.fine = tolerance <= kFineTolerance;
   faces_.knot_parts = kKnotParts;
 }
 
-void Fan::look_closer() {
+void Sections::look_closer() {
   faces_.fine = true;
   faces_.knot_parts = kMoreKnotParts;
 }
 
-void Fan::ends(SimdPath path, const double* u, const double* v, double* rho, double* height) {
+void Sections::ends(SimdPath path, const double* u, const double* v, double* rho, double* height) {
   VOLCONTACT_SIMD_CALL(path, ends, faces_, work_.data()->x, u, v, rho, height);
 }
 
-void Fan::integrate(SimdPath path, const double* u, const double* v, const double* weight,
-                    double* section) {
+void Sections::integrate(SimdPath path, const double* u, const double* v, const double* weight,
+                         double* section) {
   clear(batch_, batch_planes_);
   VOLCONTACT_SIMD_CALL(path, integrate, faces_, work_.data()->x, u, v, weight, batch_, section);
 }

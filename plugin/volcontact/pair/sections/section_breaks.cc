@@ -46,7 +46,8 @@ const RimSteps& all_round() {
 
 class BreakSearch {
  public:
-  BreakSearch(const FaceSet& faces, const FanFrame& frame, double tolerance, FanBreaks& breaks)
+  BreakSearch(const FaceSet& faces, const SectionFrame& frame, double tolerance,
+              SectionBreaks& breaks)
       : faces_(faces), frame_(frame), tolerance_(tolerance), breaks_(breaks) {
     to_uv_ << frame.u, frame.v, frame.t;
     to_uv_ = to_uv_.inverse().eval();
@@ -113,7 +114,7 @@ class BreakSearch {
   }
 
   // On the edge of plane i and round face r: the highest and lowest places, and those where a
-  // half-plane of the fan touches it. Also the seams of a capsule.
+  // half-plane of the sections touches it. Also the seams of a capsule.
   void find_on_edge(int i, int r) {
     const Plane p = plane(i);
     intersect(p, polar(r, p.normal.cross(frame_.t)), r, kTop);
@@ -185,8 +186,8 @@ class BreakSearch {
   }
 
   // Where a rim of one solid enters or leaves the round faces of the other one, or a bore. Only
-  // near the axis of the fan, as the overlap may be a small part of the rim; at a bore all round,
-  // with smaller steps near the direction u, where the overlap is.
+  // near the axis of the sections, as the overlap may be a small part of the rim; at a bore all
+  // round, with smaller steps near the direction u, where the overlap is.
   template <typename Function>
   void follow(const Rim& rim, Function&& value_at) {
     const Vec3 from = middle_ - rim.center;
@@ -336,7 +337,7 @@ class BreakSearch {
     breaks_.directions.push_back({y.x() / length, y.y() / length});
   }
 
-  // Whether an apex is about as far from the axis of the fan as the overlap reaches.
+  // Whether an apex is about as far from the axis of the sections as the overlap reaches.
   bool is_near(const Vec3& x) const {
     const Vec3 y = to_uv_ * x;
     if (frame_.central && !(y.z() > 0.0)) return false;
@@ -345,23 +346,24 @@ class BreakSearch {
   }
 
   const FaceSet& faces_;
-  const FanFrame& frame_;
+  const SectionFrame& frame_;
   double tolerance_;
-  FanBreaks& breaks_;
+  SectionBreaks& breaks_;
   Mat3 to_uv_;
   Vec3 middle_;  // of the overlap, or nearly so
 };
 
 }  // namespace
 
-void FanBreaks::clear() {
+void SectionBreaks::clear() {
   directions.clear();
   complete = true;
   low = std::numeric_limits<double>::infinity();
   high = -low;
 }
 
-void find_breaks(const FaceSet& faces, const FanFrame& frame, double tolerance, FanBreaks& breaks) {
+void find_breaks(const FaceSet& faces, const SectionFrame& frame, double tolerance,
+                 SectionBreaks& breaks) {
   BreakSearch(faces, frame, tolerance, breaks).run();
 }
 

@@ -7,10 +7,10 @@
 
 namespace volcontact {
 
-/// Where a half-plane that turns about the axis of a fan meets something new.
-struct FanBreaks {
+/// Where a half-plane that turns about the axis of a set of sections meets something new.
+struct SectionBreaks {
   std::vector<Eigen::Vector2d>
-      directions;    ///< (u, v) in the frame of the fan, unit length, any order
+      directions;    ///< (u, v) in the frame of the sections, unit length, any order
   bool complete;     ///< false when there are too many faces to look for all
   double low, high;  ///< least and greatest height of all places found
 
@@ -22,6 +22,7 @@ struct FanBreaks {
 /// Between them the section is a smooth function of the direction. An edge between two round faces
 /// of different solids is not searched for touches. Also notes the places of least and greatest
 /// height on faces and on edges with a plane face.
-void find_breaks(const FaceSet& faces, const FanFrame& frame, double tolerance, FanBreaks& breaks);
+void find_breaks(const FaceSet& faces, const SectionFrame& frame, double tolerance,
+                 SectionBreaks& breaks);
 
 }  // namespace volcontact

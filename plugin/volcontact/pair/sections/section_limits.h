@@ -6,7 +6,7 @@
 namespace volcontact {
 
 /// Of the sections in "section_slices.inc".
-namespace fan_limits {
+namespace section_limits {
 inline constexpr double kFar = 1e30;  ///< stands for "no bound"
 inline constexpr double kOnFace =
     1e-9;  ///< a crossing this close to the envelope counts, per height
@@ -31,6 +31,6 @@ inline InnerRule inner_rule(bool fine) {
   if (fine) return {8, GaussRule<8>::kNodes, GaussRule<8>::kWeights};
   return {5, GaussRule<5>::kNodes, GaussRule<5>::kWeights};
 }
-}  // namespace fan_limits
+}  // namespace section_limits
 
 }  // namespace volcontact

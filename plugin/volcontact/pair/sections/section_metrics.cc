@@ -9,26 +9,26 @@ struct Surface {
   double area = 0.0;
 };
 
-void add_planes(const Fan& fan, const FaceSet& faces, const FanFrame& frame, Owner owner,
-                Surface& s) {
-  for (int i = 0; i < fan.faces().active_planes; ++i) {
-    const PlaneFace& plane = faces.planes[fan.faces().planes[i].face];
+void add_planes(const Sections& sections, const FaceSet& faces, const SectionFrame& frame,
+                Owner owner, Surface& s) {
+  for (int i = 0; i < sections.faces().active_planes; ++i) {
+    const PlaneFace& plane = faces.planes[sections.faces().planes[i].face];
     if (plane.owner != owner) continue;
-    const double* x = fan.total().planes[i].sums;
+    const double* x = sections.total().planes[i].sums;
     s.area += x[0];
     s.vector += x[0] * plane.normal;
     s.moment += (x[1] * frame.u + x[2] * frame.v + x[3] * frame.t).cross(plane.normal);
   }
 }
 
-void add_rounds(const Fan& fan, const FanFrame& frame, Owner owner, Surface& s) {
+void add_rounds(const Sections& sections, const SectionFrame& frame, Owner owner, Surface& s) {
   const Vec3 &u = frame.u, &v = frame.v, &t = frame.t;
-  for (int i = 0; i < fan.faces().round_count; ++i) {
-    const FanRound& r = fan.faces().rounds[i];
+  for (int i = 0; i < sections.faces().round_count; ++i) {
+    const SectionRound& r = sections.faces().rounds[i];
     if (r.owner != index(owner)) continue;
-    const double* x = fan.total().rounds[i].sums;
+    const double* x = sections.total().rounds[i].sums;
     const Vec3 g(r.g), g_u(r.g_u), g_v(r.g_v), g_t(r.g_t);
-    s.area += fan.total().rounds[i].area;
+    s.area += sections.total().rounds[i].area;
     s.vector += x[0] * g + x[1] * g_u + x[2] * g_v + x[3] * g_t;
     s.moment +=
         (x[1] * u + x[2] * v + x[3] * t).cross(g) + (x[4] * u + x[5] * v + x[7] * t).cross(g_u) +
@@ -37,9 +37,9 @@ void add_rounds(const Fan& fan, const FanFrame& frame, Owner owner, Surface& s) 
 }
 
 // The wall of a bore about t, which looks towards the axis: at rho = 1 in half-plane e = u cos + v
-// sin it is t h, of a central fan h (e + t).
-void add_bore(const Fan& fan, const FanFrame& frame, Surface& s) {
-  const FanSums::OnBore& b = fan.total().bore;
+// sin it is t h, of central sections h (e + t).
+void add_bore(const Sections& sections, const SectionFrame& frame, Surface& s) {
+  const SectionSums::OnBore& b = sections.total().bore;
   const double r2 = frame.u.squaredNorm(), length = frame.central ? frame.t.norm() : 1.0;
   const Vec3 out = (b.x * frame.u + b.y * frame.v) / r2;
   const Vec3 turn = frame.t.cross(b.xh * frame.u + b.yh * frame.v) / r2;
@@ -72,8 +72,8 @@ double share_of_b(const Surface& a, const Surface& b, const FaceSet& faces) {
 
 }  // namespace
 
-MomentSum moments_of(const Fan& fan, const FaceSet& faces, const FanFrame& frame) {
-  const double* m = fan.total().moments;
+MomentSum moments_of(const Sections& sections, const FaceSet& faces, const SectionFrame& frame) {
+  const double* m = sections.total().moments;
   const Vec3 &u = frame.u, &v = frame.v, &t = frame.t;
   const auto both = [](const Vec3& x, const Vec3& y) -> Mat3 {
     return x * y.transpose() + y * x.transpose();
@@ -86,9 +86,9 @@ MomentSum moments_of(const Fan& fan, const FaceSet& faces, const FanFrame& frame
   Surface surface[2];
   for (Owner owner : {Owner::kA, Owner::kB}) {
     Surface& s = surface[index(owner)];
-    add_planes(fan, faces, frame, owner, s);
-    add_rounds(fan, frame, owner, s);
-    if (faces.has_bore && faces.wall.owner == owner) add_bore(fan, frame, s);
+    add_planes(sections, faces, frame, owner, s);
+    add_rounds(sections, frame, owner, s);
+    if (faces.has_bore && faces.wall.owner == owner) add_bore(sections, frame, s);
   }
   const double share_b = share_of_b(surface[0], surface[1], faces);
   sum.area_vector = (1.0 - share_b) * surface[0].vector - share_b * surface[1].vector;
@@ -98,7 +98,7 @@ MomentSum moments_of(const Fan& fan, const FaceSet& faces, const FanFrame& frame
   return sum;
 }
 
-void SurfaceFlux::add_round(const FanRound& r, const double* x) {
+void SurfaceFlux::add_round(const SectionRound& r, const double* x) {
   Mat3 gradient, sums;  // of 1, x, y, times the same
   gradient << Vec3(r.g), Vec3(r.g_u), Vec3(r.g_v);
   sums << x[0], x[1], x[2], x[1], x[4], x[5], x[2], x[5], x[6];
@@ -115,33 +115,34 @@ double SurfaceFlux::open(double volume, const Eigen::Vector2d& middle, double si
   return rest.cwiseAbs().maxCoeff();
 }
 
-double openness(const Fan& fan, const FaceSet& faces, const FanFrame& frame) {
+double openness(const Sections& sections, const FaceSet& faces, const SectionFrame& frame) {
   SurfaceFlux flux((SurfaceFlux::Axes() << frame.u, frame.v).finished());
-  for (int i = 0; i < fan.faces().active_planes; ++i) {
-    flux.add_plane(faces.planes[fan.faces().planes[i].face].normal, fan.total().planes[i].sums);
+  for (int i = 0; i < sections.faces().active_planes; ++i) {
+    flux.add_plane(faces.planes[sections.faces().planes[i].face].normal,
+                   sections.total().planes[i].sums);
   }
-  for (int i = 0; i < fan.faces().round_count; ++i) {
-    flux.add_round(fan.faces().rounds[i], fan.total().rounds[i].sums);
+  for (int i = 0; i < sections.faces().round_count; ++i) {
+    flux.add_round(sections.faces().rounds[i], sections.total().rounds[i].sums);
   }
-  return flux.open(fan.total().moments[0]);
+  return flux.open(sections.total().moments[0]);
 }
 
-double share_of_bore(const Fan& fan, const FaceSet& faces, const FanFrame& frame) {
+double share_of_bore(const Sections& sections, const FaceSet& faces, const SectionFrame& frame) {
   constexpr double kBalanced = 1e-3;  // weight of areas where all area vectors vanish
   Surface wall, rest;
-  add_bore(fan, frame, wall);
-  add_planes(fan, faces, frame, faces.wall.owner, rest);
-  add_rounds(fan, frame, faces.wall.owner, rest);
+  add_bore(sections, frame, wall);
+  add_planes(sections, faces, frame, faces.wall.owner, rest);
+  add_rounds(sections, frame, faces.wall.owner, rest);
   const double on_wall = wall.vector.squaredNorm() + kBalanced * wall.area * wall.area;
   const double on_rest = rest.vector.squaredNorm() + kBalanced * rest.area * rest.area;
   return on_wall > 0.0 ? on_wall / (on_wall + on_rest) : 0.0;
 }
 
-void add_patches(const Fan& fan, const FaceSet& faces, const FanFrame& frame,
+void add_patches(const Sections& sections, const FaceSet& faces, const SectionFrame& frame,
                  std::vector<LinesRegion::PlanePatch>& patches) {
-  for (int i = 0; i < fan.faces().active_planes; ++i) {
-    const PlaneFace& plane = faces.planes[fan.faces().planes[i].face];
-    const double* x = fan.total().planes[i].sums;
+  for (int i = 0; i < sections.faces().active_planes; ++i) {
+    const PlaneFace& plane = faces.planes[sections.faces().planes[i].face];
+    const double* x = sections.total().planes[i].sums;
     if (!(x[0] > 0.0)) continue;
     const Vec3 first = x[1] * frame.u + x[2] * frame.v + x[3] * frame.t;
     patches.push_back({plane.owner, plane.normal, plane.offset, x[0], frame.center + first / x[0]});

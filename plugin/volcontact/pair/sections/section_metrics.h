@@ -7,9 +7,9 @@
 
 namespace volcontact {
 
-/// The sums of a fan in A's axes, about the center of its frame. The area vector is taken from the
-/// solid whose faces give it best: plane ones and the wall of a bore.
-MomentSum moments_of(const Fan& fan, const FaceSet& faces, const FanFrame& frame);
+/// The sums of a set of sections in A's axes, about the center of its frame. The area vector is
+/// taken from the solid whose faces give it best: plane ones and the wall of a bore.
+MomentSum moments_of(const Sections& sections, const FaceSet& faces, const SectionFrame& frame);
 
 /// Flux of 1, x and y through the surface of an overlap, along two axes e and f across the columns.
 /// By the theorem of Gauss int n dS vanishes and int x_i n_j dS is V or nothing. Columns see to
@@ -24,7 +24,7 @@ class SurfaceFlux {
   void add_plane(const Vec3& normal, const double* sums) {
     flux_ += Vec3(sums[0], sums[1], sums[2]) * (normal.transpose() * axes_);
   }
-  void add_round(const FanRound& round, const double* sums);
+  void add_round(const SectionRound& round, const double* sums);
   void add(const Axes& flux) { flux_ += flux; }  ///< rows: of 1, x, y; columns: along e, f
 
   /// How far from closed the surface is, as an error of V, which is `volume`. Seen from `middle`,
@@ -36,14 +36,14 @@ class SurfaceFlux {
   Axes axes_, flux_ = Axes::Zero();
 };
 
-/// The same of a fan without a bore.
-double openness(const Fan& fan, const FaceSet& faces, const FanFrame& frame);
+/// The same of a set of sections without a bore.
+double openness(const Sections& sections, const FaceSet& faces, const SectionFrame& frame);
 
 /// Which share of the push on the owner of a bore comes from its wall, from 0 to 1.
-double share_of_bore(const Fan& fan, const FaceSet& faces, const FanFrame& frame);
+double share_of_bore(const Sections& sections, const FaceSet& faces, const SectionFrame& frame);
 
 /// The parts of the surface that lie in plane faces, in A's frame.
-void add_patches(const Fan& fan, const FaceSet& faces, const FanFrame& frame,
+void add_patches(const Sections& sections, const FaceSet& faces, const SectionFrame& frame,
                  std::vector<LinesRegion::PlanePatch>& patches);
 
 }  // namespace volcontact

@@ -8,7 +8,7 @@
 namespace volcontact {
 namespace {
 
-using Kind = ShellFace::Kind;
+using Kind = SweepFace::Kind;
 
 constexpr double kPole = 0.5 * kPi - 1e-9;  // as good as the pole: what is left is 1e-18
 constexpr double kAside = 0.3;              // of a ball's radius: the box is to one side
@@ -16,7 +16,7 @@ constexpr double kFlatTurn = 1.4;  // half a range of angles within which a box 
 
 }  // namespace
 
-ShellFamily::ShellFamily(const ShellFace& face, const Vec3& half) : face_(face) {
+CurveFamily::CurveFamily(const SweepFace& face, const Vec3& half) : face_(face) {
   if (face.kind == Kind::kPlane) set_plane(half);
   if (face.kind == Kind::kBall) set_ball(half);
   if (face.kind == Kind::kTube) {
@@ -36,7 +36,7 @@ ShellFamily::ShellFamily(const ShellFace& face, const Vec3& half) : face_(face) 
 }
 
 // Lines along the longest side of the plane's part of the box.
-void ShellFamily::set_plane(const Vec3& half) {
+void CurveFamily::set_plane(const Vec3& half) {
   axis_ = face_.normal;
   origin_ = face_.offset * axis_;
   // Across the lines is the axis of the box that is least of those near to the plane.
@@ -64,7 +64,7 @@ void ShellFamily::set_plane(const Vec3& half) {
   }
 }
 
-void ShellFamily::set_about_axis(const Vec3& axis, const Vec3& half) {
+void CurveFamily::set_about_axis(const Vec3& axis, const Vec3& half) {
   axis_ = axis;
   origin_ = face_.round.center;
   const Vec3 middle = -origin_ + axis_.dot(origin_) * axis_;
@@ -86,7 +86,7 @@ void ShellFamily::set_about_axis(const Vec3& axis, const Vec3& half) {
 }
 
 // Circles of latitude about the direction towards the box.
-void ShellFamily::set_ball(const Vec3& half) {
+void CurveFamily::set_ball(const Vec3& half) {
   const RoundFace& round = face_.round;
   origin_ = round.center;
   inverse_ = round.map.inverse();
@@ -107,8 +107,8 @@ void ShellFamily::set_ball(const Vec3& half) {
   high_ = std::min(kPole, std::asin(std::clamp(most, -1.0, 1.0)));
 }
 
-ShellCurve ShellFamily::curve(double u) const {
-  ShellCurve curve;
+FaceCurve CurveFamily::curve(double u) const {
+  FaceCurve curve;
   if (face_.kind == Kind::kPlane) {
     curve.p = origin_ + u * e_;
     curve.u = f_;
@@ -136,7 +136,7 @@ ShellCurve ShellFamily::curve(double u) const {
   return curve;
 }
 
-Vec3 ShellFamily::element(double u, double t, const Vec3& x) const {
+Vec3 CurveFamily::element(double u, double t, const Vec3& x) const {
   if (face_.kind == Kind::kPlane) return axis_;
   const double c = std::cos(u), s = std::sin(u);
   if (face_.kind == Kind::kBall) {
@@ -149,7 +149,7 @@ Vec3 ShellFamily::element(double u, double t, const Vec3& x) const {
   return face_.minor * (face_.major + face_.minor * tc) * (tc * out + ts * axis_);
 }
 
-void ShellFamily::locate(const Vec3& x, double& u, double& t) const {
+void CurveFamily::locate(const Vec3& x, double& u, double& t) const {
   const Vec3 d = x - origin_;
   if (face_.kind == Kind::kPlane) {
     u = e_.dot(d);

@@ -9,21 +9,21 @@
 #include "volcontact/pair/surface_sweep/crossings.h"
 #include "volcontact/pair/surface_sweep/face_curve.h"
 
-namespace volcontact::shell_forms {
+namespace volcontact::curve_forms {
 
 // The functions of faces along lines and circles, and where they vanish.
 
-using Kind = ShellFace::Kind;
+using Kind = SweepFace::Kind;
 
 inline constexpr double kParallel = 1e-13;  ///< a line as good as in a face or along its wall
-inline constexpr int kCirclePlaces = 16, kRingPlaces = 32;
+inline constexpr int kCirclePlaces = 16, kTorusPlaces = 32;
 
 // a t^2 + 2 b t + c, negative inside of a round face.
 struct Parabola {
   double a, b, c, unit;
   double rise, height;  ///< along the axis of a cone: of the direction, and over the apex
 
-  Parabola(const RoundFace& face, const ShellCurve& line) {
+  Parabola(const RoundFace& face, const FaceCurve& line) {
     const Vec3 y = face.map * (line.p - face.center), d = face.map * line.u;
     const Vec3 dj = face.weighted(d);
     a = d.dot(dj);
@@ -51,8 +51,7 @@ struct Parabola {
 };
 
 /// The interval of a line inside of a face; false for none.
-inline bool line_interval(const ShellFace& face, const ShellCurve& line, double& low,
-                          double& high) {
+inline bool line_interval(const SweepFace& face, const FaceCurve& line, double& low, double& high) {
   low = -kInfinity;
   high = kInfinity;
   if (face.kind == Kind::kPlane) {
@@ -84,7 +83,7 @@ inline bool line_interval(const ShellFace& face, const ShellCurve& line, double&
 struct Cosine {
   double c, a, b, r;
 
-  bool read(const ShellFace& face, const ShellCurve& circle) {
+  bool read(const SweepFace& face, const FaceCurve& circle) {
     if (face.kind == Kind::kTorus) return false;
     if (face.kind == Kind::kPlane) {
       c = face.normal.dot(circle.p) - face.offset;
@@ -131,7 +130,7 @@ struct CircleForm {
 /// Values and slopes of a face along a circle.
 class AlongCircle {
  public:
-  AlongCircle(const ShellFace& face, const ShellCurve& circle) {
+  AlongCircle(const SweepFace& face, const FaceCurve& circle) {
     if (face.kind != Kind::kTorus) {
       const RoundFace& f = face.round;
       const Vec3 y = f.map * (circle.p - f.center), u = f.map * circle.u, v = f.map * circle.v;
@@ -150,14 +149,14 @@ class AlongCircle {
   // At even steps of a turn.
   CurveValue step(int i, int places) const {
     static const auto table = [] {
-      std::array<double, 2 * kRingPlaces> turns;
-      for (int k = 0; k < kRingPlaces; ++k) {
-        turns[2 * k] = std::cos(2.0 * kPi * k / kRingPlaces);
-        turns[2 * k + 1] = std::sin(2.0 * kPi * k / kRingPlaces);
+      std::array<double, 2 * kTorusPlaces> turns;
+      for (int k = 0; k < kTorusPlaces; ++k) {
+        turns[2 * k] = std::cos(2.0 * kPi * k / kTorusPlaces);
+        turns[2 * k + 1] = std::sin(2.0 * kPi * k / kTorusPlaces);
       }
       return turns;
     }();
-    const int k = i * (kRingPlaces / places);
+    const int k = i * (kTorusPlaces / places);
     return at(table[2 * k], table[2 * k + 1]);
   }
 
@@ -179,8 +178,8 @@ class AlongCircle {
 
 /// The same of a torus along a line.
 struct AlongLine {
-  const ShellFace& face;
-  const ShellCurve& line;
+  const SweepFace& face;
+  const FaceCurve& line;
 
   CurveValue operator()(double t) const {
     const Vec3 d = line.at(t) - face.round.center;
@@ -193,4 +192,4 @@ struct AlongLine {
   }
 };
 
-}  // namespace volcontact::shell_forms
+}  // namespace volcontact::curve_forms

@@ -9,19 +9,19 @@
 
 namespace volcontact {
 
-using namespace shell_forms;
+using namespace curve_forms;
 
 namespace {
 
-using Toggle = ShellCurveScratch::Toggle;
+using Toggle = FaceCurveScratch::Toggle;
 
 constexpr double kSliver = 1e-10;  // of the box, or of a circle: stretches as good as none
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 class SpanFinder {
  public:
-  SpanFinder(const ShellSolids& solids, const ShellCurve& curve, int face, ShellCurveScratch& s,
-             ShellSpans& spans)
+  SpanFinder(const SweepSolids& solids, const FaceCurve& curve, int face, FaceCurveScratch& s,
+             SweepSpans& spans)
       : solids_(solids),
         curve_(curve),
         face_(face),
@@ -36,7 +36,7 @@ class SpanFinder {
     inner_ = outer_ = 0;
     const auto parts = static_cast<int>(solids_.parts.size());
     for (int p = 0; p < parts; ++p) {
-      const ShellPart& part = solids_.parts[p];
+      const SweepPart& part = solids_.parts[p];
       part_ = p;
       on_ = 0;
       for (int f = part.first; f < part.last; ++f) {
@@ -57,7 +57,7 @@ class SpanFinder {
   bool skipped(int f) const { return face_ >= 0 && solids_.faces[f].twin == face_; }
 
   // Toggles of a part whose members are all convex. Whether the line comes from within it.
-  bool add_line_part(const ShellPart& part) {
+  bool add_line_part(const SweepPart& part) {
     Toggle enter{-kInfinity, part_, -1, false}, leave{kInfinity, part_, -1, true};
     for (int f = part.first; f < part.last; ++f) {
       if (skipped(f)) continue;
@@ -78,14 +78,14 @@ class SpanFinder {
 
   // A torus, within the ball around it.
   bool add_ring(int f) {
-    const ShellFace& face = solids_.faces[f];
+    const SweepFace& face = solids_.faces[f];
     const double length = curve_.u.norm(), reach = face.major + face.minor;
     const double middle = curve_.u.dot(face.round.center - curve_.p) / (length * length);
     const double across = (curve_.at(middle) - face.round.center).norm();
     if (!(across < reach)) return false;
     const double way = 1.01 * std::sqrt((reach - across) * (reach + across)) / length;
     CrossingList list;
-    find_crossings(AlongLine{face, curve_}, middle - way, middle + way, kRingPlaces, false, list);
+    find_crossings(AlongLine{face, curve_}, middle - way, middle + way, kTorusPlaces, false, list);
     for (int i = 0; i < list.count; ++i) {
       s_.toggles.push_back({list.t[i], part_, f, (i % 2 == 0) == list.begins_inside});
     }
@@ -93,7 +93,7 @@ class SpanFinder {
   }
 
   // A circle may leave a part several times. Whether it is within the part at t = 0.
-  bool add_circle_part(const ShellPart& part) {
+  bool add_circle_part(const SweepPart& part) {
     s_.crossings.clear();
     int outside = 0;  // faces that the circle is outside of, at 0
     for (int f = part.first; f < part.last; ++f) {
@@ -115,12 +115,12 @@ class SpanFinder {
 
   // 1 where the circle begins outside of the face, 0 inside; -1 when it never is inside.
   int add_circle_face(int f) {
-    const ShellFace& face = solids_.faces[f];
+    const SweepFace& face = solids_.faces[f];
     Cosine cosine;
     if (cosine.read(face, curve_)) return add_cosine(f, cosine);
     CrossingList list;
     find_crossings(AlongCircle(face, curve_), 0.0, 2.0 * kPi,
-                   face.kind == Kind::kTorus ? kRingPlaces : kCirclePlaces, true, list);
+                   face.kind == Kind::kTorus ? kTorusPlaces : kCirclePlaces, true, list);
     if (list.count == 0 && !list.begins_inside) return -1;
     for (int i = 0; i < list.count; ++i) {
       s_.crossings.push_back({list.t[i], part_, f, (i % 2 == 0) == list.begins_inside});
@@ -162,12 +162,12 @@ class SpanFinder {
 
   void sweep() {
     int now = state();
-    ShellSpans::Span open{};
+    SweepSpans::Span open{};
     if (now != 0) open = begin({curve_.circle ? 0.0 : -kInfinity, -1, false, -1, 0}, now);
     const std::size_t n = s_.toggles.size();
     for (std::size_t i = 0; i < n;) {
       // All that happens here as one: rounding does not decide which face it is.
-      ShellEnd end{s_.toggles[i].t, s_.toggles[i].face, s_.toggles[i].leaves, -1, 0};
+      SweepEnd end{s_.toggles[i].t, s_.toggles[i].face, s_.toggles[i].leaves, -1, 0};
       for (const double from = end.t; i < n && s_.toggles[i].t <= from + sliver_; ++i) {
         const Toggle& toggle = s_.toggles[i];
         flip(toggle.part, !toggle.leaves);
@@ -188,17 +188,17 @@ class SpanFinder {
     drop_far();
   }
 
-  static ShellSpans::Span begin(const ShellEnd& low, int state) {
-    ShellSpans::Span span{};
+  static SweepSpans::Span begin(const SweepEnd& low, int state) {
+    SweepSpans::Span span{};
     span.low = low;
     span.owner = state < 3 ? Owner::kA : Owner::kB;
     span.side = state % 2 == 1 ? 1 : -1;
     return span;
   }
 
-  void close(ShellSpans::Span& span, const ShellEnd& high) {
+  void close(SweepSpans::Span& span, const SweepEnd& high) {
     span.high = high;
-    if (out_.count == ShellSpans::kMost) {
+    if (out_.count == SweepSpans::kMost) {
       out_.overflow = true;
       return;
     }
@@ -209,7 +209,7 @@ class SpanFinder {
   void drop_far() {
     int kept = 0;
     for (int i = 0; i < out_.count; ++i) {
-      const ShellSpans::Span& span = out_.span[i];
+      const SweepSpans::Span& span = out_.span[i];
       const double middle = 0.5 * (span.low.t + span.high.t);
       if (!std::isfinite(middle)) continue;
       if (((curve_.at(middle).cwiseAbs() - solids_.half).array() > 0.0).any()) continue;
@@ -218,25 +218,25 @@ class SpanFinder {
     out_.count = kept;
   }
 
-  const ShellSolids& solids_;
-  const ShellCurve& curve_;
+  const SweepSolids& solids_;
+  const FaceCurve& curve_;
   const int face_;
   const double sliver_;
-  ShellCurveScratch& s_;
-  ShellSpans& out_;
+  FaceCurveScratch& s_;
+  SweepSpans& out_;
   int part_ = 0, on_ = 0;
-  int on_faces_[ShellSolids::kMostParts] = {};
+  int on_faces_[SweepSolids::kMostParts] = {};
   std::uint64_t inner_ = 0, outer_ = 0;
 };
 
 }  // namespace
 
-void find_spans(const ShellSolids& solids, const ShellCurve& curve, int face,
-                ShellCurveScratch& scratch, ShellSpans& spans) {
+void find_spans(const SweepSolids& solids, const FaceCurve& curve, int face,
+                FaceCurveScratch& scratch, SweepSpans& spans) {
   SpanFinder(solids, curve, face, scratch, spans).run();
 }
 
-double end_on(const ShellFace& face, const ShellCurve& curve, bool leaves) {
+double end_on(const SweepFace& face, const FaceCurve& curve, bool leaves) {
   if (curve.circle) {
     Cosine f;
     if (!f.read(face, curve) || !f.crosses()) return kNone;
@@ -249,7 +249,7 @@ double end_on(const ShellFace& face, const ShellCurve& curve, bool leaves) {
   return std::isfinite(end) ? end : kNone;
 }
 
-double reach_of(const ShellFace& face, const ShellCurve& curve) {
+double reach_of(const SweepFace& face, const FaceCurve& curve) {
   if (curve.circle) {
     Cosine f;
     return f.read(face, curve) ? f.reach() : kNone;

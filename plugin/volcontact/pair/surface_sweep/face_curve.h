@@ -6,7 +6,7 @@
 namespace volcontact {
 
 /// A line p + t u, or a circle p + cos t u + sin t v with 0 <= t < 2 pi.
-struct ShellCurve {
+struct FaceCurve {
   bool circle = false;
   Vec3 p, u, v;
 
@@ -17,22 +17,22 @@ struct ShellCurve {
 };
 
 /// Where a curve passes through a face of a part: into the part, or out of it.
-struct ShellEnd {
+struct SweepEnd {
   double t = 0.0;
   int face = -1;  ///< none where a circle begins or ends, at 0 or 2 pi
   bool leaves = false;
   int also = -1;   ///< another face in the same place
-  int smooth = 0;  ///< ShellFace::smooth of the face
+  int smooth = 0;  ///< SweepFace::smooth of the face
 
-  bool same_as(const ShellEnd& other) const {
+  bool same_as(const SweepEnd& other) const {
     return smooth == other.smooth && (smooth < 0 || leaves == other.leaves);
   }
 };
 
 /// Stretches of a curve, in order. Of a circle none goes on beyond 2 pi.
-struct ShellSpans {
+struct SweepSpans {
   struct Span {
-    ShellEnd low, high;
+    SweepEnd low, high;
     Owner owner;  ///< whose surface the curve lies in
     int side;     ///< 1: the solid is where the normal of the face does not look
     bool same_as(const Span& other) const {
@@ -49,7 +49,7 @@ struct ShellSpans {
   bool is_rest() const {
     return count > 1 && span[0].low.face < 0 && span[count - 1].high.face < 0;
   }
-  bool same_as(const ShellSpans& other) const {
+  bool same_as(const SweepSpans& other) const {
     if (count != other.count) return false;
     for (int i = 0; i < count; ++i) {
       if (!span[i].same_as(other.span[i])) return false;
@@ -59,7 +59,7 @@ struct ShellSpans {
 };
 
 /// Memory of the search.
-struct ShellCurveScratch {
+struct FaceCurveScratch {
   struct Toggle {
     double t;
     int part, face;
@@ -71,15 +71,15 @@ struct ShellCurveScratch {
 
 /// Stretches of a curve that lies in a face (`face`, which is its own twin) where that face is
 /// surface of the overlap; with face -1, of a line anywhere, where it lies in the overlap.
-void find_spans(const ShellSolids& solids, const ShellCurve& curve, int face,
-                ShellCurveScratch& scratch, ShellSpans& spans);
+void find_spans(const SweepSolids& solids, const FaceCurve& curve, int face,
+                FaceCurveScratch& scratch, SweepSpans& spans);
 
 /// The place of an end on a curve that has it or had it a moment ago; NaN where there is none or
 /// where it would have to be searched for.
-double end_on(const ShellFace& face, const ShellCurve& curve, bool leaves);
+double end_on(const SweepFace& face, const FaceCurve& curve, bool leaves);
 
 /// Positive where a curve passes through a round face, or a circle through a plane, smooth as far
 /// as it touches; NaN as above.
-double reach_of(const ShellFace& face, const ShellCurve& curve);
+double reach_of(const SweepFace& face, const FaceCurve& curve);
 
 }  // namespace volcontact

@@ -17,12 +17,12 @@ constexpr double kSamePlace = 1e-6;  // of the box: two ends in one place
 constexpr int kRounds = 4;           // of looking at curves that neighbours tell of
 constexpr double kSpeck = 1e-10;     // of V: a region that is none
 constexpr double kContained = 1e-6;  // of V: all of a solid
-constexpr double kDoubt = 5.0;       // error of V by how far the surface is from closed, as measured
+constexpr double kDoubt = 5.0;  // error of V by how far the surface is from closed, as measured
 
-class ShellRun {
+class SweepRun {
  public:
-  ShellRun(const Shape& a, const Shape& b, const Pose& X_AB, const InterferenceOptions& options,
-           ShellScratch& s, Interference& out)
+  SweepRun(const Shape& a, const Shape& b, const Pose& X_AB, const InterferenceOptions& options,
+           SurfaceSweepScratch& s, Interference& out)
       : options_(options), s_(s), out_(out), views_{view_of(a), view_of(b)} {
     shapes_[0] = &a;
     shapes_[1] = &b;
@@ -56,7 +56,7 @@ class ShellRun {
 
  private:
   bool make_families() {
-    const std::vector<ShellFace>& faces = s_.solids.faces;
+    const std::vector<SweepFace>& faces = s_.solids.faces;
     const auto count = static_cast<int>(faces.size());
     s_.families.clear();
     s_.families.reserve(faces.size());
@@ -66,13 +66,13 @@ class ShellRun {
       bool surface = false;
       for (int g = f; g < count; ++g) surface |= faces[g].twin == f && !faces[g].seam;
       if (!surface) continue;
-      const ShellFamily family(faces[f], s_.solids.half);
+      const CurveFamily family(faces[f], s_.solids.half);
       if (family.empty()) continue;
       s_.family_of[f] = static_cast<int>(s_.families.size());
       s_.families.push_back(family);
     }
     if (s_.patches.size() < s_.families.size()) s_.patches.resize(s_.families.size());
-    for (ShellPatch& patch : s_.patches) {
+    for (SweepPatch& patch : s_.patches) {
       patch.hints.clear();
       patch.swept = false;
     }
@@ -80,14 +80,14 @@ class ShellRun {
   }
 
   bool sweep(double target) {
-    for (ShellPatch& patch : s_.patches) patch.stale = true;
+    for (SweepPatch& patch : s_.patches) patch.stale = true;
     for (int round = 0; round < kRounds; ++round) {
       s_.surface.clear();
       const auto count = static_cast<int>(s_.family_of.size());
       for (int f = 0; f < count; ++f) {
         const int k = s_.family_of[f];
         if (k < 0) continue;
-        ShellPatch& patch = s_.patches[k];
+        SweepPatch& patch = s_.patches[k];
         if (patch.stale) {
           if (!sweep_face(s_.solids, f, s_.families[k], target, s_.patch, patch)) return false;
           patch.stale = false;
@@ -120,11 +120,11 @@ class ShellRun {
     for (int f = 0; f < count; ++f) {
       if (s_.family_of[f] < 0) continue;
       join_stretches(f);
-      const ShellPatch& patch = s_.patches[s_.family_of[f]];
-      for (const ShellStretch& stretch : patch.stretches) {
+      const SweepPatch& patch = s_.patches[s_.family_of[f]];
+      for (const SweepStretch& stretch : patch.stretches) {
         const int first = patch.base + stretch.first;
         for (int i = first; i < first + stretch.count; ++i) {
-          const ShellStrip& strip = s_.surface.strips[i];
+          const SweepStrip& strip = s_.surface.strips[i];
           more |= join_across(i, strip.low, strip.at_low);
           more |= join_across(i, strip.high, strip.at_high);
         }
@@ -136,11 +136,11 @@ class ShellRun {
   // Stretches next to each other, where their curves have a part in common.
   void join_stretches(int f) {
     const int k = s_.family_of[f];
-    const ShellFamily& family = s_.families[k];
-    const std::vector<ShellStretch>& all = s_.patches[k].stretches;
+    const CurveFamily& family = s_.families[k];
+    const std::vector<SweepStretch>& all = s_.patches[k].stretches;
     const int base = s_.patches[k].base;
     const double beside = 1e-9 * (family.high() - family.low());
-    const auto join_two = [&](const ShellStretch& a, const ShellStretch& b) {
+    const auto join_two = [&](const SweepStretch& a, const SweepStretch& b) {
       if (a.count == 0 || b.count == 0) return;
       find_spans(s_.solids, family.curve(a.high - beside), f, s_.patch.curve, spans_);
       find_spans(s_.solids, family.curve(b.low + beside), f, s_.patch.curve, other_);
@@ -155,7 +155,7 @@ class ShellRun {
       if (all[i + 1].low - all[i].high < beside) join_two(all[i], all[i + 1]);
     }
     if (family.turn() && all.size() > 1) join_two(all.back(), all.front());
-    for (const ShellStretch& stretch : all) {  // where only the owner changes, or a circle closes
+    for (const SweepStretch& stretch : all) {  // where only the owner changes, or a circle closes
       if (stretch.count < 2) continue;
       find_spans(s_.solids, family.curve(0.5 * (stretch.low + stretch.high)), f, s_.patch.curve,
                  spans_);
@@ -171,11 +171,11 @@ class ShellRun {
     }
   }
 
-  static bool meet(const ShellSpans::Span& a, const ShellSpans::Span& b) {
+  static bool meet(const SweepSpans::Span& a, const SweepSpans::Span& b) {
     return std::max(a.low.t, b.low.t) < std::min(a.high.t, b.high.t);
   }
 
-  bool join_across(int strip, const ShellEnd& end, const Vec3& x) {
+  bool join_across(int strip, const SweepEnd& end, const Vec3& x) {
     bool joined = false;
     for (const int face : {end.face, end.also}) {
       if (face < 0 || joined) continue;
@@ -194,7 +194,7 @@ class ShellRun {
   bool join_face(int strip, int g, const Vec3& x, bool& joined) {
     const int k = s_.family_of[g];
     if (k < 0) return false;
-    const ShellFamily& family = s_.families[k];
+    const CurveFamily& family = s_.families[k];
     double u, t;
     family.locate(x, u, t);
     // Where the edge runs along a curve of the other face, its surface begins beside it.
@@ -203,7 +203,7 @@ class ShellRun {
       if (!(place > family.low() && place < family.high())) continue;
       const int span = span_at(g, family, place, t);
       if (span < 0) continue;
-      for (const ShellStretch& stretch : s_.patches[k].stretches) {
+      for (const SweepStretch& stretch : s_.patches[k].stretches) {
         if (place < stretch.low || place > stretch.high) continue;
         if (stretch.count == spans_.count) {
           join(strip, s_.patches[k].base + stretch.first + span);
@@ -222,8 +222,8 @@ class ShellRun {
   }
 
   // Which stretch of a curve (in spans_) reaches to t; -1 for none.
-  int span_at(int face, const ShellFamily& family, double u, double t) {
-    const ShellCurve curve = family.curve(u);
+  int span_at(int face, const CurveFamily& family, double u, double t) {
+    const FaceCurve curve = family.curve(u);
     find_spans(s_.solids, curve, face, s_.patch.curve, spans_);
     if (curve.circle && t < 0.0) t += 2.0 * kPi;
     const double slack = kSamePlace * s_.solids.half.norm() / curve.u.norm();
@@ -239,13 +239,13 @@ class ShellRun {
     s_.regions.clear();
     const auto strips = static_cast<int>(s_.surface.strips.size());
     for (int i = 0; i < strips; ++i) {
-      const ShellStrip& strip = s_.surface.strips[i];
+      const SweepStrip& strip = s_.surface.strips[i];
       ScratchRegion& region = region_of(root(i));
       region.flux[index(strip.owner)] += strip.flux;
       region.error += strip.error;
     }
     volume_ = error_ = 0.0;
-    ShellFlux all;
+    SweepFlux all;
     int largest = 0;
     const auto count = static_cast<int>(s_.regions.size());
     for (int i = 0; i < count; ++i) {
@@ -274,7 +274,7 @@ class ShellRun {
     }
   }
 
-  using ScratchRegion = ShellScratch::Region;
+  using ScratchRegion = SurfaceSweepScratch::Region;
 
   ScratchRegion& region_of(int root) {
     for (ScratchRegion& region : s_.regions) {
@@ -312,15 +312,14 @@ class ShellRun {
 
   VolumeMetrics metrics_of(int i) {
     const ScratchRegion& region = s_.regions[i];
-    const ShellFlux &a = region.flux[0], &b = region.flux[1];
+    const SweepFlux &a = region.flux[0], &b = region.flux[1];
     MomentSum sum;
     sum.volume = volume_of(region);
     sum.first = a.first + b.first;
     sum.second = a.second + b.second;
     // The error of a vector goes with its area, and a small area bounds what it can be.
     const double square_a = a.area * a.area, square_b = b.area * b.area;
-    const double share_b =
-        square_a + square_b > 0.0 ? square_a / (square_a + square_b) : 0.5;
+    const double share_b = square_a + square_b > 0.0 ? square_a / (square_a + square_b) : 0.5;
     sum.area_vector = (1.0 - share_b) * a.normal - share_b * b.normal;
     const Mat3 turn = (1.0 - share_b) * a.moment - share_b * b.moment;
     sum.area_moment =
@@ -337,7 +336,7 @@ class ShellRun {
       }
       return false;
     };
-    add_shell_depth(s_.solids, s_.families, s_.family_of, s_.surface, of_region, s_.patch.curve,
+    add_sweep_depth(s_.solids, s_.families, s_.family_of, s_.surface, of_region, s_.patch.curve,
                     metrics);
     return metrics;
   }
@@ -358,20 +357,20 @@ class ShellRun {
   const Shape* shapes_[2];
   Pose X_AB_;
   const InterferenceOptions& options_;
-  ShellScratch& s_;
+  SurfaceSweepScratch& s_;
   Interference& out_;
   SolidView views_[2];
   OverlapWindow window_;
-  ShellSpans spans_, other_;
+  SweepSpans spans_, other_;
   double volume_ = 0.0, error_ = 0.0;
 };
 
 }  // namespace
 
-bool shell_interference(const Shape& a, const Shape& b, const Pose& X_AB,
-                        const InterferenceOptions& options, ShellScratch& scratch,
-                        Interference& out) noexcept {
-  return ShellRun(a, b, X_AB, options, scratch, out).run();
+bool surface_sweep(const Shape& a, const Shape& b, const Pose& X_AB,
+                   const InterferenceOptions& options, SurfaceSweepScratch& scratch,
+                   Interference& out) noexcept {
+  return SweepRun(a, b, X_AB, options, scratch, out).run();
 }
 
 }  // namespace volcontact

@@ -9,16 +9,16 @@
 namespace volcontact {
 
 /// Memory of the search, reused from call to call; no value depends on what it holds.
-struct ShellScratch {
+struct SurfaceSweepScratch {
   CutPolytope hull, part;
-  ShellSolids solids;
-  std::vector<ShellFamily> families;
+  SweepSolids solids;
+  std::vector<CurveFamily> families;
   std::vector<int> family_of;  ///< by face; -1 for none
-  std::vector<ShellPatch> patches;
-  ShellPatchScratch patch;
-  ShellSurface surface;
+  std::vector<SweepPatch> patches;
+  SweepPatchScratch patch;
+  SweepSurface surface;
   struct Region {
-    ShellFlux flux[2];  ///< through the surface of A, of B
+    SweepFlux flux[2];  ///< through the surface of A, of B
     double error = 0.0;
     int root = -1;
     int into = -1;  ///< the region it is counted with
@@ -28,9 +28,9 @@ struct ShellScratch {
 
 /// Interference of any two solids made of simple ones, from the surface of their overlap: metrics
 /// in A's frame and about A's origin. False where it finds no overlap, or not all of its surface,
-/// or where a solid is a mesh or a signed distance. docs/theory.md, "Shells".
-bool shell_interference(const Shape& a, const Shape& b, const Pose& X_AB,
-                        const InterferenceOptions& options, ShellScratch& scratch,
-                        Interference& out) noexcept;
+/// or where a solid is a mesh or a signed distance. docs/theory.md, "Surface sweep".
+bool surface_sweep(const Shape& a, const Shape& b, const Pose& X_AB,
+                   const InterferenceOptions& options, SurfaceSweepScratch& scratch,
+                   Interference& out) noexcept;
 
 }  // namespace volcontact

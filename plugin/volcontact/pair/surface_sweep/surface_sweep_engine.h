@@ -11,7 +11,7 @@ namespace volcontact {
 /// beyond.
 struct SurfaceSweep : EngineBase {
   static constexpr Engine kWord = Engine::kLines;
-  using Scratch = TypeList<ShellScratch>;
+  using Scratch = TypeList<SurfaceSweepScratch>;
 
   template <typename S>
   static constexpr bool kMadeOfSimple =
@@ -29,8 +29,9 @@ struct SurfaceSweep : EngineBase {
            !kTorusOnPlane<A, B> && !kTorusOnPlane<B, A>;
   }
   template <typename A, typename B>
-  static Answer run(const Question<A, B>& q, ShellScratch& scratch, Interference& out) noexcept {
-    return answer(shell_interference(q.shape_a, q.shape_b, q.X_AB, q.options, scratch, out));
+  static Answer run(const Question<A, B>& q, SurfaceSweepScratch& scratch,
+                    Interference& out) noexcept {
+    return answer(surface_sweep(q.shape_a, q.shape_b, q.X_AB, q.options, scratch, out));
   }
 };
 

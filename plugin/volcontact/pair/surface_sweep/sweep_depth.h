@@ -13,25 +13,25 @@ namespace volcontact {
 /// Depth and depth moment of a region of an overlap, from columns along its normal that start at
 /// places of its surface. `of_region(strip)`: whether a strip is of the region.
 template <typename OfRegion>
-class ShellDepth {
+class SweepDepth {
  public:
-  ShellDepth(const ShellSolids& solids, const ShellSurface& surface, OfRegion& of_region,
-             ShellCurveScratch& scratch, const Vec3& n)
+  SweepDepth(const SweepSolids& solids, const SweepSurface& surface, OfRegion& of_region,
+             FaceCurveScratch& scratch, const Vec3& n)
       : solids_(solids), surface_(surface), of_region_(of_region), s_(scratch), n_(n) {}
 
-  void run(const std::vector<ShellFamily>& families, const std::vector<int>& family_of,
+  void run(const std::vector<CurveFamily>& families, const std::vector<int>& family_of,
            VolumeMetrics& metrics) {
-    for (const ShellTip& tip : surface_.tips) {
+    for (const SweepTip& tip : surface_.tips) {
       if (of_region_(tip.strip)) reach(tip.x);
     }
     // From the side that has fewer places.
     int up = 0, down = 0;
-    for (const ShellPlace& place : surface_.places) {
+    for (const SweepPlace& place : surface_.places) {
       if (of_region_(place.strip)) ++(n_.dot(place.n) > 0.0 ? up : down);
     }
     const double side = up <= down ? 1.0 : -1.0;
     double volume = 0.0, moment = 0.0;
-    for (const ShellPlace& place : surface_.places) {
+    for (const SweepPlace& place : surface_.places) {
       const double area = side * n_.dot(place.n);
       if (!(area > 0.0) || !of_region_(place.strip)) continue;
       const double length = column(place.x, -side * n_);
@@ -53,25 +53,25 @@ class ShellDepth {
 
   // How far a ray stays in the overlap.
   double column(const Vec3& x, const Vec3& d) {
-    ShellCurve ray;
+    FaceCurve ray;
     ray.p = x;
     ray.u = d;
     ray.v = Vec3::Zero();
     find_spans(solids_, ray, -1, s_, spans_);
     const double near = 1e-7 * solids_.half.norm();
     for (int i = 0; i < spans_.count; ++i) {
-      const ShellSpans::Span& span = spans_.span[i];
+      const SweepSpans::Span& span = spans_.span[i];
       if (span.low.t <= near && span.high.t > near) return span.high.t;
     }
     return 0.0;
   }
 
   // The farthest places of balls, which no curve need come by.
-  void look_at_balls(const std::vector<ShellFamily>& families, const std::vector<int>& family_of) {
+  void look_at_balls(const std::vector<CurveFamily>& families, const std::vector<int>& family_of) {
     for (std::size_t f = 0; f < family_of.size(); ++f) {
-      const ShellFace& face = solids_.faces[f];
-      if (family_of[f] < 0 || face.kind != ShellFace::Kind::kBall) continue;
-      const ShellFamily& family = families[static_cast<std::size_t>(family_of[f])];
+      const SweepFace& face = solids_.faces[f];
+      if (family_of[f] < 0 || face.kind != SweepFace::Kind::kBall) continue;
+      const CurveFamily& family = families[static_cast<std::size_t>(family_of[f])];
       const Mat3 inverse = face.round.map.inverse();
       for (const double side : {1.0, -1.0}) {
         const Vec3 x = face.round.center + inverse * (side * inverse.transpose() * n_).normalized();
@@ -80,7 +80,7 @@ class ShellDepth {
         if (!(u > family.low() && u < family.high())) continue;
         find_spans(solids_, family.curve(u), static_cast<int>(f), s_, spans_);
         for (int i = 0; i < spans_.count; ++i) {
-          const ShellSpans::Span& span = spans_.span[i];
+          const SweepSpans::Span& span = spans_.span[i];
           const double at = t < 0.0 ? t + 2.0 * kPi : t;
           // Of another region only if it lies beyond all of this one.
           if (at >= span.low.t && at <= span.high.t && of_height(n_.dot(x))) reach(x);
@@ -93,22 +93,22 @@ class ShellDepth {
     return height < high_ + depth && height > low_ - depth;
   }
 
-  const ShellSolids& solids_;
-  const ShellSurface& surface_;
+  const SweepSolids& solids_;
+  const SweepSurface& surface_;
   OfRegion& of_region_;
-  ShellCurveScratch& s_;
+  FaceCurveScratch& s_;
   const Vec3 n_;
-  ShellSpans spans_;
+  SweepSpans spans_;
   double high_ = -kInfinity, low_ = kInfinity;
 };
 
 template <typename OfRegion>
-void add_shell_depth(const ShellSolids& solids, const std::vector<ShellFamily>& families,
-                     const std::vector<int>& family_of, const ShellSurface& surface,
-                     OfRegion&& of_region, ShellCurveScratch& scratch, VolumeMetrics& metrics) {
+void add_sweep_depth(const SweepSolids& solids, const std::vector<CurveFamily>& families,
+                     const std::vector<int>& family_of, const SweepSurface& surface,
+                     OfRegion&& of_region, FaceCurveScratch& scratch, VolumeMetrics& metrics) {
   const Vec3 n = metrics.normal();
   if (n.isZero(0.0)) return;
-  ShellDepth<std::remove_reference_t<OfRegion>>(solids, surface, of_region, scratch, n)
+  SweepDepth<std::remove_reference_t<OfRegion>>(solids, surface, of_region, scratch, n)
       .run(families, family_of, metrics);
 }
 

@@ -25,8 +25,8 @@ constexpr double kLineNode = 0.28867513459481288;  // of the rule with two nodes
 
 class FaceSweep {
  public:
-  FaceSweep(const ShellSolids& solids, int face, const ShellFamily& family, double target,
-            ShellPatchScratch& s, ShellPatch& patch)
+  FaceSweep(const SweepSolids& solids, int face, const CurveFamily& family, double target,
+            SweepPatchScratch& s, SweepPatch& patch)
       : solids_(solids),
         face_(face),
         family_(family),
@@ -44,7 +44,7 @@ class FaceSweep {
   }
 
  private:
-  using Sample = ShellPatchScratch::Sample;
+  using Sample = SweepPatchScratch::Sample;
 
   // Between events that are known from a sweep for another target.
   bool sweep_again() {
@@ -63,7 +63,7 @@ class FaceSweep {
     for (int i = 0; i < kPlaces; ++i) {
       look(family_.low() + range_ * (i + kOffset) / kPlaces);
     }
-    if (family_.turn() || solids_.faces[face_].kind == ShellFace::Kind::kBall) {
+    if (family_.turn() || solids_.faces[face_].kind == SweepFace::Kind::kBall) {
       look(family_.low());
       look(family_.high());
     } else {
@@ -82,8 +82,8 @@ class FaceSweep {
     return false;
   }
 
-  ShellSpans spans_at(double u) {
-    ShellSpans spans;
+  SweepSpans spans_at(double u) {
+    SweepSpans spans;
     ++curves_;
     find_spans(solids_, family_.curve(u), face_, s_.curve, spans);
     if (spans.overflow || curves_ > kMostCurves) failed_ = true;
@@ -128,7 +128,7 @@ class FaceSweep {
 
   // Where two neighbouring ends meet, if that is what tells the two curves apart.
   bool find_meeting(const Sample& a, const Sample& b, double& u) const {
-    ShellEnd ends_a[2 * ShellSpans::kMost], ends_b[2 * ShellSpans::kMost];
+    SweepEnd ends_a[2 * SweepSpans::kMost], ends_b[2 * SweepSpans::kMost];
     const int count_a = list(a.spans, ends_a), count_b = list(b.spans, ends_b);
     int i = 0;
     while (i < count_a && i < count_b && ends_a[i].same_as(ends_b[i])) ++i;
@@ -147,7 +147,7 @@ class FaceSweep {
     return false;
   }
 
-  static int list(const ShellSpans& spans, ShellEnd* ends) {
+  static int list(const SweepSpans& spans, SweepEnd* ends) {
     int count = 0;
     for (int i = 0; i < spans.count; ++i) {
       ends[count++] = spans.span[i].low;
@@ -157,8 +157,8 @@ class FaceSweep {
   }
 
   // A zero of the way from one end to another, or of the reach of the one face of both.
-  bool meeting(const ShellEnd& one, const ShellEnd& other, double a, double b, double& u) const {
-    const auto end_of = [&](const ShellEnd& end, const ShellCurve& curve) {
+  bool meeting(const SweepEnd& one, const SweepEnd& other, double a, double b, double& u) const {
+    const auto end_of = [&](const SweepEnd& end, const FaceCurve& curve) {
       return end.face < 0 ? 0.0 : end_on(solids_.faces[end.face], curve, end.leaves);
     };
     if (one.face == other.face) {
@@ -169,19 +169,19 @@ class FaceSweep {
     }
     const bool circle = family_.curve(a).circle;
     const auto way = [&](double at) {
-      const ShellCurve curve = family_.curve(at);
+      const FaceCurve curve = family_.curve(at);
       const double apart = end_of(other, curve) - end_of(one, curve);
       return circle ? std::remainder(apart, 2.0 * kPi) : apart;
     };
     if (zero_between(way, a, b, circle ? kPi : kInfinity, u)) return true;
     // Faces that are tangent where they meet do so in a seam.
-    for (const ShellEnd& end : {one, other}) {
+    for (const SweepEnd& end : {one, other}) {
       if (end.face < 0) continue;
-      const ShellPart& part = part_of(end.face);
+      const SweepPart& part = part_of(end.face);
       for (int f = part.first; f < part.last; ++f) {
         if (!solids_.faces[f].seam || f == face_) continue;
         const auto height = [&](double at) {
-          const ShellCurve curve = family_.curve(at);
+          const FaceCurve curve = family_.curve(at);
           return solids_.faces[f].value(curve.at(end_of(end, curve)));
         };
         if (zero_between(height, a, b, kInfinity, u)) return true;
@@ -190,8 +190,8 @@ class FaceSweep {
     return false;
   }
 
-  const ShellPart& part_of(int face) const {
-    return *std::find_if(solids_.parts.begin(), solids_.parts.end(), [face](const ShellPart& part) {
+  const SweepPart& part_of(int face) const {
+    return *std::find_if(solids_.parts.begin(), solids_.parts.end(), [face](const SweepPart& part) {
       return face >= part.first && face < part.last;
     });
   }
@@ -237,12 +237,12 @@ class FaceSweep {
 
   void add_stretch(double low, double high) {
     const double middle = 0.5 * (low + high);
-    const ShellSpans spans = spans_at(middle);
+    const SweepSpans spans = spans_at(middle);
     if (failed_) return;
     const auto first = static_cast<int>(surface_.strips.size());
-    const ShellCurve curve = family_.curve(middle);
+    const FaceCurve curve = family_.curve(middle);
     for (int i = 0; i < spans.count; ++i) {
-      ShellStrip& strip = surface_.strips.emplace_back();
+      SweepStrip& strip = surface_.strips.emplace_back();
       strip.owner = spans.span[i].owner;
       strip.low = spans.span[i].low;
       strip.high = spans.span[i].high;
@@ -252,9 +252,9 @@ class FaceSweep {
     patch_.stretches.push_back({low, high, first, spans.count});
     const double beside = 4.0 * kBeside * range_;
     for (const double u : {low + beside, high - beside}) {
-      const ShellSpans at_end = spans_at(u);
+      const SweepSpans at_end = spans_at(u);
       if (!alike(at_end, spans)) return look_again({u, at_end}, {middle, spans});
-      const ShellCurve tip = family_.curve(u);
+      const FaceCurve tip = family_.curve(u);
       for (int i = 0; i < spans.count; ++i) {
         surface_.tips.push_back({tip.at(at_end.span[i].low.t), first + i});
         surface_.tips.push_back({tip.at(at_end.span[i].high.t), first + i});
@@ -271,21 +271,21 @@ class FaceSweep {
   }
 
   // u = middle - half cos w, w from w0 to w1.
-  void integrate_stretch(const ShellSpans& pattern, double low, double high, double w0, double w1,
+  void integrate_stretch(const SweepSpans& pattern, double low, double high, double w0, double w1,
                          int depth) {
     const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
     const std::size_t places = surface_.places.size(), tips = surface_.tips.size();
-    ShellFlux sums[ShellSpans::kMost];
-    double terms[ShellSpans::kMost][LegendreTable::kCount];
+    SweepFlux sums[SweepSpans::kMost];
+    double terms[SweepSpans::kMost][LegendreTable::kCount];
     for (int k = 0; k < LegendreTable::kCount; ++k) {
       const double w = w0 + (w1 - w0) * OuterRule::kNodes[k];
       const double u = middle - half * std::cos(w);
-      const ShellSpans spans = spans_at(u);
+      const SweepSpans spans = spans_at(u);
       if (failed_) return;
       if (!alike(spans, pattern)) return look_again({u, spans}, {middle, pattern});
       const double weight = (w1 - w0) * OuterRule::kWeights[k] * half * std::sin(w);
       for (int i = 0; i < spans.count; ++i) {
-        ShellFlux on_curve;
+        SweepFlux on_curve;
         add_span(spans.span[i], u, weight, last_stretch().first + i, on_curve);
         terms[i][k] = on_curve.moment.trace() / 3.0;
         sums[i] += on_curve;
@@ -307,7 +307,7 @@ class FaceSweep {
       return;
     }
     for (int i = 0; i < pattern.count; ++i) {
-      ShellStrip& strip = surface_.strips[last_stretch().first + i];
+      SweepStrip& strip = surface_.strips[last_stretch().first + i];
       strip.flux += sums[i];
       strip.error += legendre_error(terms[i]);
     }
@@ -315,7 +315,7 @@ class FaceSweep {
 
   // Where faces touch, rounding decides which of them a curve ends at; then the number of stretches
   // must do.
-  bool alike(const ShellSpans& spans, const ShellSpans& pattern) const {
+  bool alike(const SweepSpans& spans, const SweepSpans& pattern) const {
     if (round_ < kStrictRounds) return spans.same_as(pattern);
     if (spans.count != pattern.count) return false;
     for (int i = 0; i < spans.count; ++i) {
@@ -325,10 +325,10 @@ class FaceSweep {
     return true;
   }
 
-  const ShellStretch& last_stretch() const { return patch_.stretches.back(); }
+  const SweepStretch& last_stretch() const { return patch_.stretches.back(); }
 
-  void add_span(const ShellSpans::Span& span, double u, double weight, int strip, ShellFlux& sum) {
-    const ShellCurve curve = family_.curve(u);
+  void add_span(const SweepSpans::Span& span, double u, double weight, int strip, SweepFlux& sum) {
+    const FaceCurve curve = family_.curve(u);
     const double low = span.low.t, length = span.high.t - low;
     const auto add = [&](double t, double share, bool place) {
       const Vec3 x = curve.at(t);
@@ -365,36 +365,36 @@ class FaceSweep {
     }
   }
 
-  const ShellSolids& solids_;
+  const SweepSolids& solids_;
   const int face_;
-  const ShellFamily& family_;
+  const CurveFamily& family_;
   const double target_, range_;
-  ShellPatchScratch& s_;
-  ShellPatch& patch_;
-  ShellSurface& surface_;
+  SweepPatchScratch& s_;
+  SweepPatch& patch_;
+  SweepSurface& surface_;
   int curves_ = 0, round_ = 0;
   bool again_ = false, failed_ = false;
 };
 
 }  // namespace
 
-void ShellSurface::clear() {
+void SweepSurface::clear() {
   strips.clear();
   places.clear();
   tips.clear();
 }
 
-void ShellSurface::append(const ShellSurface& part) {
+void SweepSurface::append(const SweepSurface& part) {
   const auto base = static_cast<int>(strips.size());
   strips.insert(strips.end(), part.strips.begin(), part.strips.end());
-  for (const ShellPlace& place : part.places) {
+  for (const SweepPlace& place : part.places) {
     places.push_back({place.x, place.n, base + place.strip});
   }
-  for (const ShellTip& tip : part.tips) tips.push_back({tip.x, base + tip.strip});
+  for (const SweepTip& tip : part.tips) tips.push_back({tip.x, base + tip.strip});
 }
 
-bool sweep_face(const ShellSolids& solids, int face, const ShellFamily& family, double target,
-                ShellPatchScratch& scratch, ShellPatch& patch) {
+bool sweep_face(const SweepSolids& solids, int face, const CurveFamily& family, double target,
+                SweepPatchScratch& scratch, SweepPatch& patch) {
   return FaceSweep(solids, face, family, target, scratch, patch).run();
 }
 

@@ -7,7 +7,7 @@
 namespace volcontact {
 namespace {
 
-using Kind = ShellFace::Kind;
+using Kind = SweepFace::Kind;
 
 constexpr double kSameSurface = 1e-11;  // of directions, and of places per size of the box
 
@@ -19,7 +19,7 @@ Kind kind_of(const RoundFace& round) {
 enum class Where { kWithin, kBeyond, kThrough };
 
 // Where a box about the origin lies, of a torus: from the distance of its middle.
-Where place_of_torus(const ShellFace& face, const Vec3& half) {
+Where place_of_torus(const SweepFace& face, const Vec3& half) {
   const Vec3 d = -face.round.center;
   const double z = face.normal.dot(d), rho = (d - z * face.normal).norm();
   const double distance = std::hypot(rho - face.major, z) - face.minor, reach = half.norm();
@@ -28,7 +28,7 @@ Where place_of_torus(const ShellFace& face, const Vec3& half) {
 
 // The same of the convex inside of a face: a box is within when its corners are, and beyond when a
 // tangent plane says so.
-Where place_of(const ShellFace& face, const Vec3& half) {
+Where place_of(const SweepFace& face, const Vec3& half) {
   if (face.kind == Kind::kTorus) return place_of_torus(face, half);
   double most = -kInfinity, least = kInfinity;
   if (face.kind == Kind::kPlane) {
@@ -54,7 +54,7 @@ Where place_of(const ShellFace& face, const Vec3& half) {
 
 }  // namespace
 
-double ShellFace::value(const Vec3& x) const {
+double SweepFace::value(const Vec3& x) const {
   if (kind == Kind::kPlane) return normal.dot(x) - offset;
   if (kind != Kind::kTorus) return round(x);
   const Vec3 d = x - round.center;
@@ -62,7 +62,7 @@ double ShellFace::value(const Vec3& x) const {
   return (rho - major) * (rho - major) + (z - minor) * (z + minor);
 }
 
-bool ShellSolids::read(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
+bool SweepSolids::read(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
                        const Vec3& box) {
   faces.clear();
   parts.clear();
@@ -75,7 +75,7 @@ bool ShellSolids::read(const Shape& a, const Pose& X_WA, const Shape& b, const P
   return true;
 }
 
-bool ShellSolids::read_solid(const Shape& shape, const Pose& X_WS, Owner owner) {
+bool SweepSolids::read_solid(const Shape& shape, const Pose& X_WS, Owner owner) {
   std::vector<Step>& steps = steps_[index(owner)];
   return std::visit(
       [&](const auto& solid) {
@@ -110,7 +110,7 @@ bool ShellSolids::read_solid(const Shape& shape, const Pose& X_WS, Owner owner) 
       shape);
 }
 
-bool ShellSolids::read_member(const SimpleShape& shape, const Pose& X_WM, Owner owner) {
+bool SweepSolids::read_member(const SimpleShape& shape, const Pose& X_WM, Owner owner) {
   const std::size_t before = parts.size();
   std::visit([&](const auto& solid) { add_parts(solid, X_WM, owner); }, shape);
   if (parts.size() > kMostParts) return false;
@@ -121,23 +121,23 @@ bool ShellSolids::read_member(const SimpleShape& shape, const Pose& X_WM, Owner 
 }
 
 template <typename S>
-void ShellSolids::add_parts(const S& solid, const Pose& X_WM, Owner owner) {
+void SweepSolids::add_parts(const S& solid, const Pose& X_WM, Owner owner) {
   const auto first = static_cast<int>(faces.size());
-  const auto add = [&](Kind kind) -> ShellFace& {
-    ShellFace& face = faces.emplace_back();
+  const auto add = [&](Kind kind) -> SweepFace& {
+    SweepFace& face = faces.emplace_back();
     face.kind = kind;
     face.owner = owner;
     face.smooth = std::is_same_v<S, Capsule> ? -1 - first : static_cast<int>(faces.size());
     return face;
   };
   const auto add_plane = [&](const Vec3& normal, double offset, bool seam) {
-    ShellFace& face = add(Kind::kPlane);
+    SweepFace& face = add(Kind::kPlane);
     face.normal = normal;
     face.offset = offset;
     face.seam = seam;
   };
   if constexpr (std::is_same_v<S, Torus>) {
-    ShellFace& face = add(Kind::kTorus);
+    SweepFace& face = add(Kind::kTorus);
     face.normal = X_WM.rotation.col(2);
     face.round.center = X_WM.translation;
     face.major = solid.major_radius();
@@ -170,16 +170,16 @@ void ShellSolids::add_parts(const S& solid, const Pose& X_WM, Owner owner) {
   }
 }
 
-void ShellSolids::end_part(int first, Owner owner) {
+void SweepSolids::end_part(int first, Owner owner) {
   parts.push_back({first, static_cast<int>(faces.size()), owner});
 }
 
 // Drops faces that hold all of the box, and parts that hold all of it or nothing.
-void ShellSolids::prune() {
+void SweepSolids::prune() {
   std::size_t kept = 0;
   std::uint64_t dropped = 0, within = 0;
   for (std::size_t p = 0; p < parts.size(); ++p) {
-    ShellPart& part = parts[p];
+    SweepPart& part = parts[p];
     const auto begin = static_cast<int>(kept);
     bool beyond = false;
     for (int f = part.first; f < part.last && !beyond; ++f) {
@@ -198,7 +198,7 @@ void ShellSolids::prune() {
   drop_parts(dropped, within);
 }
 
-void ShellSolids::drop_parts(std::uint64_t dropped, std::uint64_t within) {
+void SweepSolids::drop_parts(std::uint64_t dropped, std::uint64_t within) {
   const auto count = static_cast<int>(parts.size());
   for (auto& steps : steps_) {
     for (Step& step : steps) {
@@ -218,10 +218,10 @@ void ShellSolids::drop_parts(std::uint64_t dropped, std::uint64_t within) {
   parts.resize(next);
 }
 
-void ShellSolids::fill_table(Owner owner) {
+void SweepSolids::fill_table(Owner owner) {
   constexpr int kMost = 6;  // 64 answers
   Table& table = tables_[index(owner)];
-  const auto mine = [owner](const ShellPart& part) { return part.owner == owner; };
+  const auto mine = [owner](const SweepPart& part) { return part.owner == owner; };
   const auto count = static_cast<int>(std::count_if(parts.begin(), parts.end(), mine));
   table = Table{};
   if (count > kMost) return;
@@ -234,7 +234,7 @@ void ShellSolids::fill_table(Owner owner) {
   }
 }
 
-void ShellSolids::find_twins() {
+void SweepSolids::find_twins() {
   for (std::size_t i = 0; i < faces.size(); ++i) {
     faces[i].twin = static_cast<int>(i);
     faces[i].side = 1;
@@ -249,7 +249,7 @@ void ShellSolids::find_twins() {
   }
 }
 
-bool ShellSolids::same_surface(const ShellFace& one, const ShellFace& other, int& side) const {
+bool SweepSolids::same_surface(const SweepFace& one, const SweepFace& other, int& side) const {
   if (one.kind != other.kind) return false;
   const double size = half.norm();
   if (one.kind == Kind::kPlane) {
@@ -278,7 +278,7 @@ bool ShellSolids::same_surface(const ShellFace& one, const ShellFace& other, int
   return (h * apart).norm() <= kSameSurface * size * unit;
 }
 
-bool ShellSolids::evaluate(Owner owner, std::uint64_t in_parts) const {
+bool SweepSolids::evaluate(Owner owner, std::uint64_t in_parts) const {
   std::uint64_t stack = 0;
   for (const Step& step : steps_[index(owner)]) {
     if (step.join == Join::kLeaf) {

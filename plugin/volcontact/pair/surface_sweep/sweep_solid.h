@@ -10,7 +10,7 @@
 namespace volcontact {
 
 /// A face of a member of a solid, in the frame W of the window.
-struct ShellFace {
+struct SweepFace {
   enum class Kind : int { kPlane = 0, kBall, kTube, kCone, kTorus };
   Kind kind = Kind::kPlane;
   Owner owner = Owner::kA;
@@ -28,19 +28,19 @@ struct ShellFace {
 };
 
 /// An intersection of faces.
-struct ShellPart {
+struct SweepPart {
   int first = 0, last = 0;  ///< of its faces
   Owner owner = Owner::kA;
 };
 
 /// Two solids as formulas over convex parts (and tori), in the frame W, with all that is the same
 /// throughout a box about the origin taken out.
-class ShellSolids {
+class SweepSolids {
  public:
   static constexpr int kMostParts = 64;
 
-  std::vector<ShellFace> faces;
-  std::vector<ShellPart> parts;  ///< A's, then B's; only those with a face in the box
+  std::vector<SweepFace> faces;
+  std::vector<SweepPart> parts;  ///< A's, then B's; only those with a face in the box
   Vec3 half;                     ///< of the box
 
   /// Reads two solids; false for meshes, signed distances, and more than kMostParts.
@@ -77,7 +77,7 @@ class ShellSolids {
   void fill_table(Owner owner);
   bool evaluate(Owner owner, std::uint64_t in_parts) const;
   void find_twins();
-  bool same_surface(const ShellFace& one, const ShellFace& other, int& side) const;
+  bool same_surface(const SweepFace& one, const SweepFace& other, int& side) const;
 
   std::vector<Step> steps_[2];
   Table tables_[2];

@@ -49,7 +49,7 @@ namespace {
 
 class ArcFinder {
  public:
-  ArcFinder(const Circle& circle, const RingSize& ring, ArcSearch search, CircleArcs& arcs)
+  ArcFinder(const Circle& circle, const TorusSize& ring, ArcSearch search, CircleArcs& arcs)
       : ring_(ring), search_(search), arcs_(arcs) {
     for (int i = 0; i < 3; ++i) {
       frame_.center[i] = circle.center[i];
@@ -239,7 +239,7 @@ class ArcFinder {
     }
   }
 
-  const RingSize& ring_;
+  const TorusSize& ring_;
   const ArcSearch search_;
   CircleArcs& arcs_;
   CircleFrame frame_;
@@ -250,7 +250,7 @@ class ArcFinder {
 
 }  // namespace
 
-void find_arcs(const Circle& circle, const RingSize& ring, ArcSearch search, bool fine,
+void find_arcs(const Circle& circle, const TorusSize& ring, ArcSearch search, bool fine,
                CircleArcs& arcs) {
   ArcFinder finder(circle, ring, search, arcs);
   static const SimdPath path = best_simd_path();

@@ -22,8 +22,8 @@ enum class ArcSearch { kCount, kArcs, kWithMinima };  ///< kCount: not where the
 /// Arcs of a circle in a ring. Places closer to the surface of the ring than rounding are on
 /// neither side: a circle that only touches has no arc, and one that leaves no more than that has
 /// no gap. `fine` looks at twice as many places; for
-/// the minima there are three times as many. docs/theory.md, "Two rings".
-void find_arcs(const Circle& circle, const RingSize& ring, ArcSearch search, bool fine,
+/// the minima there are three times as many. docs/theory.md, "Two tori".
+void find_arcs(const Circle& circle, const TorusSize& ring, ArcSearch search, bool fine,
                CircleArcs& arcs);
 
 }  // namespace volcontact

@@ -16,11 +16,11 @@ constexpr double kBeside = 1e-5;  // of a range: there the change must be seen
 
 class EventSearch {
  public:
-  EventSearch(const RingSize& ring, const Pose& X, const RingSize& other, bool fine,
+  EventSearch(const TorusSize& ring, const Pose& X, const TorusSize& other, bool fine,
               std::vector<double>& events)
       : ring_(ring), X_(X), other_(other), fine_(fine), events_(events) {}
 
-  using Sample = RingPatchScratch::Sample;
+  using Sample = TorusPatchScratch::Sample;
 
   void between(const Sample& a, const Sample& b, int halvings) {
     if (a.count == b.count) return;
@@ -108,7 +108,7 @@ class EventSearch {
         const double along = bend * (w.x() * x.x() + w.y() * x.y());
         return {share * w.x() + along * x.x(), share * w.y() + along * x.y(), w.z()};
       };
-      const double g = 0.5 * ring_value(other_, x);
+      const double g = 0.5 * torus_value(other_, x);
       const double g_t = gradient.dot(x_t), g_a = gradient.dot(x_a);
       const Vec3 bent_t = bent(x_t);
       const double g_tt = x_t.dot(bent_t) + gradient.dot(x_tt),
@@ -126,9 +126,9 @@ class EventSearch {
     return false;
   }
 
-  const RingSize& ring_;
+  const TorusSize& ring_;
   const Pose& X_;
-  const RingSize& other_;
+  const TorusSize& other_;
   bool fine_;
   std::vector<double>& events_;
   double scale_ = 0.0;
@@ -137,9 +137,9 @@ class EventSearch {
 
 }  // namespace
 
-void find_ring_events(const RingSize& ring, const Pose& X, const RingSize& other, bool fine,
-                      const std::vector<RingPatchScratch::Sample>& samples,
-                      std::vector<double>& events) {
+void find_torus_events(const TorusSize& ring, const Pose& X, const TorusSize& other, bool fine,
+                       const std::vector<TorusPatchScratch::Sample>& samples,
+                       std::vector<double>& events) {
   events.clear();
   EventSearch search(ring, X, other, fine, events);
   for (std::size_t i = 0; i + 1 < samples.size(); ++i) {

@@ -15,8 +15,8 @@ inline int arc_count(const CircleArcs& arcs) { return arcs.whole ? kWholeCircle 
 /// Angles at which the section circles of `ring` change the number of their arcs in `other`, in
 /// order [rad]: between samples that differ, by halving and, where one arc or gap comes or goes, by
 /// Newton's method. `samples` stand in order.
-void find_ring_events(const RingSize& ring, const Pose& X, const RingSize& other, bool fine,
-                      const std::vector<RingPatchScratch::Sample>& samples,
-                      std::vector<double>& events);
+void find_torus_events(const TorusSize& ring, const Pose& X, const TorusSize& other, bool fine,
+                       const std::vector<TorusPatchScratch::Sample>& samples,
+                       std::vector<double>& events);
 
 }  // namespace volcontact

@@ -6,7 +6,7 @@
 namespace volcontact {
 
 /// Sums over a part of the surface of an overlap, about a place of the region it belongs to.
-struct RingFlux {
+struct TorusFlux {
   Vec3 volume = Vec3::Zero();  ///< int x_i n_i dS, each of them V over a closed surface
   Vec3 first = Vec3::Zero();   ///< int x dV times 4
   Mat3 second = Mat3::Zero();  ///< int x x^T dV times 5
@@ -40,7 +40,7 @@ double integral_from_origin(Function&& f) {
 
 /// A third of the flux of x - origin through the surface of a ring beside an arc of one of its
 /// section circles, per angle about its axis.
-inline double arc_flux(const RingSize& ring, const Circle& circle, const Vec3& origin, double low,
+inline double arc_flux(const TorusSize& ring, const Circle& circle, const Vec3& origin, double low,
                        double high) {
   const Vec3 way = circle.center - origin;
   const double a = circle.u.dot(way), b = circle.v.dot(way);

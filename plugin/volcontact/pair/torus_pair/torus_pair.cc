@@ -21,10 +21,10 @@ constexpr double kOnlyTouch = 1e-9;  // depth per radius of two rings that have 
 constexpr double kOneHint = 0.02;    // of angles next to each other: one is enough [rad]
 constexpr double kIdentical = 1e-7;  // of a radius
 
-class RingPairRun {
+class TorusPairRun {
  public:
-  RingPairRun(const Torus& a, const Torus& b, const Pose& X_AB, const InterferenceOptions& options,
-              RingPairScratch& scratch, Interference& out)
+  TorusPairRun(const Torus& a, const Torus& b, const Pose& X_AB, const InterferenceOptions& options,
+               TorusPairScratch& scratch, Interference& out)
       : tori_{&a, &b},
         size_{{a.major_radius(), a.minor_radius()}, {b.major_radius(), b.minor_radius()}},
         X_AB_(X_AB),
@@ -49,7 +49,7 @@ class RingPairRun {
     find_patch(size_[1], X_AB_, size_[0], effort, s_.patch[1]);
     if (patch(0).incomplete || patch(1).incomplete) return false;
     if (patch(0).arcs.empty() || patch(1).arcs.empty()) return settle_contained();
-    join_strands();
+    join_chains();
     set_regions();
     integrate();
     set_depths();
@@ -59,9 +59,9 @@ class RingPairRun {
   }
 
  private:
-  using Region = RingPairScratch::Region;
+  using Region = TorusPairScratch::Region;
 
-  const RingPatch& patch(int side) const { return s_.patch[side].patch; }
+  const TorusPatch& patch(int side) const { return s_.patch[side].patch; }
   const Pose& pose(int side) const { return side == 0 ? kHere : X_AB_; }
   Circle circle(int side, double angle) const {
     return section_circle(size_[side], pose(side), angle);
@@ -72,10 +72,10 @@ class RingPairRun {
   void set_hints(int side) {
     std::vector<double>& hints = s_.patch[side].hints;
     hints.clear();
-    for (const RingPatch::Slice& slice : patch(1 - side).slices) {
+    for (const TorusPatch::Slice& slice : patch(1 - side).slices) {
       const Circle there = circle(1 - side, slice.angle);
       for (int i = slice.first; i < slice.last; ++i) {
-        const RingPatch::Arc& arc = patch(1 - side).arcs[i];
+        const TorusPatch::Arc& arc = patch(1 - side).arcs[i];
         if (whole(arc)) continue;
         for (double end : {arc.low, arc.high}) {
           const Vec3 x = side == 0 ? there.at(end) : X_BA_ * there.at(end);
@@ -114,7 +114,7 @@ class RingPairRun {
     if (!in_a && !in_b) return deepest() < kOnlyTouch * std::min(size_[0].minor, size_[1].minor);
     const int side = in_a ? 1 : 0;
     double turn = 0.0;
-    for (const RingPatch::Slice& slice : patch(side).slices) {
+    for (const TorusPatch::Slice& slice : patch(side).slices) {
       for (int i = slice.first; i < slice.last; ++i) {
         turn += slice.weight * (patch(side).arcs[i].high - patch(side).arcs[i].low);
       }
@@ -139,46 +139,46 @@ class RingPairRun {
     return depth;
   }
 
-  int root(int strand) const { return root_of(s_.region_of, strand); }
+  int root(int chain) const { return root_of(s_.region_of, chain); }
   void join(int one, int other) { join_sets(s_.region_of, one, other); }
-  int strand(int side, const RingPatch::Arc& arc) const {
-    return arc.strand + (side == 0 ? 0 : patch(0).strands);
+  int chain(int side, const TorusPatch::Arc& arc) const {
+    return arc.chain + (side == 0 ? 0 : patch(0).chains);
   }
 
-  // Parts of either surface by their strands, and parts of both where arcs end in one place.
-  void join_strands() {
-    make_sets(s_.region_of, static_cast<std::size_t>(patch(0).strands + patch(1).strands));
+  // Parts of either surface by their chains, and parts of both where arcs end in one place.
+  void join_chains() {
+    make_sets(s_.region_of, static_cast<std::size_t>(patch(0).chains + patch(1).chains));
     for (int side = 0; side < 2; ++side) {
-      const int base = side == 0 ? 0 : patch(0).strands;
-      for (const RingPatch::Joint& j : patch(side).joints) join(base + j.one, base + j.other);
+      const int base = side == 0 ? 0 : patch(0).chains;
+      for (const TorusPatch::Joint& j : patch(side).joints) join(base + j.one, base + j.other);
     }
     if (parts(0) == 1 && parts(1) == 1) {
-      join(0, patch(0).strands);
+      join(0, patch(0).chains);
       return;
     }
     for (int side = 0; side < 2; ++side) {
-      const RingPatch& p = patch(side);
+      const TorusPatch& p = patch(side);
       for (std::size_t k = 0; k < p.slices.size(); ++k) {
         for (int i = p.slices[k].first; i < p.slices[k].last; ++i) {
-          if (in_middle_of_strand(p, k, i)) glue(side, p.slices[k], p.arcs[i]);
+          if (in_middle_of_chain(p, k, i)) glue(side, p.slices[k], p.arcs[i]);
         }
       }
     }
   }
 
   int parts(int side) const {
-    const int base = side == 0 ? 0 : patch(0).strands;
+    const int base = side == 0 ? 0 : patch(0).chains;
     int count = 0;
-    for (int i = 0; i < patch(side).strands; ++i) count += root(base + i) == base + i;
+    for (int i = 0; i < patch(side).chains; ++i) count += root(base + i) == base + i;
     return count;
   }
 
-  // Of the arcs of a strand, which stand in a row, the one in the middle.
-  static bool in_middle_of_strand(const RingPatch& p, std::size_t slice, int arc) {
+  // Of the arcs of a chain, which stand in a row, the one in the middle.
+  static bool in_middle_of_chain(const TorusPatch& p, std::size_t slice, int arc) {
     std::size_t first = slice, last = slice;
     const auto holds = [&](std::size_t k) {
       for (int i = p.slices[k].first; i < p.slices[k].last; ++i) {
-        if (p.arcs[i].strand == p.arcs[arc].strand) return true;
+        if (p.arcs[i].chain == p.arcs[arc].chain) return true;
       }
       return false;
     };
@@ -188,39 +188,39 @@ class RingPairRun {
   }
 
   // To the arcs of the other surface that end nearest to the ends of this one.
-  void glue(int side, const RingPatch::Slice& slice, const RingPatch::Arc& arc) {
+  void glue(int side, const TorusPatch::Slice& slice, const TorusPatch::Arc& arc) {
     if (whole(arc)) return;
     const Circle here = circle(side, slice.angle);
-    const RingPatch& others = patch(1 - side);
+    const TorusPatch& others = patch(1 - side);
     for (double end : {arc.low, arc.high}) {
       const Vec3 x = here.at(end);
       double least = kInfinity;
       int nearest = -1;
-      for (const RingPatch::Slice& k : others.slices) {
+      for (const TorusPatch::Slice& k : others.slices) {
         const Circle there = circle(1 - side, k.angle);
         if (std::pow(std::max(0.0, (there.center - x).norm() - there.radius), 2) > least) continue;
         for (int i = k.first; i < k.last; ++i) {
-          const RingPatch::Arc& other = others.arcs[i];
+          const TorusPatch::Arc& other = others.arcs[i];
           if (whole(other)) continue;
           for (double other_end : {other.low, other.high}) {
             const double way = (there.at(other_end) - x).squaredNorm();
             if (way < least) {
               least = way;
-              nearest = strand(1 - side, other);
+              nearest = chain(1 - side, other);
             }
           }
         }
       }
-      if (nearest >= 0) join(strand(side, arc), nearest);
+      if (nearest >= 0) join(chain(side, arc), nearest);
     }
   }
 
-  static bool whole(const RingPatch::Arc& arc) { return arc.high - arc.low >= 2.0 * kPi; }
+  static bool whole(const TorusPatch::Arc& arc) { return arc.high - arc.low >= 2.0 * kPi; }
 
-  Region& region(int side, const RingPatch::Arc& arc) {
-    const int at = root(strand(side, arc));
+  Region& region(int side, const TorusPatch::Arc& arc) {
+    const int at = root(chain(side, arc));
     for (Region& r : s_.regions) {
-      if (r.strand == at) return r;
+      if (r.chain == at) return r;
     }
     s_.regions.push_back({at, Vec3::Zero(), 0.0, 0.0, 0.0, {}});
     return s_.regions.back();
@@ -229,10 +229,10 @@ class RingPairRun {
   template <typename Use>
   void each_arc(Use&& use) {
     for (int side = 0; side < 2; ++side) {
-      for (const RingPatch::Slice& slice : patch(side).slices) {
+      for (const TorusPatch::Slice& slice : patch(side).slices) {
         const Circle here = circle(side, slice.angle);
         for (int i = slice.first; i < slice.last; ++i) {
-          const RingPatch::Arc& arc = patch(side).arcs[i];
+          const TorusPatch::Arc& arc = patch(side).arcs[i];
           use(side, slice, here, arc, region(side, arc));
         }
       }
@@ -241,8 +241,8 @@ class RingPairRun {
 
   void set_regions() {
     s_.regions.clear();
-    each_arc([&](int, const RingPatch::Slice& slice, const Circle& here, const RingPatch::Arc& arc,
-                 Region& r) {
+    each_arc([&](int, const TorusPatch::Slice& slice, const Circle& here,
+                 const TorusPatch::Arc& arc, Region& r) {
       const double weight = slice.weight * (arc.high - arc.low);
       r.origin += weight * (whole(arc) ? here.center : here.at(0.5 * (arc.low + arc.high)));
       r.weight += weight;
@@ -251,8 +251,8 @@ class RingPairRun {
   }
 
   void integrate() {
-    each_arc([&](int side, const RingPatch::Slice& slice, const Circle& here,
-                 const RingPatch::Arc& arc, Region& r) {
+    each_arc([&](int side, const TorusPatch::Slice& slice, const Circle& here,
+                 const TorusPatch::Arc& arc, Region& r) {
       const double width = arc.high - arc.low, weight = slice.weight * size_[side].minor;
       if (whole(arc)) {
         for (int i = 0; i < kWholeSteps; ++i) {
@@ -293,8 +293,8 @@ class RingPairRun {
   double mean_depth(const Vec3& origin, const Vec3& x) const {
     const Vec3 origin_B = X_BA_ * origin, x_B = X_BA_.rotation * x;
     return integral_from_origin([&](double s) {
-      return -0.25 * (ring_value(size_[0], origin + s * x) / size_[0].minor +
-                      ring_value(size_[1], origin_B + s * x_B) / size_[1].minor);
+      return -0.25 * (torus_value(size_[0], origin + s * x) / size_[0].minor +
+                      torus_value(size_[1], origin_B + s * x_B) / size_[1].minor);
     });
   }
 
@@ -302,13 +302,13 @@ class RingPairRun {
   void set_depths() {
     for (int side = 0; side < 2; ++side) {
       for (double angle : patch(side).nearest) {
-        const RingTouch touch =
+        const TorusTouch touch =
             touch_of(size_[side], side == 0 ? X_BA_ : X_AB_, size_[1 - side], angle);
         const Vec3 x = side == 0 ? X_AB_ * touch.middle : touch.middle;
         give_depth(x, touch.depth);
       }
     }
-    each_arc([&](int side, const RingPatch::Slice& slice, const Circle&, const RingPatch::Arc&,
+    each_arc([&](int side, const TorusPatch::Slice& slice, const Circle&, const TorusPatch::Arc&,
                  Region& r) {
       if (side == 1 || r.depth > 0.0) return;
       r.depth = touch_of(size_[0], X_BA_, size_[1], slice.angle).depth;
@@ -317,7 +317,7 @@ class RingPairRun {
   void give_depth(const Vec3& x, double depth) {
     double least = kInfinity;
     Region* nearest = nullptr;
-    each_arc([&](int, const RingPatch::Slice&, const Circle& here, const RingPatch::Arc& arc,
+    each_arc([&](int, const TorusPatch::Slice&, const Circle& here, const TorusPatch::Arc& arc,
                  Region& r) {
       const double way = (here.at(0.5 * (arc.low + arc.high)) - x).squaredNorm();
       if (way < least) {
@@ -329,7 +329,7 @@ class RingPairRun {
   }
 
   void add_site(const Region& r) {
-    const RingFlux &a = r.flux[0], &b = r.flux[1];
+    const TorusFlux &a = r.flux[0], &b = r.flux[1];
     const Vec3 volume = a.volume + b.volume;
     MomentSum sum;
     sum.volume = volume.sum() / 3.0;
@@ -360,22 +360,23 @@ class RingPairRun {
   static inline const Pose kHere{};
 
   const Torus* tori_[2];
-  RingSize size_[2];
+  TorusSize size_[2];
   const Pose& X_AB_;
   const Pose X_BA_;
   const InterferenceOptions& options_;
-  RingPairScratch& s_;
+  TorusPairScratch& s_;
   Interference& out_;
 };
 
 }  // namespace
 
-bool ring_pair(const Torus& a, const Torus& b, const Pose& X_AB, const InterferenceOptions& options,
-               RingPairScratch& scratch, Interference& out) noexcept {
+bool torus_pair(const Torus& a, const Torus& b, const Pose& X_AB,
+                const InterferenceOptions& options, TorusPairScratch& scratch,
+                Interference& out) noexcept {
   out.sites.clear();
   out.total = VolumeMetrics{};
   if (!(a.own_metrics().volume > 0.0) || !(b.own_metrics().volume > 0.0)) return true;
-  RingPairRun run(a, b, X_AB, options, scratch, out);
+  TorusPairRun run(a, b, X_AB, options, scratch, out);
   return run.run(0) || run.run(1) || run.run(2);
 }
 

@@ -9,24 +9,25 @@
 namespace volcontact {
 
 /// Memory of the engine for two rings.
-struct RingPairScratch {
-  RingPatchScratch patch[2];   ///< of A and B
-  std::vector<int> region_of;  ///< by strand, those of B after those of A
+struct TorusPairScratch {
+  TorusPatchScratch patch[2];  ///< of A and B
+  std::vector<int> region_of;  ///< by chain, those of B after those of A
   struct Region {
-    int strand;   ///< the first one
+    int chain;    ///< the first one
     Vec3 origin;  ///< near its middle
     double weight;
     double reach;  ///< farthest place of its surface
     double depth;
-    RingFlux flux[2];
+    TorusFlux flux[2];
   };
   std::vector<Region> regions;
 };
 
 /// Interference of two rings from the surface of their overlap: metrics in A's frame; every
 /// connected region is a site. False when the surface found is not closed well enough.
-/// docs/theory.md, "Two rings".
-bool ring_pair(const Torus& a, const Torus& b, const Pose& X_AB, const InterferenceOptions& options,
-               RingPairScratch& scratch, Interference& out) noexcept;
+/// docs/theory.md, "Two tori".
+bool torus_pair(const Torus& a, const Torus& b, const Pose& X_AB,
+                const InterferenceOptions& options, TorusPairScratch& scratch,
+                Interference& out) noexcept;
 
 }  // namespace volcontact

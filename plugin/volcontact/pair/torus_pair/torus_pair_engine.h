@@ -9,15 +9,16 @@ namespace volcontact {
 /// Two tori.
 struct TorusPair : EngineBase {
   static constexpr Engine kWord = Engine::kLines;
-  using Scratch = TypeList<RingPairScratch>;
+  using Scratch = TypeList<TorusPairScratch>;
 
   template <typename A, typename B>
   static constexpr bool serves() {
     return std::is_same_v<A, Torus> && std::is_same_v<B, Torus>;
   }
   template <typename A, typename B>
-  static Answer run(const Question<A, B>& q, RingPairScratch& scratch, Interference& out) noexcept {
-    return answer(ring_pair(q.a, q.b, q.X_AB, q.options, scratch, out));
+  static Answer run(const Question<A, B>& q, TorusPairScratch& scratch,
+                    Interference& out) noexcept {
+    return answer(torus_pair(q.a, q.b, q.X_AB, q.options, scratch, out));
   }
 };
 

@@ -24,8 +24,8 @@ constexpr int kMostRetries = 6;  // when a slice shows a change that no sample h
 
 class PatchSearch {
  public:
-  PatchSearch(const RingSize& ring, const Pose& X, const RingSize& other, PatchEffort effort,
-              RingPatchScratch& scratch)
+  PatchSearch(const TorusSize& ring, const Pose& X, const TorusSize& other, PatchEffort effort,
+              TorusPatchScratch& scratch)
       : ring_(ring), X_(X), other_(other), effort_(effort), s_(scratch), out_(scratch.patch) {}
 
   void run() {
@@ -33,7 +33,7 @@ class PatchSearch {
     out_.arcs.clear();
     out_.joints.clear();
     out_.nearest.clear();
-    out_.strands = 0;
+    out_.chains = 0;
     out_.incomplete = false;
     out_.error = out_.volume_scale = 0.0;
     // A ring is a union of balls about its circle: where they meet the other ring.
@@ -48,7 +48,7 @@ class PatchSearch {
   }
 
  private:
-  using Sample = RingPatchScratch::Sample;
+  using Sample = TorusPatchScratch::Sample;
 
   CircleArcs arcs_at(double angle) const {
     CircleArcs arcs;
@@ -89,14 +89,14 @@ class PatchSearch {
     slices_ = out_.slices.size();
     arcs_ = out_.arcs.size();
     joints_ = out_.joints.size();
-    strands_ = out_.strands;
+    chains_ = out_.chains;
     error_ = out_.error;
   }
   void back() {
     out_.slices.resize(slices_);
     out_.arcs.resize(arcs_);
     out_.joints.resize(joints_);
-    out_.strands = strands_;
+    out_.chains = chains_;
     out_.error = error_;
   }
 
@@ -104,7 +104,7 @@ class PatchSearch {
   bool take_samples(bool whole) {
     std::sort(s_.samples.begin(), s_.samples.end(),
               [](const Sample& a, const Sample& b) { return a.angle < b.angle; });
-    find_ring_events(ring_, X_, other_, effort_.fine, s_.samples, s_.events);
+    find_torus_events(ring_, X_, other_, effort_.fine, s_.samples, s_.events);
     merge_events();
     if (whole && s_.events.empty()) {
       if (s_.samples[0].count == 0) return true;
@@ -162,8 +162,8 @@ class PatchSearch {
     range_to_ = to;
     lever_ = ring_.minor + 0.5 * (to - from) * ring_.major;
     set_origin(0.5 * (from + to));
-    strand_ = out_.strands;
-    out_.strands += std::max(count, 1);
+    chain_ = out_.chains;
+    out_.chains += std::max(count, 1);
     const int begin = static_cast<int>(out_.slices.size());
     if (ends_in_nothing(to) && last_slice_ < 0 && count == 1) {
       const int taken = take_even();
@@ -266,8 +266,8 @@ class PatchSearch {
     lever_ = ring_.major + ring_.minor;
     range_from_ = -kPi;  // no event near any circle
     range_to_ = 3.0 * kPi;
-    strand_ = out_.strands;
-    out_.strands += std::max(count, 1);
+    chain_ = out_.chains;
+    out_.chains += std::max(count, 1);
     double sum[2] = {0.0, 0.0}, more[2];
     const auto add_steps = [&](int steps, double offset, double* to) {
       to[0] = to[1] = 0.0;
@@ -311,13 +311,13 @@ class PatchSearch {
       s_.samples.push_back({angle, arc_count(arcs)});
       return false;
     }
-    RingPatch::Slice slice{angle, weight, static_cast<int>(out_.arcs.size()), 0};
+    TorusPatch::Slice slice{angle, weight, static_cast<int>(out_.arcs.size()), 0};
     if (arcs.whole) {
-      out_.arcs.push_back({0.0, 2.0 * kPi, strand_});
+      out_.arcs.push_back({0.0, 2.0 * kPi, chain_});
     }
     const int shift = arcs.count > 1 ? shift_to_last(arcs) : 0;
     for (int k = 0; k < arcs.count; ++k) {
-      out_.arcs.push_back({arcs.low[k], arcs.high[k], strand_ + (k + shift) % arcs.count});
+      out_.arcs.push_back({arcs.low[k], arcs.high[k], chain_ + (k + shift) % arcs.count});
     }
     slice.last = static_cast<int>(out_.arcs.size());
     for (int k = slice.first; k < slice.last; ++k) {
@@ -331,14 +331,14 @@ class PatchSearch {
   // By how much the arcs of a slice are turned against those of the slice before.
   int shift_to_last(const CircleArcs& arcs) const {
     if (out_.slices.empty()) return 0;
-    const RingPatch::Slice& last = out_.slices.back();
+    const TorusPatch::Slice& last = out_.slices.back();
     int best = 0;
     double least = kInfinity;
     for (int shift = 0; shift < arcs.count; ++shift) {
       double sum = 0.0;
       for (int k = 0; k < arcs.count; ++k) {
         for (int j = last.first; j < last.last; ++j) {
-          if (out_.arcs[j].strand != strand_ + (k + shift) % arcs.count) continue;
+          if (out_.arcs[j].chain != chain_ + (k + shift) % arcs.count) continue;
           const double way =
               0.5 * (arcs.low[k] + arcs.high[k] - out_.arcs[j].low - out_.arcs[j].high);
           sum += std::abs(std::remainder(way, 2.0 * kPi));
@@ -365,27 +365,27 @@ class PatchSearch {
     origin_ = touch_of(ring_, X_, other_, at).middle;
   }
 
-  // Joins the strands of two slices whose arcs have angles in common.
+  // Joins the chains of two slices whose arcs have angles in common.
   void join(int one, int other) {
-    const RingPatch::Slice &a = out_.slices[one], &b = out_.slices[other];
+    const TorusPatch::Slice &a = out_.slices[one], &b = out_.slices[other];
     for (int i = a.first; i < a.last; ++i) {
       for (int k = b.first; k < b.last; ++k) {
-        const RingPatch::Arc &p = out_.arcs[i], &q = out_.arcs[k];
+        const TorusPatch::Arc &p = out_.arcs[i], &q = out_.arcs[k];
         const double way = std::remainder(0.5 * (p.low + p.high - q.low - q.high), 2.0 * kPi);
         const double sum = 0.5 * (p.high - p.low + q.high - q.low);
-        if (std::abs(way) < sum) out_.joints.push_back({p.strand, q.strand});
+        if (std::abs(way) < sum) out_.joints.push_back({p.chain, q.chain});
       }
     }
   }
 
-  const RingSize& ring_;
+  const TorusSize& ring_;
   const Pose& X_;
-  const RingSize& other_;
+  const TorusSize& other_;
   PatchEffort effort_;
-  RingPatchScratch& s_;
-  RingPatch& out_;
+  TorusPatchScratch& s_;
+  TorusPatch& out_;
   std::size_t slices_ = 0, arcs_ = 0, joints_ = 0;
-  int strands_ = 0, strand_ = 0, last_slice_ = -1;
+  int chains_ = 0, chain_ = 0, last_slice_ = -1;
   double lever_ = 0.0;  // size of a range, from its middle
   double error_ = 0.0, range_from_ = 0.0, range_to_ = 0.0;
   double one_event_ = 0.0;
@@ -396,8 +396,8 @@ class PatchSearch {
 
 }  // namespace
 
-void find_patch(const RingSize& ring, const Pose& X, const RingSize& other, PatchEffort effort,
-                RingPatchScratch& scratch) {
+void find_patch(const TorusSize& ring, const Pose& X, const TorusSize& other, PatchEffort effort,
+                TorusPatchScratch& scratch) {
   PatchSearch(ring, X, other, effort, scratch).run();
 }
 

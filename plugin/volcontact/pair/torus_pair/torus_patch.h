@@ -8,11 +8,11 @@
 namespace volcontact {
 
 /// The part of the surface of one ring that lies in another: arcs of section circles, each for a
-/// share `weight` [rad] of the turn. Arcs with one `strand` are next to each other without a gap.
-struct RingPatch {
+/// share `weight` [rad] of the turn. Arcs with one `chain` are next to each other without a gap.
+struct TorusPatch {
   struct Arc {
     double low, high;
-    int strand;
+    int chain;
   };
   struct Slice {
     double angle, weight;
@@ -20,12 +20,12 @@ struct RingPatch {
   };
   std::vector<Slice> slices;
   std::vector<Arc> arcs;
-  /// Strands that touch where the circles change what they have in common with the ring.
+  /// Chains that touch where the circles change what they have in common with the ring.
   struct Joint {
     int one, other;
   };
   std::vector<Joint> joints;
-  int strands = 0;
+  int chains = 0;
   std::vector<double> nearest;  ///< angles where the two rings are in touch most deeply
   double error = 0.0;           ///< estimate for V of what the slices leave out
   double volume_scale = 0.0;
@@ -34,7 +34,7 @@ struct RingPatch {
 };
 
 /// Memory of the search for a patch.
-struct RingPatchScratch {
+struct TorusPatchScratch {
   struct Sample {
     double angle;
     int count;  ///< of arcs; kWhole for all of a circle
@@ -42,7 +42,7 @@ struct RingPatchScratch {
   std::vector<double> hints;  ///< angles to look at besides
   std::vector<Sample> samples;
   std::vector<double> events;
-  RingPatch patch;
+  TorusPatch patch;
 };
 
 /// How hard to look.
@@ -54,8 +54,8 @@ struct PatchEffort {
 
 /// The patch of the surface of `ring`, posed at X in the frame of `other`, within `other`. Its
 /// slices stand at Gauss nodes between the angles where arcs begin, end, merge and part, which are
-/// square roots for the integrand. docs/theory.md, "Two rings".
-void find_patch(const RingSize& ring, const Pose& X, const RingSize& other, PatchEffort effort,
-                RingPatchScratch& scratch);
+/// square roots for the integrand. docs/theory.md, "Two tori".
+void find_patch(const TorusSize& ring, const Pose& X, const TorusSize& other, PatchEffort effort,
+                TorusPatchScratch& scratch);
 
 }  // namespace volcontact

@@ -20,33 +20,33 @@ struct Circle {
 };
 
 /// The ring about the z axis of all points within `minor` of the circle of radius `major`.
-struct RingSize {
+struct TorusSize {
   double major, minor;
 };
 
 /// q^2 - minor^2, q the distance of x from the circle of the ring: negative inside.
-inline double ring_value(const RingSize& ring, const Vec3& x) {
+inline double torus_value(const TorusSize& ring, const Vec3& x) {
   const double across = std::sqrt(x.x() * x.x() + x.y() * x.y()) - ring.major;
   return across * across + (x.z() - ring.minor) * (x.z() + ring.minor);
 }
 
 /// The circle of a ring's surface in the half-plane at `angle` through its axis, angle zero of it
 /// on the outer side; the ring has the pose X in the frame of the result.
-inline Circle section_circle(const RingSize& ring, const Pose& X, double angle) {
+inline Circle section_circle(const TorusSize& ring, const Pose& X, double angle) {
   const Vec3 out = std::cos(angle) * X.rotation.col(0) + std::sin(angle) * X.rotation.col(1);
   return {X.translation + ring.major * out, out, X.rotation.col(2), ring.minor};
 }
 
 /// What the ball of a ring about its circle at an angle has in common with another ring, on the
 /// line to the circle of that one; negative depth: nothing.
-struct RingTouch {
+struct TorusTouch {
   Vec3 middle;
   double depth;
 };
 
 /// The ring has the pose X in the frame of the other one, and so has the result.
-inline RingTouch touch_of(const RingSize& ring, const Pose& X, const RingSize& other,
-                          double angle) {
+inline TorusTouch touch_of(const TorusSize& ring, const Pose& X, const TorusSize& other,
+                           double angle) {
   const Vec3 c = section_circle(ring, X, angle).center;
   const double rho = std::sqrt(c.x() * c.x() + c.y() * c.y());
   const double scale = rho > 0.0 ? other.major / rho - 1.0 : 0.0;

@@ -10,7 +10,7 @@
 namespace volcontact {
 namespace {
 
-// The faces as the kernel sees them from a point c: plain data, see FanFaces.
+// The faces as the kernel sees them from a point c: plain data, see SectionFaces.
 struct ChordRound {
   double map[9], o[3];  // row by row; image of c
   double sign, value;   // of the last square; what the face's function is at c

@@ -66,7 +66,8 @@ TEST(HalfSpaceTorus, APlaneThatTouchesTheHoleIsWithinTheErrorClaimed) {
   for (int i = 0; i < 40; ++i) {
     const Torus b = random_torus(0.05, 0.9, random);
     const double off = i % 2 ? random.log_uniform(1e-15, 1e-4) : 0.0;
-    const Pose X{tilted_by(kPi / 2, random), Vec3(0.2, 0.1, b.major_radius() - b.minor_radius() + off)};
+    const Pose X{tilted_by(kPi / 2, random),
+                 Vec3(0.2, 0.1, b.major_radius() - b.minor_radius() + off)};
     const VolumeMetrics m = closed_form(HalfSpace(), b, X);
     const double expected = expected_metrics(b, X).volume;
     EXPECT_LE(std::abs(m.volume - expected), m.volume_error + 1e-10 * expected) << i;

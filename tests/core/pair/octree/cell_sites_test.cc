@@ -31,7 +31,7 @@ Sorted sorted(const std::vector<Cell>& cells) {
   SiteScratch scratch;
   s.leaves.resize(cells.size());
   std::iota(s.leaves.begin(), s.leaves.end(), 0);
-  Crew alone;
+  ThreadTeam alone;
   sort_by_site(alone, cells, 1e-12, kRounding, s.leaves, s.ends, scratch);
   return s;
 }

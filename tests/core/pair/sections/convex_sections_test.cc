@@ -330,7 +330,7 @@ TEST(Lines, ASolidInsideAnotherIsContained) {
   EXPECT_EQ(m.area_vector.norm(), 0.0);
 }
 
-// The fan sees nothing in the first of these poses, and the octree answers.
+// The sections sees nothing in the first of these poses, and the octree answers.
 TEST(Lines, AConeWithItsAxisInAFaceAndItsRimOnAnotherIsCutInHalf) {
   const Vec3 half(1.0, 1.2, 0.6);
   const Frustum cone({.bottom_radius = 0.02, .top_radius = 0.0, .half_length = 0.18});

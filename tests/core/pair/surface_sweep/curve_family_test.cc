@@ -20,19 +20,19 @@ std::vector<Shape> solids() {
 
 // Curves lie in their face, their element is the product of the two tangents and looks out, and
 // every place is on the curve that it is said to be on.
-TEST(ShellFamily, CurvesMakeUpTheFace) {
+TEST(CurveFamily, CurvesMakeUpTheFace) {
   test::Random random(3);
   for (const Shape& shape : solids()) {
     for (int round = 0; round < 4; ++round) {
       const Pose X{random.rotation(), random.in_box(0.3)};
-      ShellSolids s;
+      SweepSolids s;
       ASSERT_TRUE(s.read(shape, X, HalfSpace(), {}, Vec3::Constant(0.25)));
-      for (const ShellFace& face : s.faces) {
-        const ShellFamily family(face, s.half);
+      for (const SweepFace& face : s.faces) {
+        const CurveFamily family(face, s.half);
         if (family.empty()) continue;
         for (int i = 0; i < 10; ++i) {
           const double u = family.low() + (family.high() - family.low()) * random.uniform(0.1, 0.9);
-          const double t = face.kind == ShellFace::Kind::kCone ? random.uniform(0.05, 0.3)
+          const double t = face.kind == SweepFace::Kind::kCone ? random.uniform(0.05, 0.3)
                                                                : random.uniform(0.1, 3.0);
           const Vec3 x = family.curve(u).at(t);
           const double size = 1.0 + x.squaredNorm();
@@ -55,17 +55,17 @@ TEST(ShellFamily, CurvesMakeUpTheFace) {
 }
 
 // No place of the face within the box is on a curve out of the range.
-TEST(ShellFamily, TheRangeHoldsTheBox) {
+TEST(CurveFamily, TheRangeHoldsTheBox) {
   test::Random random(8);
   const Vec3 half(0.2, 0.1, 0.05);
   int inside = 0;
   for (const Shape& shape : solids()) {
     for (int round = 0; round < 6; ++round) {
       const Pose X{random.rotation(), random.in_box(0.3)};
-      ShellSolids s;
+      SweepSolids s;
       ASSERT_TRUE(s.read(shape, X, HalfSpace(), {}, half));
-      for (const ShellFace& face : s.faces) {
-        const ShellFamily family(face, half), all(face, Vec3::Constant(3.0));
+      for (const SweepFace& face : s.faces) {
+        const CurveFamily family(face, half), all(face, Vec3::Constant(3.0));
         for (int i = 0; i < 2000; ++i) {
           const double u = all.low() + (all.high() - all.low()) * random.uniform();
           const Vec3 x = all.curve(u).at(random.uniform(-1.0, 6.0));

@@ -15,17 +15,17 @@ using namespace testing;
 const Vec3 kBox = Vec3::Constant(2.0);
 
 // The parts of any line in a solid, against a solid that holds all of it.
-TEST(ShellCurve, ALineHasTheIntervalsOfTheSolid) {
+TEST(FaceCurve, ALineHasTheIntervalsOfTheSolid) {
   const Shape all = Box({.half_sizes = {5.0, 5.0, 5.0}});
   test::Random random(2);
-  ShellCurveScratch scratch;
-  ShellSpans spans;
+  FaceCurveScratch scratch;
+  SweepSpans spans;
   std::vector<RayInterval> expected;
   for (const NamedSolid& kind : kinds_of_solids()) {
-    ShellSolids solids;
+    SweepSolids solids;
     ASSERT_TRUE(solids.read(kind.solid, {}, all, {}, kBox));
     for (int i = 0; i < 50; ++i) {
-      ShellCurve line;
+      FaceCurve line;
       line.p = random.in_box(0.2);
       line.u = random.direction();
       line.v = Vec3::Zero();
@@ -51,17 +51,17 @@ TEST(ShellCurve, ALineHasTheIntervalsOfTheSolid) {
 }
 
 // A circle about the axis of a ball's pole: where the ball's surface lies in the other solid.
-TEST(ShellCurve, ACircleIsInWhereItsPlacesAre) {
+TEST(FaceCurve, ACircleIsInWhereItsPlacesAre) {
   test::Random random(4);
-  ShellCurveScratch scratch;
-  ShellSpans spans;
+  FaceCurveScratch scratch;
+  SweepSpans spans;
   int stretches = 0;
   for (const NamedSolid& kind : kinds_of_solids()) {
     const Pose X{random.rotation(), random.in_box(0.15)};
-    ShellSolids solids;
+    SweepSolids solids;
     ASSERT_TRUE(solids.read(Sphere({.radius = 0.2}), {}, kind.solid, X, kBox));
     for (int i = 0; i < 8; ++i) {
-      ShellCurve circle;
+      FaceCurve circle;
       circle.circle = true;
       const Mat3 r = random.rotation();
       const double latitude = random.uniform(-1.2, 1.2);
@@ -86,18 +86,18 @@ TEST(ShellCurve, ACircleIsInWhereItsPlacesAre) {
   EXPECT_GT(stretches, 40);
 }
 
-TEST(ShellCurve, AFaceBetweenTwoMembersIsNoSurface) {
+TEST(FaceCurve, AFaceBetweenTwoMembersIsNoSurface) {
   const Csg bars = box(.2, .1, .1, at(-.2, 0, 0)) + box(.2, .1, .1, at(.2, 0, 0));
-  ShellSolids solids;
+  SweepSolids solids;
   ASSERT_TRUE(solids.read(bars, {}, Box({.half_sizes = {5.0, 5.0, 5.0}}), {}, kBox));
-  ShellCurveScratch scratch;
-  ShellSpans spans;
-  ShellCurve line;  // in the seam, x = 0
+  FaceCurveScratch scratch;
+  SweepSpans spans;
+  FaceCurve line;  // in the seam, x = 0
   line.p = Vec3::Zero();
   line.u = Vec3::UnitY();
   line.v = Vec3::Zero();
   for (std::size_t f = 0; f < solids.faces.size(); ++f) {
-    const ShellFace& face = solids.faces[f];
+    const SweepFace& face = solids.faces[f];
     if (face.twin != static_cast<int>(f) || std::abs(face.value(line.p)) > 1e-12) continue;
     if (std::abs(face.normal.y()) > 0.5) continue;
     find_spans(solids, line, static_cast<int>(f), scratch, spans);

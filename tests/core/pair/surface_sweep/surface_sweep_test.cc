@@ -13,10 +13,10 @@ namespace {
 using namespace testing;
 using test::evaluated;
 
-Interference shell(const Shape& a, const Shape& b, const Pose& X_AB, bool served = true) {
-  ShellScratch scratch;
+Interference sweep(const Shape& a, const Shape& b, const Pose& X_AB, bool served = true) {
+  SurfaceSweepScratch scratch;
   Interference out;
-  EXPECT_EQ(shell_interference(a, b, X_AB, {}, scratch, out), served);
+  EXPECT_EQ(surface_sweep(a, b, X_AB, {}, scratch, out), served);
   return out;
 }
 
@@ -25,7 +25,7 @@ const Csg kPlate = box(.3, .2, .05) - tube(.05, .1, at(.1, 0, 0)) - tube(.04, .1
 // A slab laid over both holes of a plate, which it dips into.
 TEST(Shell, ASlabOverTwoHoles) {
   const double depth = 1e-3, area = .4 * .3 - kPi * (.05 * .05 + .04 * .04);
-  const Interference out = shell(Box({.half_sizes = {.2, .15, .1}}), kPlate, at(0, 0, depth - .15));
+  const Interference out = sweep(Box({.half_sizes = {.2, .15, .1}}), kPlate, at(0, 0, depth - .15));
   ASSERT_EQ(out.sites.size(), 1u);
   const VolumeMetrics& m = out.total;
   EXPECT_NEAR(m.volume, area * depth, 1e-5 * area * depth);
@@ -60,7 +60,7 @@ TEST(Shell, HolesTakeAwayWhatIsInThem) {
       }
       if (expected < 1e-6) continue;
       ++compared;
-      const VolumeMetrics m = shell(kPlate, body, X).total;
+      const VolumeMetrics m = sweep(kPlate, body, X).total;
       EXPECT_NEAR(m.volume, expected, 1e-3 * expected) << name_of(body) << " " << i;
       EXPECT_LE(std::abs(m.volume - expected), m.volume_error + 3e-4 * expected);
     }
@@ -75,12 +75,12 @@ TEST(Shell, ARingInABoreAndOnARod) {
   const double moment = 2.0 / 3.0 * std::pow(r * r - h * h, 1.5);
   const Shape ring = Torus({.major_radius = R, .minor_radius = r});
   const Csg bored = box(.3, .3, .1) - tube(R + h, .5);
-  const Interference outside = shell(ring, bored, at(.0, .0, .02));
+  const Interference outside = sweep(ring, bored, at(.0, .0, .02));
   const double outer = 2.0 * kPi * (R * area + moment), inner = 2.0 * kPi * (R * area - moment);
   ASSERT_EQ(outside.sites.size(), 1u);
   EXPECT_NEAR(outside.total.volume, outer, 1e-5 * outer);
   EXPECT_LE(outside.total.centroid.norm(), 1e-6);
-  const Interference on_rod = shell(ring, Shape(tube(R - h, .4) - tube(.02, .5)), at(0, 0, 0));
+  const Interference on_rod = sweep(ring, Shape(tube(R - h, .4) - tube(.02, .5)), at(0, 0, 0));
   ASSERT_EQ(on_rod.sites.size(), 1u);
   EXPECT_NEAR(on_rod.total.volume, inner, 1e-5 * inner);
   EXPECT_LE(on_rod.total.area_vector.norm(), 1e-6 * on_rod.total.area);
@@ -89,7 +89,7 @@ TEST(Shell, ARingInABoreAndOnARod) {
 // A bar through a bore that it does not fill, out of both sides of the block.
 TEST(Shell, ABarBesideTheBoreHasTwoSites) {
   const Csg bored = box(.3, .3, .1) - tube(.1, .5);
-  const Interference out = shell(Box({.half_sizes = {.2, .02, .05}}), bored, at(0, 0, 0));
+  const Interference out = sweep(Box({.half_sizes = {.2, .02, .05}}), bored, at(0, 0, 0));
   ASSERT_EQ(out.sites.size(), 2u);
   // Per side: 0.2 long, less the strip within the circle.
   const double strip = .02 * std::sqrt(.01 - .0004) + .01 * std::asin(.2);
@@ -102,7 +102,7 @@ TEST(Shell, ABarBesideTheBoreHasTwoSites) {
 TEST(Shell, ServesUnionsOfRoundSolids) {
   const Csg two = ball(.2) + ball(.2, at(.2, .1, 0));
   const double depth = .01;
-  const Interference out = shell(HalfSpace(), two, at(0, 0, .2 - depth));
+  const Interference out = sweep(HalfSpace(), two, at(0, 0, .2 - depth));
   ASSERT_EQ(out.sites.size(), 2u);
   const double cap = kPi * depth * depth * (.6 - depth) / 3.0;
   for (const VolumeMetrics& site : out.sites) EXPECT_NEAR(site.volume, cap, 1e-6 * cap);
@@ -111,7 +111,7 @@ TEST(Shell, ServesUnionsOfRoundSolids) {
 
 TEST(Shell, ASolidWithinAnotherIsContained) {
   const Csg part = tube(.1, .1) - tube(.05, .2);
-  const Interference out = shell(box(1, 1, 1) - ball(.2, at(.7, 0, 0)), part, at(.1, .1, 0));
+  const Interference out = sweep(box(1, 1, 1) - ball(.2, at(.7, 0, 0)), part, at(.1, .1, 0));
   ASSERT_EQ(out.sites.size(), 1u);
   EXPECT_EQ(out.total.status, Status::kContained);
   const double volume = kPi * (.01 - .0025) * .2;
@@ -138,7 +138,7 @@ TEST(Shell, WrenchIsContinuousThroughMergeAndSplit) {
     depths.push_back(kRecess + e);
   }
   for (const double depth : depths) {
-    const Interference out = shell(bridge, block, at(0, 0, depth));
+    const Interference out = sweep(bridge, block, at(0, 0, depth));
     EXPECT_EQ(out.sites.size(), depth > kRecess ? 1u : 2u) << depth;
     const double above = std::max(0.0, depth - kRecess);
     const double force = (left + right) * depth + middle * above;
@@ -156,7 +156,7 @@ TEST(Shell, WrenchIsContinuousThroughMergeAndSplit) {
 }
 
 TEST(Shell, GivesUpWhatIsApart) {
-  shell(kPlate, Sphere({.radius = .03}), at(.1, 0, 0), false);  // in the hole
+  sweep(kPlate, Sphere({.radius = .03}), at(.1, 0, 0), false);  // in the hole
 }
 
 // S and T against finite differences of V, and the order of the pair.
@@ -168,13 +168,13 @@ TEST(Shell, AreaVectorAndMomentAreTheGradientOfVolume) {
   for (const Shape& body : bodies) {
     for (int i = 0; i < 2; ++i) {
       const Pose X{random.rotation(), random.in_box(.08)};
-      const VolumeMetrics m = shell(kPlate, body, X).total;
+      const VolumeMetrics m = sweep(kPlate, body, X).total;
       if (!m.touching() || m.status == Status::kContained) continue;
-      const auto volume = [&](const Pose& X_AB) { return shell(kPlate, body, X_AB).total.volume; };
+      const auto volume = [&](const Pose& X_AB) { return sweep(kPlate, body, X_AB).total.volume; };
       const test::Gradient g = test::gradient_of_A(volume, X, 1e-3);
       EXPECT_LE((g.shift - m.area_vector).norm(), 1e-3 * m.area) << name_of(body) << i;
       EXPECT_LE((g.turn - m.area_moment).norm(), 1e-3 * m.area * .3) << name_of(body) << i;
-      const VolumeMetrics other = transformed(shell(body, kPlate, X.inverse()).total, X);
+      const VolumeMetrics other = transformed(sweep(body, kPlate, X.inverse()).total, X);
       EXPECT_NEAR(other.volume, m.volume, m.volume_error + other.volume_error);
       EXPECT_LE((other.area_vector + m.area_vector).norm(), 1e-3 * m.area);
       ++compared;
@@ -195,9 +195,9 @@ TEST(Shell, StaysWithinTheCertifiedBoundsOfTheOctree) {
     ++tried;
     const VolumeMetrics octree =
         evaluated(kind.solid, body, X, {.tolerance = 2e-2, .engine = Engine::kOctree}).total;
-    ShellScratch scratch;
+    SurfaceSweepScratch scratch;
     Interference out;
-    if (!shell_interference(kind.solid, body, X, {}, scratch, out)) {
+    if (!surface_sweep(kind.solid, body, X, {}, scratch, out)) {
       EXPECT_LE(octree.volume, octree.volume_error + 1e-7) << kind.name;
       continue;
     }

@@ -10,17 +10,17 @@ namespace {
 
 const Shape kAll = Box({.half_sizes = {9.0, 9.0, 9.0}});
 
-ShellFlux surface_of(const Shape& shape, const Pose& X, std::size_t faces) {
-  ShellSolids solids;
+SweepFlux surface_of(const Shape& shape, const Pose& X, std::size_t faces) {
+  SweepSolids solids;
   EXPECT_TRUE(solids.read(shape, X, kAll, {}, Vec3::Constant(1.0)));
   EXPECT_EQ(solids.faces.size(), faces);
-  ShellPatchScratch scratch;
-  ShellFlux sum;
+  SweepPatchScratch scratch;
+  SweepFlux sum;
   for (std::size_t f = 0; f < solids.faces.size(); ++f) {
-    const ShellFamily family(solids.faces[f], solids.half);
-    ShellPatch patch;
+    const CurveFamily family(solids.faces[f], solids.half);
+    SweepPatch patch;
     EXPECT_TRUE(sweep_face(solids, static_cast<int>(f), family, 1e-8, scratch, patch));
-    for (const ShellStrip& strip : patch.surface.strips) {
+    for (const SweepStrip& strip : patch.surface.strips) {
       EXPECT_EQ(strip.owner, Owner::kA);
       sum += strip.flux;
     }
@@ -29,7 +29,7 @@ ShellFlux surface_of(const Shape& shape, const Pose& X, std::size_t faces) {
 }
 
 // The fluxes through the whole surface of a solid are its own metrics.
-TEST(ShellPatch, FluxesAreTheMomentsOfTheSolid) {
+TEST(SweepPatch, FluxesAreTheMomentsOfTheSolid) {
   const std::pair<Shape, std::size_t> solids[] = {
       {Sphere({.radius = 0.3}), 1},
       {Ellipsoid({.semi_axes = {0.4, 0.3, 0.2}}), 1},
@@ -40,7 +40,7 @@ TEST(ShellPatch, FluxesAreTheMomentsOfTheSolid) {
   test::Random random(5);
   for (const auto& [shape, faces] : solids) {
     const Pose X{random.rotation(), random.in_box(0.2)};
-    const ShellFlux sum = surface_of(shape, X, faces);
+    const SweepFlux sum = surface_of(shape, X, faces);
     const VolumeMetrics own = transformed(own_metrics_of(shape), X);
     const double V = own.volume;
     EXPECT_LE((sum.moment - V * Mat3::Identity()).norm(), 1e-7 * V) << name_of(shape);

@@ -13,13 +13,13 @@ namespace {
 using namespace testing;
 
 // Membership by the faces, whatever was pruned, is that of the signed distance.
-TEST(ShellSolids, HoldsWhatTheSignedDistanceHolds) {
+TEST(SweepSolids, HoldsWhatTheSignedDistanceHolds) {
   const Shape ring = Torus({.major_radius = 0.15, .minor_radius = 0.05});
   test::Random random(1);
   for (const NamedSolid& kind : kinds_of_solids()) {
     const Pose X_WA{random.rotation(), random.in_box(0.1)}, X_WB{random.rotation(), Vec3::Zero()};
     const Vec3 half(0.2, 0.1, 0.05);
-    ShellSolids solids;
+    SweepSolids solids;
     ASSERT_TRUE(solids.read(kind.solid, X_WA, ring, X_WB, half)) << kind.name;
     for (int i = 0; i < 200; ++i) {
       const Vec3 x = half.cwiseProduct(random.in_box(1.0));
@@ -43,15 +43,15 @@ TEST(ShellSolids, HoldsWhatTheSignedDistanceHolds) {
   }
 }
 
-TEST(ShellSolids, FindsFacesInOneSurface) {
+TEST(SweepSolids, FindsFacesInOneSurface) {
   const Csg block = box(.3, .2, .1) - tube(.05, .05, at(0, 0, .05));
-  ShellSolids solids;
+  SweepSolids solids;
   ASSERT_TRUE(
       solids.read(block, {}, Box({.half_sizes = {.1, .1, .1}}), at(0, 0, .2), Vec3(.2, .2, .3)));
   // On z = 0.1: the block's top and the tube's look up, the box's bottom looks down.
   int up = 0, down = 0;
-  for (const ShellFace& face : solids.faces) {
-    if (face.kind != ShellFace::Kind::kPlane || std::abs(std::abs(face.offset) - .1) > 1e-12 ||
+  for (const SweepFace& face : solids.faces) {
+    if (face.kind != SweepFace::Kind::kPlane || std::abs(std::abs(face.offset) - .1) > 1e-12 ||
         std::abs(face.normal.z()) < 0.5) {
       continue;
     }
@@ -63,8 +63,8 @@ TEST(ShellSolids, FindsFacesInOneSurface) {
   EXPECT_EQ(down, 1);
 }
 
-TEST(ShellSolids, RefusesWhatHasNoFaces) {
-  ShellSolids solids;
+TEST(SweepSolids, RefusesWhatHasNoFaces) {
+  SweepSolids solids;
   EXPECT_FALSE(
       solids.read(test::mesh_of(test::box_soup(Vec3::Ones())), {}, HalfSpace(), {}, Vec3::Ones()));
 }

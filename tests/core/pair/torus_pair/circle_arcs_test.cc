@@ -8,12 +8,12 @@
 namespace volcontact::circle_arcs_test {
 namespace {
 
-constexpr RingSize kRing{0.3, 0.1};
+constexpr TorusSize kRing{0.3, 0.1};
 
 Circle flat_circle(const Vec3& center, double radius) {
   return {center, Vec3::UnitX(), Vec3::UnitY(), radius};
 }
-CircleArcs arcs_of(const Circle& circle, const RingSize& ring = kRing,
+CircleArcs arcs_of(const Circle& circle, const TorusSize& ring = kRing,
                    ArcSearch search = ArcSearch::kArcs) {
   CircleArcs arcs;
   find_arcs(circle, ring, search, false, arcs);
@@ -78,12 +78,12 @@ TEST(CircleArcs, ArcsAreWhereValuesAreNegative) {
   int most = 0;
   for (int i = 0; i < 1000; ++i) {
     const Mat3 R = random.rotation();
-    const RingSize ring{random.uniform(0.1, 0.5), random.uniform(0.01, 0.1)};
+    const TorusSize ring{random.uniform(0.1, 0.5), random.uniform(0.01, 0.1)};
     const Circle circle{random.in_box(0.2), R.col(0), R.col(1), random.uniform(0.05, 0.6)};
     const CircleArcs arcs = arcs_of(circle, ring);
     most = std::max(most, arcs.count);
     for (int k = 0; k < kPlaces; ++k) {
-      const double angle = 2.0 * kPi * k / kPlaces, value = ring_value(ring, circle.at(angle));
+      const double angle = 2.0 * kPi * k / kPlaces, value = torus_value(ring, circle.at(angle));
       if (std::abs(value) < 1e-3 * ring.minor) continue;
       bool inside = arcs.whole;
       for (int j = 0; j < arcs.count; ++j) {

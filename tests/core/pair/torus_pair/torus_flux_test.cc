@@ -8,11 +8,11 @@
 namespace volcontact::torus_flux_test {
 namespace {
 
-constexpr RingSize kRing{0.3, 0.1};
+constexpr TorusSize kRing{0.3, 0.1};
 constexpr double kVolume = 2.0 * kPi * 0.3 * kPi * 0.1 * 0.1;  // Pappus
 
 // By the divergence theorem, about any origin.
-TEST(RingFlux, AWholeSurfaceGivesTheVolume) {
+TEST(TorusFlux, AWholeSurfaceGivesTheVolume) {
   test::Random random(1);
   const Pose X{random.rotation(), random.in_box(1.0)};
   const Vec3 origin = X * random.in_box(0.3);
@@ -28,8 +28,8 @@ TEST(RingFlux, AWholeSurfaceGivesTheVolume) {
 }
 
 // The surface of a cube of half length 1 about its center, by midpoints of a fine grid.
-TEST(RingFlux, SumsOfACube) {
-  RingFlux flux;
+TEST(TorusFlux, SumsOfACube) {
+  TorusFlux flux;
   constexpr int kSteps = 100;
   constexpr double kStep = 2.0 / kSteps;
   for (int axis = 0; axis < 3; ++axis) {
@@ -55,7 +55,7 @@ TEST(RingFlux, SumsOfACube) {
   EXPECT_NEAR(flux.depth_moment, 8.0, 1e-10);
 }
 
-TEST(RingFlux, IntegralFromTheOriginIsExactForTheFifthDegree) {
+TEST(TorusFlux, IntegralFromTheOriginIsExactForTheFifthDegree) {
   for (int power = 0; power <= 5; ++power) {
     EXPECT_NEAR(integral_from_origin([&](double s) { return std::pow(s, power); }),
                 1.0 / (power + 3.0), 1e-15);

@@ -31,7 +31,7 @@ Pose pushed_together(const Shape& a, const Shape& b, const Mat3& R, const Vec3& 
   return {R, in * d};
 }
 
-TEST(RingPair, IsServedByLinesInBothOrders) {
+TEST(TorusPair, IsServedByLinesInBothOrders) {
   test::Random random(1);
   const Shape other = ring(0.25, 0.06);
   EXPECT_EQ(engine_for(kRing, other), Engine::kLines);
@@ -47,7 +47,7 @@ TEST(RingPair, IsServedByLinesInBothOrders) {
 }
 
 // By Pappus, from the lens of two circles: half of it on either side of the chord.
-TEST(RingPair, CoaxialRingsOverlapInALensThatGoesRound) {
+TEST(TorusPair, CoaxialRingsOverlapInALensThatGoesRound) {
   for (double depth : {1e-6, 1e-4, 0.01, 0.07}) {
     const double r = kMinor, d = 2.0 * r - depth;  // between the middles of the tubes
     const double half_angle = std::acos(0.5 * d / r);
@@ -71,7 +71,7 @@ TEST(RingPair, CoaxialRingsOverlapInALensThatGoesRound) {
   }
 }
 
-TEST(RingPair, RingsAreContainedInThickerOnes) {
+TEST(TorusPair, RingsAreContainedInThickerOnes) {
   test::Random random(3);
   const Shape thin = ring(kMajor, 0.03);
   const double volume = 2.0 * kPi * kMajor * kPi * 0.03 * 0.03;  // Pappus
@@ -88,7 +88,7 @@ TEST(RingPair, RingsAreContainedInThickerOnes) {
 }
 
 // They have no surface in one another; a hair's breadth apart they have half of it.
-TEST(RingPair, IdenticalRingsAreAllInOneAnother) {
+TEST(TorusPair, IdenticalRingsAreAllInOneAnother) {
   const double volume = 2.0 * kPi * kMajor * kPi * kMinor * kMinor;
   test::Random random(4);
   for (double off : {0.0, 1e-16, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6}) {
@@ -103,7 +103,7 @@ TEST(RingPair, IdenticalRingsAreAllInOneAnother) {
   }
 }
 
-TEST(RingPair, LinkedRingsNeedNotTouch) {
+TEST(TorusPair, LinkedRingsNeedNotTouch) {
   const Mat3 upright = test::turn(Vec3::UnitX(), 0.5 * kPi);
   EXPECT_FALSE(evaluated(kRing, kRing, {upright, {kMajor, 0.0, 0.0}}).total.touching());
   // Pulled apart they touch at the one place in the hole of both.
@@ -120,7 +120,7 @@ TEST(RingPair, LinkedRingsNeedNotTouch) {
   EXPECT_NEAR(out.total.volume, kPi * 1e-12 / k, 1e-4 * out.total.volume);
 }
 
-TEST(RingPair, RingsThatTouchFromOutsideHaveALensOfKnownSize) {
+TEST(TorusPair, RingsThatTouchFromOutsideHaveALensOfKnownSize) {
   for (double depth : {1e-10, 1e-7, 1e-5}) {
     const Mat3 upright = test::turn(Vec3::UnitX(), 0.5 * kPi);
     const double touching = 2.0 * (kMajor + kMinor);
@@ -134,7 +134,7 @@ TEST(RingPair, RingsThatTouchFromOutsideHaveALensOfKnownSize) {
   }
 }
 
-TEST(RingPair, RingsOfOnePlaneThatCrossTouchInTwoSites) {
+TEST(TorusPair, RingsOfOnePlaneThatCrossTouchInTwoSites) {
   const Interference out = evaluated(kRing, kRing, at({0.3, 0.0, 0.0}));
   ASSERT_EQ(out.sites.size(), 2u);
   EXPECT_NEAR(out.sites[0].volume, out.sites[1].volume, 1e-4 * out.total.volume);
@@ -145,7 +145,7 @@ TEST(RingPair, RingsOfOnePlaneThatCrossTouchInTwoSites) {
 
 // A ring about an ellipse of the other one's tube: a thin ring stands across a flat one and goes
 // through it four times.
-TEST(RingPair, ACircleMayPassThroughAnotherFourTimes) {
+TEST(TorusPair, ACircleMayPassThroughAnotherFourTimes) {
   const double r = 0.004;
   const Shape thick = ring(0.3, 0.1), thin = ring(0.1, r);
   // Around the tube, tilted: its circle leaves the tube at two places and comes back at two.
@@ -158,7 +158,7 @@ TEST(RingPair, ACircleMayPassThroughAnotherFourTimes) {
   EXPECT_EQ(out.sites.size(), octree.sites.size());
 }
 
-TEST(RingPair, OctreeBoundsHoldTheVolume) {
+TEST(TorusPair, OctreeBoundsHoldTheVolume) {
   test::Random random(5);
   for (int i = 0; i < 6; ++i) {
     const Shape a = ring(random.uniform(0.2, 0.5), random.uniform(0.05, 0.15)),
@@ -171,7 +171,7 @@ TEST(RingPair, OctreeBoundsHoldTheVolume) {
   }
 }
 
-TEST(RingPair, AreaVectorAndMomentAreTheGradientOfVolume) {
+TEST(TorusPair, AreaVectorAndMomentAreTheGradientOfVolume) {
   test::Random random(6);
   const Shape other = ring(0.25, 0.06);
   for (int i = 0; i < 20; ++i) {
@@ -189,7 +189,7 @@ TEST(RingPair, AreaVectorAndMomentAreTheGradientOfVolume) {
 }
 
 // Where a push along the normal deepens a small overlap, its depth moment is the potential of V.
-TEST(RingPair, DepthMomentIsThePotentialOfVolume) {
+TEST(TorusPair, DepthMomentIsThePotentialOfVolume) {
   test::Random random(7);
   for (int i = 0; i < 5; ++i) {
     const Vec3 d = random.direction();
@@ -206,7 +206,7 @@ TEST(RingPair, DepthMomentIsThePotentialOfVolume) {
 }
 
 // Across places where arcs appear, part and merge.
-TEST(RingPair, VolumeIsContinuousAlongAMotion) {
+TEST(TorusPair, VolumeIsContinuousAlongAMotion) {
   const Mat3 R = test::turn(Vec3(1.0, 2.0, 0.5).normalized(), 1.1);
   double before = 0.0;
   constexpr int kSteps = 300;
@@ -223,7 +223,7 @@ TEST(RingPair, VolumeIsContinuousAlongAMotion) {
   }
 }
 
-TEST(RingPair, RingsOfNoThicknessOverlapInNothing) {
+TEST(TorusPair, RingsOfNoThicknessOverlapInNothing) {
   EXPECT_FALSE(evaluated(kRing, ring(0.3, 0.0), at(Vec3::Zero())).total.touching());
   EXPECT_FALSE(evaluated(ring(0.0, 0.0), kRing, at({0.3, 0.0, 0.0})).total.touching());
 }

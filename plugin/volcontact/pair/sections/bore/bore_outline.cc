@@ -18,8 +18,8 @@ constexpr int kEndNarrowings = 2;  // of a place where it crosses the wall
 
 }  // namespace
 
-// A fan along the bore's axis, or from the apex, through the middle of the overlap, in which its
-// outline is about round.
+// A set of sections along the bore's axis, or from the apex, through the middle of the overlap, in
+// which its outline is about round.
 void BoreOutline::choose_frame() {
   if (bore_.is_cone()) {
     const Vec3 way = window_.center - bore_.center;
@@ -34,7 +34,7 @@ void BoreOutline::choose_frame() {
 
 void BoreOutline::set_frame() {
   s_.faces.active.has_bore = false;
-  s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
+  s_.sections.set(s_.faces.active, s_.faces.idle, frame_);
 }
 
 BoreOutline::Place BoreOutline::place(double angle, double x, double y, double height) const {
@@ -49,7 +49,7 @@ void BoreOutline::places_at(const double* angles, Place* places) {
     u[i] = std::cos(angles[i]);
     v[i] = std::sin(angles[i]);
   }
-  s_.fan.ends(s_.path, u, v, rho, height);
+  s_.sections.ends(s_.path, u, v, rho, height);
   for (int i = 0; i < kLanes; ++i) {
     places[i] = place(angles[i], rho[i] * u[i], rho[i] * v[i], height[i]);
   }
@@ -64,7 +64,7 @@ bool BoreOutline::place_all_round(bool good_enough) {
   for (int k = 0; k < kStep; ++k) {
     RimShape rim;
     even_directions(kEvenTurn, k, rim.u, rim.v);
-    s_.fan.ends(s_.path, rim.u, rim.v, rim.rho, rim.height);
+    s_.sections.ends(s_.path, rim.u, rim.v, rim.rho, rim.height);
     const double near = rim.shortest(), far = rim.longest();
     if (k == 0 && !good_enough && far > kRoundRim * near) {
       if (!rim.round_off(frame_)) rim.go_inwards(frame_);

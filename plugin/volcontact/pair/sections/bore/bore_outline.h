@@ -51,7 +51,7 @@ class BoreOutline {
   const LinesWindow& window_;
   LinesScratch& s_;
   std::vector<Place>& places_;
-  FanFrame frame_;
+  SectionFrame frame_;
 };
 
 }  // namespace volcontact

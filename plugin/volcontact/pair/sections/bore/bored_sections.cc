@@ -39,7 +39,7 @@ class BoreRun {
     window_ = find_lines_window(a_, b_, X_AB_, s_.path, true, s_.faces);
     if (window_.kind == LinesWindow::Kind::kApart) return true;
     if (apex_is_on_a_face()) return false;
-    s_.fan.choose_rule(options_.tolerance);
+    s_.sections.choose_rule(options_.tolerance);
     move_off_axis();
     outline_.trace();
     set_rounding();
@@ -106,7 +106,7 @@ class BoreRun {
     s_.faces.active.has_bore = true;
     s_.faces.active.bore = bore_;
     s_.faces.active.wall = face_of(bore_, owner_);
-    s_.fan.set(s_.faces.active, s_.faces.idle, frame_);
+    s_.sections.set(s_.faces.active, s_.faces.idle, frame_);
   }
 
   // All of the outline lies outside of the bore: the overlap goes round it, or misses it.
@@ -238,7 +238,7 @@ class BoreRun {
     set_breaks(low, high, open);
     volume_scale_ = 0.0;
     const bool smooth_ring = !open && s_.breaks.complete && breaks_.size() == 2 &&
-                             integrate_even_turn(s_.fan, s_.path, options_.tolerance, error_);
+                             integrate_even_turn(s_.sections, s_.path, options_.tolerance, error_);
     for (std::size_t i = 0; i + 1 < breaks_.size() && !smooth_ring; ++i) {
       const double from = breaks_[i], to = breaks_[i + 1];
       const int parts = std::max(1, static_cast<int>(std::ceil((to - from) / kWidestAngle)));
@@ -284,7 +284,7 @@ class BoreRun {
       v[i] = std::sin(angle + turned_by_);
       weight[i] = OuterRule::kWeights[i] * speed * (x_to - x_from);
     }
-    s_.fan.integrate(s_.path, u, v, weight, section);
+    s_.sections.integrate(s_.path, u, v, weight, section);
     double volume = 0.0;
     for (int i = 0; i < kLanes; ++i) volume += section[i] *= weight[i];
     // Near an end the section is no analytic function of x: coefficients fall more slowly.
@@ -299,15 +299,15 @@ class BoreRun {
       return;
     }
     error_ += std::max(error, errors.kinked);
-    s_.fan.accept_batch();
+    s_.sections.accept_batch();
   }
 
   void add_region() {
-    const FanSums& sums = s_.fan.total();
-    VolumeMetrics m = moments_of(s_.fan, s_.faces.active, frame_).metrics();
+    const SectionSums& sums = s_.sections.total();
+    VolumeMetrics m = moments_of(s_.sections, s_.faces.active, frame_).metrics();
     if (!m.touching()) return;
     // Columns across the wall where this is what pushes, else along the axis.
-    const double share = share_of_bore(s_.fan, s_.faces.active, frame_);
+    const double share = share_of_bore(s_.sections, s_.faces.active, frame_);
     const double across = bore_.wall_normal(side_u_).dot(frame_.u);
     const double length = frame_.t.norm();
     const double height = frame_.central ? 1.0 / sums.low - 1.0 / sums.high : sums.high - sums.low;
@@ -318,13 +318,13 @@ class BoreRun {
     if (error_ > options_.tolerance * m.volume) m.status = Status::kApproximate;
     LinesRegion& region = regions_.add();
     region.metrics = transformed(m, Pose{Mat3::Identity(), frame_.center});
-    add_patches(s_.fan, s_.faces.active, frame_, region.patches);
+    add_patches(s_.sections, s_.faces.active, frame_, region.patches);
   }
 
   // int depth dV over columns along the normal: those across the wall are shorter by the cosine
   // between the two, 1/c = 1 + (1 - c) to first order. Where the wall goes all round there is no
   // normal.
-  double depth_along_normal(const FanSums::OnBore& on_bore, double across) const {
+  double depth_along_normal(const SectionSums::OnBore& on_bore, double across) const {
     const double length = std::hypot(on_bore.x, on_bore.y);
     if (!(length > 0.0)) return on_bore.depth_moment;
     const double along = (on_bore.x * on_bore.depth_x + on_bore.y * on_bore.depth_y) / length;
@@ -344,7 +344,7 @@ class BoreRun {
   LinesRegions& regions_;
   LinesWindow window_;
   BoreOutline outline_;
-  FanFrame frame_;
+  SectionFrame frame_;
   Vec3 side_u_, side_v_;
   double rounding_ = 0.0;  // of a distance from the axis, in radii
   double turned_by_ = 0.0, error_ = 0.0, volume_scale_ = 0.0;

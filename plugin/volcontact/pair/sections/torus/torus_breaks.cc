@@ -15,9 +15,9 @@ constexpr int kMaxPlanes = 12;       // with more, corners are left to the refin
 constexpr int kEdgeSteps = 12;       // places tried on an edge in search of the ring
 constexpr int kRootSteps = 8;
 
-class RingBreaks {
+class TorusBreaks {
  public:
-  RingBreaks(const FaceSet& faces, double major, double minor, std::vector<double>& angles)
+  TorusBreaks(const FaceSet& faces, double major, double minor, std::vector<double>& angles)
       : faces_(faces), major_(major), minor_(minor), angles_(angles) {}
 
   void run() {
@@ -162,9 +162,9 @@ class RingBreaks {
 
 }  // namespace
 
-void find_ring_breaks(const FaceSet& faces, double major_radius, double minor_radius,
-                      std::vector<double>& angles) {
-  RingBreaks(faces, major_radius, minor_radius, angles).run();
+void find_torus_breaks(const FaceSet& faces, double major_radius, double minor_radius,
+                       std::vector<double>& angles) {
+  TorusBreaks(faces, major_radius, minor_radius, angles).run();
 }
 
 }  // namespace volcontact

@@ -11,7 +11,7 @@ namespace volcontact {
 /// its make-up [rad], any order: at corners of the body in the ring, where its edges pierce the
 /// ring, and where a plane face touches the disc. The faces are those of the body, in the ring's
 /// frame.
-void find_ring_breaks(const FaceSet& faces, double major_radius, double minor_radius,
-                      std::vector<double>& angles);
+void find_torus_breaks(const FaceSet& faces, double major_radius, double minor_radius,
+                       std::vector<double>& angles);
 
 }  // namespace volcontact

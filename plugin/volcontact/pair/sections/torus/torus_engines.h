@@ -10,36 +10,36 @@ namespace volcontact {
 /// A torus and a bounded convex solid.
 struct TorusAndConvex : EngineBase {
   static constexpr Engine kWord = Engine::kLines;
-  using Scratch = TypeList<RingScratch, ComposedScratch>;
+  using Scratch = TypeList<TorusSectionsScratch, ComposedScratch>;
 
   template <typename A, typename B>
   static constexpr bool serves() {
     return std::is_same_v<A, Torus> && HasFaces<B> && !std::is_same_v<B, HalfSpace>;
   }
   template <typename A, typename B>
-  static Answer run(const Question<A, B>& q, RingScratch& ring, ComposedScratch& composed,
+  static Answer run(const Question<A, B>& q, TorusSectionsScratch& ring, ComposedScratch& composed,
                     Interference& out) noexcept {
     return answer(
-        ring_interference(q.a, ConvexView(q.b), q.X_AB, q.options, ring, composed.regions, out));
+        torus_interference(q.a, ConvexView(q.b), q.X_AB, q.options, ring, composed.regions, out));
   }
 };
 
 /// A torus and a composed solid.
 struct TorusAndComposed : EngineBase {
   static constexpr Engine kWord = Engine::kLines;
-  using Scratch = TypeList<RingScratch, ComposedScratch>;
+  using Scratch = TypeList<TorusSectionsScratch, ComposedScratch>;
 
   template <typename A, typename B>
   static constexpr bool serves() {
     return std::is_same_v<A, Torus> && std::is_same_v<B, Csg>;
   }
   template <typename A, typename B>
-  static Answer run(const Question<A, B>& q, RingScratch& ring, ComposedScratch& composed,
+  static Answer run(const Question<A, B>& q, TorusSectionsScratch& ring, ComposedScratch& composed,
                     Interference& out) noexcept {
     if (!has_lines_pieces(q.b)) return Answer::kBeyond;
     composed.pieces[1].clear();
     add_lines_pieces(q.b, composed.pieces[1]);
-    return answer(ring_composed(q.a, q.X_AB, q.options, ring, composed, out));
+    return answer(torus_in_composed(q.a, q.X_AB, q.options, ring, composed, out));
   }
 };
 

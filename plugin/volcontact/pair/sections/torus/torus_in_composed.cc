@@ -47,8 +47,9 @@ Vec3 place_of(const Torus& torus, const LinesRegion::PlanePatch& patch) {
 
 }  // namespace
 
-bool ring_composed(const Torus& torus, const Pose& X_AB, const InterferenceOptions& options,
-                   RingScratch& ring, ComposedScratch& scratch, Interference& out) noexcept {
+bool torus_in_composed(const Torus& torus, const Pose& X_AB, const InterferenceOptions& options,
+                       TorusSectionsScratch& ring, ComposedScratch& scratch,
+                       Interference& out) noexcept {
   LinesRegions& regions = scratch.regions;
   regions.cut(0);
   out.sites.clear();
@@ -59,8 +60,8 @@ bool ring_composed(const Torus& torus, const Pose& X_AB, const InterferenceOptio
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const LinesPiece& piece = pieces[i];
     const std::size_t before = regions.size();
-    if (!add_ring_regions(torus, piece.body, X_AB * piece.X_SB, options, ring, regions,
-                          RingSurface::kTorus)) {
+    if (!add_torus_regions(torus, piece.body, X_AB * piece.X_SB, options, ring, regions,
+                           TorusSurface::kTorus)) {
       return false;
     }
     if (regions.size() == before) continue;

@@ -26,11 +26,11 @@ constexpr double kTarget = 1e-2;  // share of the tolerance asked of an arc: kin
 constexpr double kGapShare = 0.1;
 constexpr double kWhole = 0.999;  // share of a solid in the overlap, that is all of it
 
-class RingRun {
+class TorusSectionsRun {
  public:
-  RingRun(const Torus& torus, const ConvexView& body, const Pose& X,
-          const InterferenceOptions& options, RingScratch& scratch, LinesRegions& regions,
-          RingSurface surface)
+  TorusSectionsRun(const Torus& torus, const ConvexView& body, const Pose& X,
+                   const InterferenceOptions& options, TorusSectionsScratch& scratch,
+                   LinesRegions& regions, TorusSurface surface)
       : torus_(torus),
         body_(body),
         X_(X),
@@ -41,11 +41,11 @@ class RingRun {
 
   bool run() {
     set_faces();
-    set_fan();
-    find_ring_sites(body_, X_, s_.path, s_.fan, s_.sites);
+    set_sections();
+    find_torus_sites(body_, X_, s_.path, s_.sections, s_.sites);
     if (s_.sites.ranges.empty()) return true;
-    find_ring_breaks(s_.faces, torus_.major_radius(), torus_.minor_radius(), s_.breaks);
-    for (const RingRange& range : s_.sites.ranges) {
+    find_torus_breaks(s_.faces, torus_.major_radius(), torus_.minor_radius(), s_.breaks);
+    for (const TorusRange& range : s_.sites.ranges) {
       integrate(range);
       if (is_open(std::max(options_.tolerance, outer_rule::kLeastOpen))) return false;
       add_region();
@@ -94,7 +94,7 @@ class RingRun {
 
   // The breaks within a range, in order, with its ends. A whole turn begins at a break. A break
   // near an end is the end, known better: a plane across the tube ends a section at once.
-  void set_corners(RingRange& range) {
+  void set_corners(TorusRange& range) {
     corners_.clear();
     if (range.whole && !s_.breaks.empty()) {
       range.low = s_.breaks[0];
@@ -118,40 +118,42 @@ class RingRun {
     range.high = corners_.back();
   }
 
-  void set_fan() {
-    s_.fan.choose_rule(options_.tolerance);
-    if (closer_) s_.fan.look_closer();
-    s_.fan.set(s_.faces, torus_.major_radius(), torus_.minor_radius());
+  void set_sections() {
+    s_.sections.choose_rule(options_.tolerance);
+    if (closer_) s_.sections.look_closer();
+    s_.sections.set(s_.faces, torus_.major_radius(), torus_.minor_radius());
   }
 
-  void integrate(RingRange range) {
+  void integrate(TorusRange range) {
     if (closer_) {
       closer_ = false;
-      set_fan();
+      set_sections();
     }
     set_corners(range);
     integrate_corners(range);
     if (!is_open(options_.tolerance)) return;
-    const double volume = s_.fan.total().moments[0];
+    const double volume = s_.sections.total().moments[0];
     closer_ = true;
-    set_fan();
+    set_sections();
     integrate_corners(range);
-    open_ = std::max(kGapShare * open_, std::abs(s_.fan.total().moments[0] - volume));
+    open_ = std::max(kGapShare * open_, std::abs(s_.sections.total().moments[0] - volume));
   }
 
-  bool is_open(double tolerance) const { return open_ > tolerance * s_.fan.total().moments[0]; }
+  bool is_open(double tolerance) const {
+    return open_ > tolerance * s_.sections.total().moments[0];
+  }
   double target() const {
     return (closer_ ? outer_rule::kCloserTarget : 1.0) * kTarget * options_.tolerance;
   }
   int depth() const { return outer_rule::kMaxDepth + (closer_ ? outer_rule::kCloserDepth : 0); }
 
-  void integrate_corners(const RingRange& range) {
-    s_.fan.clear();
+  void integrate_corners(const TorusRange& range) {
+    s_.sections.clear();
     error_ = volume_scale_ = 0.0;
     const bool done =
-        range.whole
-            ? s_.breaks.empty() && integrate_even_turn(s_.fan, s_.path, options_.tolerance, error_)
-            : corners_.size() == 2 && whole_range(range);
+        range.whole ? s_.breaks.empty() &&
+                          integrate_even_turn(s_.sections, s_.path, options_.tolerance, error_)
+                    : corners_.size() == 2 && whole_range(range);
     for (std::size_t i = 0; i + 1 < corners_.size() && !done; ++i) {
       const double from = corners_[i], to = corners_[i + 1];
       const bool begins = !range.whole && i == 0, ends = !range.whole && i + 2 == corners_.size();
@@ -170,19 +172,19 @@ class RingRun {
   // sums.
   double openness() const {
     if (has_axial_plane()) return 0.0;
-    const RingSums& sums = s_.fan.total();
-    const FanFaces& fan = s_.fan.faces().fan;
+    const TorusSums& sums = s_.sections.total();
+    const SectionFaces& sections = s_.sections.faces().sections;
     const double* m = sums.across_rho;
     SurfaceFlux::Axes axes, of_torus;
     axes << Vec3::UnitX(), Vec3::UnitY();
     of_torus << sums.vector[0], sums.vector[1], m[0], m[1], m[1], m[2];
     SurfaceFlux flux(axes);
     flux.add(of_torus);
-    for (int i = 0; i < fan.active_planes; ++i) {
-      flux.add_plane(s_.faces.planes[s_.fan.plane_face(i)].normal, sums.planes[i].sums);
+    for (int i = 0; i < sections.active_planes; ++i) {
+      flux.add_plane(s_.faces.planes[s_.sections.plane_face(i)].normal, sums.planes[i].sums);
     }
-    for (int i = 0; i + 1 < fan.round_count; ++i) {
-      flux.add_round(fan.rounds[i], sums.rounds[i].sums);
+    for (int i = 0; i + 1 < sections.round_count; ++i) {
+      flux.add_round(sections.rounds[i], sums.rounds[i].sums);
     }
     const double* v = sums.moments;
     if (!(v[0] > 0.0)) return 0.0;
@@ -194,7 +196,7 @@ class RingRun {
   // A range without breaks. At its ends sections mostly grow like an odd power of the root of the
   // angle: then the integrand, as a function of theta, angle = middle - half cos theta, is even and
   // periodic, and equal steps converge fastest. False when they do not.
-  bool whole_range(const RingRange& range) {
+  bool whole_range(const TorusRange& range) {
     double u[kLanes], v[kLanes], weight[kLanes], section[kLanes];
     const double half = 0.5 * (range.high - range.low), middle = range.low + half;
     const EvenSteps& steps = even_steps();
@@ -204,7 +206,7 @@ class RingRun {
       v[i] = std::sin(angle);
       weight[i] = half * kPi / kLanes * steps.sin[i];
     }
-    s_.fan.integrate(s_.path, u, v, weight, section);
+    s_.sections.integrate(s_.path, u, v, weight, section);
     for (int i = 0; i < kLanes; ++i) section[i] *= weight[i];
     double volume;
     error_ = steps.error(section, volume);
@@ -213,7 +215,7 @@ class RingRun {
       error_ = 0.0;
       return false;
     }
-    s_.fan.accept_batch();
+    s_.sections.accept_batch();
     return true;
   }
 
@@ -226,7 +228,7 @@ class RingRun {
       v[i] = std::sin(angle);
       weight[i] = OuterRule::kWeights[i] * speed * (x_to - x_from);
     }
-    s_.fan.integrate(s_.path, u, v, weight, section);
+    s_.sections.integrate(s_.path, u, v, weight, section);
     double volume = 0.0;
     for (int i = 0; i < kLanes; ++i) volume += section[i] *= weight[i];
     const LegendreError errors = legendre_errors(section);
@@ -239,11 +241,11 @@ class RingRun {
       return;
     }
     error_ += std::max(error, errors.kinked);
-    s_.fan.accept_batch();
+    s_.sections.accept_batch();
   }
 
   void add_region() {
-    const RingSums& sums = s_.fan.total();
+    const TorusSums& sums = s_.sections.total();
     const double* m = sums.moments;
     MomentSum sum;
     sum.volume = m[0];
@@ -262,23 +264,23 @@ class RingRun {
     add_patches(region.patches);
   }
 
-  bool by_planes() const { return s_.faces.rounds.empty() && surface_ == RingSurface::kBest; }
+  bool by_planes() const { return s_.faces.rounds.empty() && surface_ == TorusSurface::kBest; }
 
   // From the planes of a body that has nothing else, else from the torus.
   void set_surface(MomentSum& sum) const {
-    const RingSums& sums = s_.fan.total();
-    const FanFaces& fan = s_.fan.faces().fan;
+    const TorusSums& sums = s_.sections.total();
+    const SectionFaces& sections = s_.sections.faces().sections;
     sum.area = sums.area;
     const bool flat = by_planes();
-    for (int i = 0; i < fan.active_planes; ++i) {
+    for (int i = 0; i < sections.active_planes; ++i) {
       const double* x = sums.planes[i].sums;
       sum.counter_area += x[0];
       if (!flat) continue;
-      const Vec3& n = s_.faces.planes[s_.fan.plane_face(i)].normal;
+      const Vec3& n = s_.faces.planes[s_.sections.plane_face(i)].normal;
       sum.area_vector -= x[0] * n;
       sum.area_moment -= Vec3(x[1], x[2], x[3]).cross(n);
     }
-    for (int i = 0; i + 1 < fan.round_count; ++i) sum.counter_area += sums.rounds[i].area;
+    for (int i = 0; i + 1 < sections.round_count; ++i) sum.counter_area += sums.rounds[i].area;
     const Vec3 of_torus(sums.vector[0], sums.vector[1], sums.vector[2]);
     if (flat) {
       // A face through the axis lies in one half-plane, of which the sums see nothing.
@@ -301,14 +303,14 @@ class RingRun {
   }
 
   Vec3 vector_of_body() const {
-    const RingSums& sums = s_.fan.total();
-    const FanFaces& fan = s_.fan.faces().fan;
+    const TorusSums& sums = s_.sections.total();
+    const SectionFaces& sections = s_.sections.faces().sections;
     Vec3 vector = Vec3::Zero();
-    for (int i = 0; i < fan.active_planes; ++i) {
-      vector -= sums.planes[i].sums[0] * s_.faces.planes[s_.fan.plane_face(i)].normal;
+    for (int i = 0; i < sections.active_planes; ++i) {
+      vector -= sums.planes[i].sums[0] * s_.faces.planes[s_.sections.plane_face(i)].normal;
     }
-    for (int i = 0; i + 1 < fan.round_count; ++i) {
-      const FanRound& r = fan.rounds[i];
+    for (int i = 0; i + 1 < sections.round_count; ++i) {
+      const SectionRound& r = sections.rounds[i];
       const double* x = sums.rounds[i].sums;
       vector -= x[0] * Vec3(r.g) + x[1] * Vec3(r.g_u) + x[2] * Vec3(r.g_v) + x[3] * Vec3(r.g_t);
     }
@@ -328,7 +330,7 @@ class RingRun {
   // Depth under the planes of a flat body, in proportion to the squares of their area vectors; in
   // other bodies that under the surface of the tube, (r^2 - t^2) / 2 r.
   void set_depth(VolumeMetrics& metrics) const {
-    const RingSums& sums = s_.fan.total();
+    const TorusSums& sums = s_.sections.total();
     const double R = torus_.major_radius(), r = torus_.minor_radius();
     const double* m = sums.moments;
     metrics.depth = r - std::sqrt(std::max(0.0, sums.least_inside));
@@ -336,9 +338,9 @@ class RingRun {
         ((r * r - R * R) * m[0] + 2.0 * R * sums.radial - m[4] - m[6] - m[9]) / (2.0 * r);
     if (!by_planes()) return;
     double weight = 0.0, moment = 0.0, depth = 0.0;
-    const FanFaces& fan = s_.fan.faces().fan;
-    for (int i = 0; i < fan.active_planes; ++i) {
-      const PlaneFace& plane = s_.faces.planes[s_.fan.plane_face(i)];
+    const SectionFaces& sections = s_.sections.faces().sections;
+    for (int i = 0; i < sections.active_planes; ++i) {
+      const PlaneFace& plane = s_.faces.planes[s_.sections.plane_face(i)];
       const double area = sums.planes[i].sums[0];
       weight += area * area;
       moment += area * area * (plane.offset - plane.normal.dot(metrics.centroid)) * metrics.volume;
@@ -366,10 +368,10 @@ class RingRun {
   }
 
   void add_patches(std::vector<LinesRegion::PlanePatch>& patches) const {
-    const FanFaces& fan = s_.fan.faces().fan;
-    for (int i = 0; i < fan.active_planes; ++i) {
-      const PlaneFace& plane = s_.faces.planes[s_.fan.plane_face(i)];
-      const double* x = s_.fan.total().planes[i].sums;
+    const SectionFaces& sections = s_.sections.faces().sections;
+    for (int i = 0; i < sections.active_planes; ++i) {
+      const PlaneFace& plane = s_.faces.planes[s_.sections.plane_face(i)];
+      const double* x = s_.sections.total().planes[i].sums;
       if (!(x[0] > 0.0)) continue;
       patches.push_back(
           {plane.owner, plane.normal, plane.offset, x[0], Vec3(x[1], x[2], x[3]) / x[0]});
@@ -380,9 +382,9 @@ class RingRun {
   const ConvexView& body_;
   const Pose& X_;
   const InterferenceOptions& options_;
-  RingScratch& s_;
+  TorusSectionsScratch& s_;
   LinesRegions& regions_;
-  RingSurface surface_;
+  TorusSurface surface_;
   std::vector<double>& corners_ = s_.corners;
   double error_ = 0.0, volume_scale_ = 0.0;
   double open_ = 0.0;    // how far the surface is from closed
@@ -391,20 +393,20 @@ class RingRun {
 
 }  // namespace
 
-bool add_ring_regions(const Torus& torus, const ConvexView& body, const Pose& X,
-                      const InterferenceOptions& options, RingScratch& scratch,
-                      LinesRegions& regions, RingSurface surface) noexcept {
-  return RingRun(torus, body, X, options, scratch, regions, surface).run();
+bool add_torus_regions(const Torus& torus, const ConvexView& body, const Pose& X,
+                       const InterferenceOptions& options, TorusSectionsScratch& scratch,
+                       LinesRegions& regions, TorusSurface surface) noexcept {
+  return TorusSectionsRun(torus, body, X, options, scratch, regions, surface).run();
 }
 
-bool ring_interference(const Torus& torus, const ConvexView& body, const Pose& X_AB,
-                       const InterferenceOptions& options, RingScratch& scratch,
-                       LinesRegions& regions, Interference& out) noexcept {
+bool torus_interference(const Torus& torus, const ConvexView& body, const Pose& X_AB,
+                        const InterferenceOptions& options, TorusSectionsScratch& scratch,
+                        LinesRegions& regions, Interference& out) noexcept {
   out.sites.clear();
   out.total = VolumeMetrics{};
   if (!(torus.own_metrics().volume > 0.0) || !(body.own_metrics().volume > 0.0)) return true;
   regions.cut(0);
-  if (!add_ring_regions(torus, body, X_AB, options, scratch, regions)) return false;
+  if (!add_torus_regions(torus, body, X_AB, options, scratch, regions)) return false;
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const VolumeMetrics& site = regions[i].metrics;
     out.total = i == 0 ? site : out.total + site;

@@ -19,14 +19,15 @@ constexpr double kEndWidth = 1e-4;          // to which an end is known, of the 
 
 class SiteSearch {
  public:
-  SiteSearch(const ConvexView& body, const Pose& X, SimdPath path, RingFan& fan, RingSites& sites)
+  SiteSearch(const ConvexView& body, const Pose& X, SimdPath path, TorusSection& sections,
+             TorusSites& sites)
       : body_(body),
         X_(X),
         path_(path),
-        fan_(fan),
+        sections_(sections),
         s_(sites),
-        major_(fan.faces().major),
-        minor_(fan.faces().minor) {}
+        major_(sections.faces().major),
+        minor_(sections.faces().minor) {}
 
   void run() {
     s_.ranges.clear();
@@ -39,8 +40,8 @@ class SiteSearch {
   }
 
  private:
-  using Arc = RingSites::Arc;
-  using Sample = RingSites::Sample;
+  using Arc = TorusSites::Arc;
+  using Sample = TorusSites::Sample;
 
   static double turned_near(double angle, double to) {
     return angle - 2.0 * kPi * std::floor((angle - to) / (2.0 * kPi) + 0.5);
@@ -140,7 +141,7 @@ class SiteSearch {
       cos[i] = std::cos(angle[i]);
       sin[i] = std::sin(angle[i]);
     }
-    fan_.probe(path_, cos, sin, length);
+    sections_.probe(path_, cos, sin, length);
   }
 
   // Whether an arc that a plane parts from the body lies between two angles next to each other.
@@ -219,7 +220,7 @@ class SiteSearch {
           sin[lane] = v;
         }
       }
-      fan_.probe(path_, cos, sin, length);
+      sections_.probe(path_, cos, sin, length);
       for (int end = 0; end < 2; ++end) {
         const double from_empty = empty[end];
         for (int i = 1; i < kParts; ++i) {
@@ -239,17 +240,17 @@ class SiteSearch {
   const ConvexView& body_;
   const Pose& X_;
   SimdPath path_;
-  RingFan& fan_;
-  RingSites& s_;
+  TorusSection& sections_;
+  TorusSites& s_;
   double major_, minor_;
   double start_ = 0.0;
 };
 
 }  // namespace
 
-void find_ring_sites(const ConvexView& body, const Pose& X, SimdPath path, RingFan& fan,
-                     RingSites& sites) {
-  SiteSearch(body, X, path, fan, sites).run();
+void find_torus_sites(const ConvexView& body, const Pose& X, SimdPath path, TorusSection& sections,
+                      TorusSites& sites) {
+  SiteSearch(body, X, path, sections, sites).run();
 }
 
 }  // namespace volcontact

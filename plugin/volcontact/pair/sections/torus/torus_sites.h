@@ -9,14 +9,14 @@
 namespace volcontact {
 
 /// A range of half-planes through the axis of a ring that meet an overlap [rad].
-struct RingRange {
+struct TorusRange {
   double low, high;
   bool whole;  ///< all of the turn
 };
 
 /// Memory of the search.
-struct RingSites {
-  std::vector<RingRange> ranges;  ///< what was found, one for every connected part
+struct TorusSites {
+  std::vector<TorusRange> ranges;  ///< what was found, one for every connected part
   struct Arc {
     double low, high;
   };
@@ -30,8 +30,8 @@ struct RingSites {
 /// Finds where a ring meets a bounded convex body with the pose X in the ring's frame. A ring is a
 /// union of balls: a plane that parts the body from one of them parts it from all on an arc. What
 /// such arcs leave is looked through half-plane by half-plane, with those where a ball meets the
-/// body among them, so that no overlap is too small to be found. docs/theory.md, "Rings".
-void find_ring_sites(const ConvexView& body, const Pose& X, SimdPath path, RingFan& fan,
-                     RingSites& sites);
+/// body among them, so that no overlap is too small to be found. docs/theory.md, "Tori".
+void find_torus_sites(const ConvexView& body, const Pose& X, SimdPath path, TorusSection& sections,
+                      TorusSites& sites);
 
 }  // namespace volcontact

@@ -53,9 +53,10 @@ TEST(ComposedLines, ASeamJoinsItsSides) {
 // The part below the blind hole lies in the half-space as a whole: its surface counts as well.
 TEST(ComposedLines, APartInsideAsAWholeHasItsArea) {
   const double r = 0.25, half = 0.1, bore = 0.12, floor = 0.02, level = 0.05;
-  const Shape pot = Csg(Csg::Operation::kDifference, Csg(Cylinder({.radius = r, .half_length = half})),
-                        Csg(Cylinder({.radius = bore, .half_length = half}))
-                            .posed({Mat3::Identity(), {0.0, 0.0, floor + half}}));
+  const Shape pot =
+      Csg(Csg::Operation::kDifference, Csg(Cylinder({.radius = r, .half_length = half})),
+          Csg(Cylinder({.radius = bore, .half_length = half}))
+              .posed({Mat3::Identity(), {0.0, 0.0, floor + half}}));
   const Pose X{Mat3::Identity(), {0.1, 0.0, -level}};
   const Interference out = evaluated(HalfSpace(), pot, X);
   EXPECT_EQ(out.engine, Engine::kLines);

@@ -15,14 +15,14 @@ constexpr double kMajor = 0.3, kMinor = 0.1;
 
 std::vector<double> breaks(const FaceSet& faces) {
   std::vector<double> angles;
-  find_ring_breaks(faces, kMajor, kMinor, angles);
+  find_torus_breaks(faces, kMajor, kMinor, angles);
   std::sort(angles.begin(), angles.end());
   return angles;
 }
 
 // The plane y = d is a line rho = d / sin in a half-plane, which touches the disc where that is
 // R - r or R + r.
-TEST(RingBreaks, APlaneAlongTheAxisTouchesWhereItMeetsTheEquators) {
+TEST(TorusBreaks, APlaneAlongTheAxisTouchesWhereItMeetsTheEquators) {
   const double d = 0.15;
   FaceSet faces;
   faces.planes.push_back({Vec3::UnitY(), d, Owner::kB});
@@ -33,14 +33,14 @@ TEST(RingBreaks, APlaneAlongTheAxisTouchesWhereItMeetsTheEquators) {
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(found[i], expected[i], 1e-12);
 }
 
-TEST(RingBreaks, ThePlaneUnderTheRingHasNone) {
+TEST(TorusBreaks, ThePlaneUnderTheRingHasNone) {
   FaceSet faces;
   faces.planes.push_back({Vec3::UnitZ(), -0.05, Owner::kB});
   EXPECT_TRUE(breaks(faces).empty());
 }
 
 // A corner in the tube, and the three edges from it, of which two run along the x and y axes.
-TEST(RingBreaks, CornersAndPiercedEdgesAreFound) {
+TEST(TorusBreaks, CornersAndPiercedEdgesAreFound) {
   const Pose X{Mat3::Identity(), {0.3 + 1.0, 1.0, 1.0}};  // a corner at (0.3, 0, 0)
   FaceSet faces;
   FaceWriter(faces, X, Owner::kB).write(Box({.half_sizes = {1.0, 1.0, 1.0}}));
@@ -54,7 +54,7 @@ TEST(RingBreaks, CornersAndPiercedEdgesAreFound) {
   EXPECT_TRUE(has(std::acos(0.3 / (kMajor + kMinor))));
 }
 
-TEST(RingBreaks, TheRimOfATubeIsFollowed) {
+TEST(TorusBreaks, TheRimOfATubeIsFollowed) {
   // A tube along x with its end at x = 0.3: its rim, of radius 0.05, lies in the ring all round.
   const Pose X{Eigen::AngleAxisd(0.5 * kPi, Vec3::UnitY()).toRotationMatrix(), {0.8, 0.0, 0.0}};
   FaceSet faces;

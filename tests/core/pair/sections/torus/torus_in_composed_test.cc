@@ -18,7 +18,7 @@ constexpr double kMajor = 0.3, kMinor = 0.1;
 const Shape kRing = Torus({.major_radius = kMajor, .minor_radius = kMinor});
 
 // Two boxes that share a face are one box.
-TEST(RingComposed, ASeamIsNoSurface) {
+TEST(TorusInComposed, ASeamIsNoSurface) {
   const Shape two = box(0.2, 0.2, 0.1, at(-0.2, 0.0, 0.0)) + box(0.2, 0.2, 0.1, at(0.2, 0.0, 0.0));
   const Shape one = Box({.half_sizes = {0.4, 0.2, 0.1}});
   ASSERT_EQ(engine_for(kRing, two), Engine::kLines);
@@ -40,7 +40,7 @@ TEST(RingComposed, ASeamIsNoSurface) {
   }
 }
 
-TEST(RingComposed, BothOrdersAgree) {
+TEST(TorusInComposed, BothOrdersAgree) {
   const Shape corner = box(0.2, 0.05, 0.2) + box(0.05, 0.2, 0.2, at(0.15, 0.15, 0.0));
   test::Random random(2);
   for (int i = 0; i < 20; ++i) {
@@ -53,7 +53,7 @@ TEST(RingComposed, BothOrdersAgree) {
   }
 }
 
-TEST(RingComposed, ARingOnABoredBlockFarFromTheBoreIsOnABlock) {
+TEST(TorusInComposed, ARingOnABoredBlockFarFromTheBoreIsOnABlock) {
   const Shape bored = box(0.5, 0.5, 0.1) - tube(0.05, 0.5),
               block = Box({.half_sizes = {.5, .5, .1}});
   // Around the bore, lying flat; and its edge beside the bore, upright.
@@ -70,7 +70,7 @@ TEST(RingComposed, ARingOnABoredBlockFarFromTheBoreIsOnABlock) {
 
 // Over the rim of the bore the surface of the overlap serves; the answer is that of neither block
 // nor bore.
-TEST(RingComposed, ABoreInReachIsServed) {
+TEST(TorusInComposed, ABoreInReachIsServed) {
   const Shape bored = box(0.5, 0.5, 0.1) - tube(0.2, 0.5),
               block = Box({.half_sizes = {.5, .5, .1}});
   const Shape plug = Cylinder({.radius = 0.2, .half_length = 0.1});
@@ -82,7 +82,7 @@ TEST(RingComposed, ABoreInReachIsServed) {
   EXPECT_NEAR(out.total.volume, expected, 1e-4 * expected);
 }
 
-TEST(RingComposed, OctreeBoundsHoldTheVolume) {
+TEST(TorusInComposed, OctreeBoundsHoldTheVolume) {
   const Shape corner = box(0.2, 0.05, 0.2) + box(0.05, 0.2, 0.2, at(0.15, 0.15, 0.0));
   test::Random random(3);
   for (int i = 0; i < 3; ++i) {

@@ -29,7 +29,7 @@ std::vector<Shape> bodies() {
           test::random_polytope(12, random)};
 }
 
-TEST(RingLines, ServesEveryConvexBodyInBothOrders) {
+TEST(TorusSections, ServesEveryConvexBodyInBothOrders) {
   test::Random random(2);
   for (const Shape& body : bodies()) {
     EXPECT_EQ(engine_for(kRing, body), Engine::kLines);
@@ -44,7 +44,7 @@ TEST(RingLines, ServesEveryConvexBodyInBothOrders) {
 }
 
 // The closed form of a ring on a plane, at all angles and depths.
-TEST(RingLines, AWideFaceIsAHalfSpace) {
+TEST(TorusSections, AWideFaceIsAHalfSpace) {
   test::Random random(3);
   const Shape plate = Box({.half_sizes = {2.0, 2.0, 1.0}}), ground = HalfSpace();
   for (int i = 0; i < 200; ++i) {
@@ -68,7 +68,7 @@ TEST(RingLines, AWideFaceIsAHalfSpace) {
   }
 }
 
-TEST(RingLines, ARingInABoxIsContained) {
+TEST(TorusSections, ARingInABoxIsContained) {
   const Shape box = Box({.half_sizes = {0.5, 0.5, 0.5}});
   test::Random random(4);
   for (int i = 0; i < 20; ++i) {
@@ -78,7 +78,7 @@ TEST(RingLines, ARingInABoxIsContained) {
   }
 }
 
-TEST(RingLines, ABallInTheTubeIsContained) {
+TEST(TorusSections, ABallInTheTubeIsContained) {
   const double r = 0.04;
   const Shape ball = Sphere({.radius = r});
   for (double angle : {0.0, 1.0, 2.5}) {
@@ -91,7 +91,7 @@ TEST(RingLines, ABallInTheTubeIsContained) {
 }
 
 // By Pappus, from the segment of the disc that lies within the peg.
-TEST(RingLines, APegInTheHoleIsASegmentThatGoesRound) {
+TEST(TorusSections, APegInTheHoleIsASegmentThatGoesRound) {
   for (double depth : {1e-7, 1e-4, 0.03, 0.1, 0.17}) {
     const double radius = kMajor - kMinor + depth;
     const double far = kMinor - depth, angle = std::acos(far / kMinor);
@@ -115,13 +115,13 @@ TEST(RingLines, APegInTheHoleIsASegmentThatGoesRound) {
   }
 }
 
-TEST(RingLines, ARodThroughTheHoleTouchesNothing) {
+TEST(TorusSections, ARodThroughTheHoleTouchesNothing) {
   const Shape rod = Capsule({.radius = 0.15, .half_length = 1.0});
   EXPECT_FALSE(evaluated(kRing, rod, {Mat3::Identity(), {0.04, 0.0, 0.0}}).total.touching());
   EXPECT_TRUE(evaluated(kRing, rod, {Mat3::Identity(), {0.051, 0.0, 0.0}}).total.touching());
 }
 
-TEST(RingLines, ABarAcrossTheRingTouchesInTwoSites) {
+TEST(TorusSections, ABarAcrossTheRingTouchesInTwoSites) {
   const Shape bar = Box({.half_sizes = {1.0, 0.02, 0.03}});
   const Interference out = evaluated(kRing, bar, {Mat3::Identity(), {0.0, 0.0, 0.12}});
   ASSERT_EQ(out.sites.size(), 2u);
@@ -133,7 +133,7 @@ TEST(RingLines, ABarAcrossTheRingTouchesInTwoSites) {
   EXPECT_NEAR(out.total.volume, octree.total.volume, octree.total.volume_error);
 }
 
-TEST(RingLines, AreaVectorAndMomentAreTheGradientOfVolume) {
+TEST(TorusSections, AreaVectorAndMomentAreTheGradientOfVolume) {
   test::Random random(5);
   const std::vector<Shape> all = bodies();
   for (const Shape& body : all) {
@@ -155,7 +155,7 @@ TEST(RingLines, AreaVectorAndMomentAreTheGradientOfVolume) {
 }
 
 // The side of a box through the axis of the ring, which no half-plane about the axis crosses.
-TEST(RingLines, AFaceThroughTheAxisCounts) {
+TEST(TorusSections, AFaceThroughTheAxisCounts) {
   const Shape box = Box({.half_sizes = {0.3, 0.2, 0.25}});
   const InterferenceOptions options{.tolerance = 1e-6};
   for (const double aside : {0.0, 1e-12, 1e-9, 1e-6, 1e-3}) {
@@ -171,7 +171,7 @@ TEST(RingLines, AFaceThroughTheAxisCounts) {
 }
 
 // A bar moves outwards over the inner side of the ring: two sites become one.
-TEST(RingLines, VolumeIsContinuousWhereSitesMerge) {
+TEST(TorusSections, VolumeIsContinuousWhereSitesMerge) {
   const Shape bar = Box({.half_sizes = {1.0, 0.02, 0.03}});
   double before = 0.0;
   std::size_t first = 0, last = 0;
@@ -191,20 +191,20 @@ TEST(RingLines, VolumeIsContinuousWhereSitesMerge) {
   EXPECT_EQ(last, 1u);
 }
 
-TEST(RingLines, EveryPathHasTheSameBits) {
+TEST(TorusSections, EveryPathHasTheSameBits) {
   test::Random random(6);
   const std::vector<Shape> all = bodies();
   int compared = 0;
   const auto metrics = [&](const Shape& body, const Pose& X, SimdPath path) {
-    RingScratch scratch;
+    TorusSectionsScratch scratch;
     scratch.path = path;
     LinesRegions regions;
     Interference out;
     std::visit(
         [&](const auto& solid) {
           if constexpr (HasFaces<std::decay_t<decltype(solid)>>) {
-            ring_interference(std::get<Torus>(kRing), ConvexView(solid), X, {}, scratch, regions,
-                              out);
+            torus_interference(std::get<Torus>(kRing), ConvexView(solid), X, {}, scratch, regions,
+                               out);
           }
         },
         body);
@@ -261,7 +261,7 @@ double ring_and_ball(double major, double minor, double radius, const Vec3& cent
 
 // The ball crosses the tube within a small part of a section, twice: in windows of poses a
 // thousandth wide such a part falls between the places that are looked at.
-TEST(RingLines, ABallSharesSegmentsOfDiscsWithTheRing) {
+TEST(TorusSections, ABallSharesSegmentsOfDiscsWithTheRing) {
   test::Random random(21);
   for (int i = 0; i < 200; ++i) {
     const Vec3 center = i < 100 ? Vec3(0.1405 + 4e-5 * i, 0.0, 0.0) : random.in_box(0.2);

@@ -12,17 +12,17 @@ constexpr double kMajor = 0.3, kMinor = 0.1;
 
 struct Found {
   FaceSet faces;
-  RingFan fan;
-  RingSites sites;
+  TorusSection sections;
+  TorusSites sites;
 };
 
 template <typename Body>
-std::vector<RingRange> ranges(const Body& body, const Pose& X) {
+std::vector<TorusRange> ranges(const Body& body, const Pose& X) {
   Found found;
   FaceWriter writer(found.faces, X, Owner::kB);
   writer.write(body);
-  found.fan.set(found.faces, kMajor, kMinor);
-  find_ring_sites(ConvexView(body), X, best_simd_path(), found.fan, found.sites);
+  found.sections.set(found.faces, kMajor, kMinor);
+  find_torus_sites(ConvexView(body), X, best_simd_path(), found.sections, found.sites);
   return found.sites.ranges;
 }
 
@@ -30,13 +30,13 @@ double wrapped(double angle) { return angle - 2.0 * kPi * std::floor(angle / (2.
 
 // A ball beside the tube is seen from the axis under the angle of their lens, here in the plane of
 // the ring: its corner lies on both circles.
-TEST(RingSites, ABallFromOutsideIsOneRangeOfTheWidthOfTheLens) {
+TEST(TorusSites, ABallFromOutsideIsOneRangeOfTheWidthOfTheLens) {
   const double r = 0.2;
   for (double depth : {1e-9, 1e-6, 1e-3, 0.1}) {
     for (double turn : {0.0, 1.0, 3.1}) {
       const double d = kMajor + kMinor + r - depth;
       const Pose X{Mat3::Identity(), {d * std::cos(turn), d * std::sin(turn), 0.0}};
-      const std::vector<RingRange> found = ranges(Sphere({.radius = r}), X);
+      const std::vector<TorusRange> found = ranges(Sphere({.radius = r}), X);
       ASSERT_EQ(found.size(), 1u) << "depth " << depth;
       const double R = kMajor + kMinor;
       const double half = std::acos((R * R + d * d - r * r) / (2.0 * R * d));
@@ -47,7 +47,7 @@ TEST(RingSites, ABallFromOutsideIsOneRangeOfTheWidthOfTheLens) {
   }
 }
 
-TEST(RingSites, NothingIsFoundWhereNothingIs) {
+TEST(TorusSites, NothingIsFoundWhereNothingIs) {
   test::Random random(1);
   for (int i = 0; i < 200; ++i) {
     const double angle = random.uniform(0.0, 2.0 * kPi), gap = random.log_uniform(1e-12, 0.1);
@@ -58,22 +58,22 @@ TEST(RingSites, NothingIsFoundWhereNothingIs) {
   EXPECT_TRUE(ranges(Sphere({.radius = 0.19}), Pose{}).empty());  // in the hole
 }
 
-TEST(RingSites, ABallInTheHoleIsAllRound) {
-  const std::vector<RingRange> found = ranges(Sphere({.radius = 0.2 + 1e-6}), Pose{});
+TEST(TorusSites, ABallInTheHoleIsAllRound) {
+  const std::vector<TorusRange> found = ranges(Sphere({.radius = 0.2 + 1e-6}), Pose{});
   ASSERT_EQ(found.size(), 1u);
   EXPECT_TRUE(found[0].whole);
 }
 
 // A bar across the ring, wherever it lies: the ranges are those of its corners at the equator.
-TEST(RingSites, ABarAcrossIsTwoRanges) {
+TEST(TorusSites, ABarAcrossIsTwoRanges) {
   test::Random random(2);
   for (int i = 0; i < 100; ++i) {
     const double turn = random.uniform(0.0, 2.0 * kPi), w = 0.01;
     const Pose X{test::turn(Vec3::UnitZ(), turn), Vec3::Zero()};
-    const std::vector<RingRange> found = ranges(Box({.half_sizes = {1.0, w, 0.3}}), X);
+    const std::vector<TorusRange> found = ranges(Box({.half_sizes = {1.0, w, 0.3}}), X);
     ASSERT_EQ(found.size(), 2u);
     const double half = std::asin(w / (kMajor - kMinor));
-    for (const RingRange& range : found) {
+    for (const TorusRange& range : found) {
       EXPECT_NEAR(range.high - range.low, 2.0 * half, 1e-3 * half);
       EXPECT_NEAR(std::sin(0.5 * (range.high + range.low) - turn), 0.0, 1e-3 * half);
     }

@@ -29,7 +29,7 @@ inline int thread_limit(int asked) {
 /// thread has a share of a loop's tasks, one after the other in memory, and helps others from the
 /// end of theirs when its own is done: so threads seldom write to the same cache lines. Which
 /// thread does what is up to chance, so that the tasks must not depend on each other.
-class Crew {
+class ThreadTeam {
  public:
   /// Runs program() on the calling thread, with up to `threads` - 1 others at hand.
   template <typename Program>
@@ -55,7 +55,7 @@ class Crew {
   /// Whether others are at hand.
   bool open() const { return open_; }
 
-  /// Number of the calling thread within the crew.
+  /// Number of the calling thread within the team.
   static int number() {
 #ifdef _OPENMP
     return omp_get_thread_num();
