@@ -99,6 +99,8 @@ def test_failure_shows_the_end_of_the_log(monkeypatch):
 def test_missing_tools_are_named(monkeypatch):
     monkeypatch.setenv("PATH", "/nowhere")
     monkeypatch.delenv("CXX", raising=False)
+    # Some library of the environment may have brought the PyPI package.
+    monkeypatch.setattr(_adaptor_build.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(RuntimeError, match="there is no cmake: pip install cmake"):
         _adaptor_build.build(NAME, SOURCE)
     monkeypatch.setattr(_adaptor_build, "_program", lambda name, advice: name)

@@ -99,6 +99,13 @@ def test_insert_oru(run):
     assert numbers(left)[0] < 1.0  # [mm]
 
 
+def test_identify_ball(run):
+    text = run("identify_ball")
+    for name in ("stiffness", "damping", "friction"):
+        (found, true) = re.findall(rf"{name}: ({NUMBER}), true ({NUMBER})", text)[0]
+        assert float(found) == pytest.approx(float(true), rel=0.05), name
+
+
 def test_every_example_is_tested_and_listed():
     names = {path.stem for path in EXAMPLES.glob("*.py")}
     tested = {name.removeprefix("test_") for name in globals() if name.startswith("test_")}
