@@ -31,7 +31,9 @@ Column12 evaluate(const Model& model, const vc_motion& motion) {
 // Column `i` of a motion: a turn or displacement of a body, or a change of its speed.
 vc_motion moved(vc_motion motion, int i, double by, bool speed) {
   if (speed) {
-    (i < 6 ? motion.V_WA : motion.V_WB)[i % 6] += by;
+    // A pointer: GCC 12 with -fsanitize=bounds indexes a conditional array wrongly.
+    double* velocity = i < 6 ? motion.V_WA : motion.V_WB;
+    velocity[i % 6] += by;
     return motion;
   }
   double* pose = i < 6 ? motion.X_WA : motion.X_WB;
