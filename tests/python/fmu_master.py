@@ -113,7 +113,7 @@ class RigidBody:
     @classmethod
     def of(cls, model, name):
         """Of a body of a model."""
-        body = model.body(name).id
+        body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name)
         turned = np.zeros(9)
         mujoco.mju_quat2Mat(turned, model.body_iquat[body])
         return cls(
