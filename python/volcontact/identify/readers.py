@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+
 import mujoco
 import numpy as np
 
@@ -13,7 +15,7 @@ from volcontact.study.table import nearest
 from volcontact.study.targets import joint_place
 
 
-class Reader:
+class Reader(ABC):
     """Reads one measure.
 
     Attributes:
@@ -29,9 +31,9 @@ class Reader:
         self.place = 0
         self.level = 0
 
+    @abstractmethod
     def read(self, out: np.ndarray) -> None:
         """Writes the numbers."""
-        raise NotImplementedError
 
 
 class _View(Reader):
