@@ -74,9 +74,14 @@ def test(session: nox.Session) -> None:
 
 @command
 def python(session: nox.Session) -> None:
-    """Python with volcontact."""
-    environment = environments.prepared()
-    shell.become(environment.python, *session.posargs, cwd=os.environ.get("VOLCONTACT_CALLED_IN"))
+    """Python with volcontact; scripts in tests/ get the libraries of the tests, too."""
+    called_in = Path(os.environ.get("VOLCONTACT_CALLED_IN", shell.ROOT))
+    of_tests = any(
+        (called_in / word).resolve().is_relative_to(shell.ROOT / "tests")
+        for word in session.posargs[:1]
+    )
+    environment = environments.prepared(tests=of_tests)
+    shell.become(environment.python, *session.posargs, cwd=called_in)
 
 
 @command

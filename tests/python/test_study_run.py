@@ -178,6 +178,15 @@ def test_rows_reach_the_disk_while_other_trials_take_long(tmp_path):
     assert vc.Study.rows(out)["trial"].to_pylist() == list(range(40))
 
 
+def test_few_rows_wait_for_the_disk_at_any_rate(tmp_path):
+    path = function_study(tmp_path)
+    instant = "def trial(values, rng):\n    return {'sum': values['x'], 'noise': 0.0}\n"
+    (tmp_path / "functions.py").write_text(instant)
+    vc.Study(path, trials=24_000).run(tmp_path / "out", engine="serial")
+    parts = [pq.read_metadata(p).num_rows for p in (tmp_path / "out" / "trials").iterdir()]
+    assert sum(parts) == 24_000 and max(parts) <= 12_000, parts
+
+
 def test_serial_driver_that_its_trial_kills_goes_on_behind_it(tmp_path):
     path = function_study(tmp_path, none=0.75, crash=0.25)
     out = tmp_path / "out"

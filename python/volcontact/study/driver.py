@@ -26,6 +26,7 @@ _MOST_TRIALS = 2000  # in a batch
 _AHEAD = 2  # batches under way for each worker
 _FLUSH = 2.0  # rows reach the disk after so long at the latest, later on less often [s]
 _SLOWEST_FLUSH = 30.0
+_MOST_ROWS = 10_000  # that wait for the disk: a row is half a kilobyte until it is there
 
 
 def run_study(
@@ -303,6 +304,8 @@ class _Writer:
         now = time.monotonic()
         if not self._rows:
             return _SLOWEST_FLUSH
+        if len(self._rows) >= _MOST_ROWS:
+            return 0.0
         period = min(max(_FLUSH, 0.01 * (now - self._begin)), _SLOWEST_FLUSH)
         return max(self._flushed + period - now, 0.0)
 
