@@ -36,6 +36,26 @@ function(volcontact_unity_by_folder name)
   set_target_properties(${name} PROPERTIES UNITY_BUILD_MODE GROUP)
 endfunction()
 
+option(VOLCONTACT_PRECOMPILE "Parse the headers that most sources need once for all of them" ON)
+
+# Headers that most sources of a target need, by full paths or as <name>. A source must still include
+# what it uses: the build under the sanitizers precompiles nothing. FROM another target of the same
+# flags takes what that one has.
+function(volcontact_precompile name)
+  cmake_parse_arguments(PARSE_ARGV 1 argument "" "FROM" "")
+  if(NOT VOLCONTACT_PRECOMPILE)
+    return()
+  endif()
+  if(argument_FROM)
+    target_precompile_headers(${name} REUSE_FROM ${argument_FROM})
+  else()
+    target_precompile_headers(${name} PRIVATE ${argument_UNPARSED_ARGUMENTS})
+  endif()
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${name} PRIVATE -fpch-preprocess)  # ccache asks for it
+  endif()
+endfunction()
+
 # What a user of the core must have as well. Scope: PUBLIC for the core, INTERFACE for one that was
 # compiled before.
 function(volcontact_core_usage name scope)

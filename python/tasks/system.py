@@ -68,6 +68,8 @@ def use_compiler_cache() -> None:
             "CMAKE_CXX_COMPILER_LAUNCHER": "ccache",
             "CCACHE_BASEDIR": str(ROOT),
             "CCACHE_NOHASHDIR": "1",
+            # Precompiled headers: their contents count, not when they were written.
+            "CCACHE_SLOPPINESS": "pch_defines,time_macros,include_file_mtime,include_file_ctime",
         }
 
 
