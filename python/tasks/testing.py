@@ -172,7 +172,9 @@ class _Selection:
     def _matches(self, name: str) -> bool:
         def truth(word: re.Match[str]) -> str:
             text = word.group().lower()
-            return text if text in {"and", "or", "not"} else str(text in name)
+            if text in {"and", "or", "not"}:
+                return text
+            return str(text in name or text.replace("_", "") in name)  # our_word is OurWord there
 
         return bool(eval(re.sub(r"[\w.:/-]+", truth, self.expression), {"__builtins__": {}}))
 
