@@ -118,7 +118,7 @@ def benchmark(session: nox.Session) -> None:
 
 @command
 def accuracy(session: nox.Session) -> None:
-    """Measures the errors of all engines, writes docs/accuracy.md (half an hour)."""
+    """Errors of all engines, or of those named, in docs/accuracy.md (all: half an hour)."""
     recording.accuracy(environments.prepared(), session.posargs)
 
 

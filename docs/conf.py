@@ -58,7 +58,8 @@ SECTIONS = {
         "mjcf_models/README",
     ],
     "Engines": [
-        f"docs/engines/{name}" for name in ("closed_form", "clip", "lines", "columns", "octree")
+        f"docs/engines/{name}"
+        for name in ("closed_form", "clip", "lines", "surface_sweep", "columns", "octree")
     ],
     "Laws": [
         f"docs/laws/{name}"

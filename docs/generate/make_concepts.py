@@ -112,6 +112,26 @@ def draw_rays(axes: Axes, a: Distance, b: Distance) -> None:
             axes.plot([x, x], [low, high], color=INK, lw=1.2)
 
 
+def draw_normals(axes: Axes, a: Distance, b: Distance) -> None:
+    """The surface of the overlap, and its normals at the nodes of a Gauss rule."""
+    nodes = 0.005 + 0.0485 * np.polynomial.legendre.leggauss(9)[0]
+    ends = [(x, *_column(a, b, x)) for x in nodes]
+    ends = [(x, low, high) for x, low, high in ends if high > low]
+    for height in (1, 2):
+        axes.plot([e[0] for e in ends], [e[height] for e in ends], ".", color=INK, ms=4)
+    step = 1e-5
+    for x, low, high in ends:
+        for z in (low, high):
+            face = a if a(x, z) > b(x, z) else b
+            slope = np.array(
+                [face(x + step, z) - face(x - step, z), face(x, z + step) - face(x, z - step)]
+            )
+            way = 0.009 * slope / np.linalg.norm(slope)
+            axes.annotate(
+                "", (x + way[0], z + way[1]), (x, z), arrowprops=dict(arrowstyle="->", color=INK)
+            )
+
+
 def draw_chords(axes: Axes, at: np.ndarray) -> None:
     """The same ball as a mesh: a column under each edge, the sum exact for the triangles."""
     angle = np.linspace(0.0, 2.0 * np.pi, 25)

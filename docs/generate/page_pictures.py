@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 from concepts_sections import INK, arrow, distance, draw_section, pose
 from make_accuracy import RESULTS
-from make_concepts import Drawn, bounce, draw_cells, draw_chords, draw_rays
+from make_concepts import Drawn, bounce, draw_cells, draw_chords, draw_normals, draw_rays
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -106,6 +106,7 @@ _IDEA: dict[str, Callable[[Axes], float]] = {
     "closed_form": _ball_in_plane,
     "clip": _two_boxes,
     "lines": partial(_integrated, lambda axes, a, b, at: draw_rays(axes, a, b)),
+    "surface_sweep": partial(_integrated, lambda axes, a, b, at: draw_normals(axes, a, b)),
     "columns": partial(_integrated, lambda axes, a, b, at: draw_chords(axes, at)),
     "octree": partial(
         _integrated,

@@ -74,7 +74,7 @@ Args:
     b: solid B
     X_AB: pose of B in A, shape (4, 4); the identity when left out
     tolerance [-]: relative error asked of the volume, between 0 and 1
-    engine: 'auto', 'closed_form', 'clip', 'lines', 'columns' or 'octree'
+    engine: 'auto', 'closed_form', 'clip', 'lines', 'surface_sweep', 'columns' or 'octree'
     threads: threads for this one pair, 0 = decide by work; never changes a bit
 
 Returns:

@@ -76,12 +76,24 @@ def benchmark(environment: Environment, arguments: list[str]) -> None:
 
 
 def accuracy(environment: Environment, arguments: list[str]) -> None:
-    """Measures the errors of all engines and writes their page."""
+    """Measures the errors of all engines, or of those named, and writes their page."""
     program = _program(environment, "characterise")
-    table = environment.tree / "accuracy.csv"
+    table, record = environment.tree / "accuracy.csv", TABLES / "accuracy.csv"
     with table.open("w") as file:
-        run(program, *arguments, log=file)
-    table.replace(TABLES / "accuracy.csv")
+        run(program, *arguments, table=file)
+    named = {word for word in arguments if not word.isdecimal()}
+    if named and record.exists():
+        with table.open(newline="") as file:
+            measured = list(csv.DictReader(file))
+        with record.open(newline="") as file:
+            kept = [row for row in csv.DictReader(file) if row["engine"] not in named]
+        place = {(row["a"], row["b"]): i for i, row in enumerate(kept)}
+        rows = sorted(kept + measured, key=lambda row: place.get((row["a"], row["b"]), len(place)))
+        with table.open("w", newline="") as file:
+            writer = csv.DictWriter(file, list(measured[0]), lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
+    table.replace(record)
     environment.script("docs/generate/make_accuracy.py")
     environment.script("docs/generate/make_blocks.py")
 

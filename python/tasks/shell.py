@@ -43,15 +43,19 @@ def run(
     cwd: Path | None = ROOT,
     env: Mapping[str, str] | None = None,
     log: IO[str] | None = None,
+    table: IO[str] | None = None,
 ) -> None:
-    """Runs a program of the tools or of the system; a status other than 0 ends the command."""
+    """Runs a program of the tools or of the system; a status other than 0 ends the command.
+
+    `log` takes all that it says, `table` what it says to its standard output alone.
+    """
     words = [str(word) for word in command]
     sys.stdout.flush()
     done = subprocess.run(
         words,
         cwd=cwd,
         env={**os.environ, **(env or {})},
-        stdout=log,
+        stdout=log or table,
         stderr=subprocess.STDOUT if log else None,
         check=False,
     )

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Measures every engine on every pair and prints a table as CSV: characterise [POSES_A_PAIR].
+// Measures engines, all or those named, on every pair and prints a table as CSV:
+// characterise [POSES_A_PAIR] [ENGINE...].
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -64,11 +65,20 @@ class Progress {
 
 int main(int argc, char** argv) {
   using namespace volcontact::test;
-  const Effort effort{.poses = argc > 1 ? std::atoi(argv[1]) : 12,
-                      .gradient_poses = 3,
-                      .motion_steps = 21,
-                      .octree_poses = 6,
-                      .slow_octree_poses = 2};
+  Effort effort{.poses = 12,
+                .gradient_poses = 3,
+                .motion_steps = 21,
+                .octree_poses = 6,
+                .slow_octree_poses = 2};
+  std::vector<volcontact::Engine> named;
+  for (int i = 1; i < argc; ++i) {
+    if (const int poses = std::atoi(argv[i])) {
+      effort.poses = poses;
+    } else {
+      named.push_back(volcontact::engine_from(argv[i]));
+    }
+  }
+  if (!named.empty()) effort.engines = named;
   std::vector<std::pair<const Example*, const Example*>> pairs;
   for (const Example& a : examples()) {
     for (const Example& b : examples()) {

@@ -21,19 +21,6 @@ namespace {
 // that, and their pairs are shared instead.
 bool shares_its_own_work(Engine engine) { return engine == Engine::kOctree; }
 
-// Typical time of a pair [s].
-double typical_time(Engine engine) {
-  switch (engine) {
-    case Engine::kOctree:
-      return 2e-3;
-    case Engine::kClosedForm:
-    case Engine::kClip:
-      return 1e-6;
-    default:
-      return 5e-6;
-  }
-}
-
 // The time from which OpenMP saves more than it costs, also on a busy machine [s].
 constexpr double kWorthSharing = 200e-6;
 constexpr int kPairsPerTask = 16;

@@ -19,12 +19,28 @@ const char* to_string(Engine engine) {
       return "clip";
     case Engine::kLines:
       return "lines";
+    case Engine::kSurfaceSweep:
+      return "surface_sweep";
     case Engine::kColumns:
       return "columns";
     case Engine::kOctree:
       return "octree";
   }
   return "unknown";
+}
+
+double typical_time(Engine engine) {
+  switch (engine) {
+    case Engine::kOctree:
+      return 2e-3;
+    case Engine::kSurfaceSweep:
+      return 300e-6;
+    case Engine::kClosedForm:
+    case Engine::kClip:
+      return 1e-6;
+    default:
+      return 5e-6;
+  }
 }
 
 Engine engine_from(std::string_view name) {

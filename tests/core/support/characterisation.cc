@@ -120,7 +120,7 @@ class Judge {
  private:
   static constexpr double kShared = 1e-6;  // of the areas: shared faces that do not matter
 
-  // A rough answer tells which engine makes it: lines leave some composed solids to the octree.
+  // A rough answer tells which engine makes it: lines leave some composed solids to others.
   bool serves_pose(const Pose& X_AB) {
     InterferenceOptions rough = options_;
     rough.tolerance = 1.0;
@@ -227,7 +227,7 @@ std::vector<Characterisation> characterise(const Example& a, const Example& b,
     if (volumes_are_sure && !(octree && slow)) engine_judge.compare_motion(poses, volumes);
     rows.push_back(engine_judge.row());
   };
-  for (const Engine engine : kEngines) {
+  for (const Engine engine : effort.engines) {
     if (engine == Engine::kAuto || !serves(engine, a.shape, b.shape)) continue;
     judge(a, b, engine, false);
     if (&a != &b) judge(b, a, engine, true);

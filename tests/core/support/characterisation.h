@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/support/contact_poses.h"
@@ -23,7 +24,7 @@ struct Characterisation {
   const Example* b = nullptr;
   Engine engine = Engine::kAuto;
   int poses = 0;      ///< with an overlap that the reference could integrate
-  int handed_on = 0;  ///< further poses that the engine left to the octree
+  int handed_on = 0;  ///< further poses that the engine left to another
   Spread volume, centroid, inertia;
   Spread area_vector, area_moment;  ///< of poses without shared faces; see Reference
   Spread gradient, turn;         ///< of the area vector and moment against finite differences of V
@@ -42,6 +43,7 @@ struct Effort {
   int octree_poses = 2;            ///< of the poses, those that the octree gets too
   int slow_octree_poses = 1;       ///< the same where it has cones, a torus, a mesh; no motion
   double octree_tolerance = 1e-2;  ///< relative error asked of the octree
+  std::span<const Engine> engines = kEngines;  ///< that are measured
 };
 
 /// Every engine that serves the pair, both orders.

@@ -91,8 +91,9 @@ class LayerSum {
     const bool composed = one_is(std::type_identity<Csg>{});
     const bool clipped = one_is(std::type_identity<Box>{});
     double tolerance = kLayerTolerance;
-    if (engine == Engine::kLines && !composed) tolerance = kTighter;
-    if (engine == Engine::kLines && composed) limit_cells(kMostCellsOfLevel);
+    const bool estimated = engine == Engine::kLines || engine == Engine::kSurfaceSweep;
+    if (estimated && !composed) tolerance = kTighter;
+    if (estimated && composed) limit_cells(kMostCellsOfLevel);
     if (engine == Engine::kColumns && !clipped) {
       tolerance = kColumnTolerance;
       limit_cells(kMostTrianglesOfLevel);

@@ -10,7 +10,7 @@ namespace volcontact {
 /// What sections serve, from the surface of the overlap: the next to be asked where they are
 /// beyond.
 struct SurfaceSweep : EngineBase {
-  static constexpr Engine kWord = Engine::kLines;
+  static constexpr Engine kWord = Engine::kSurfaceSweep;
   using Scratch = TypeList<SurfaceSweepScratch>;
 
   template <typename S>
@@ -23,6 +23,7 @@ struct SurfaceSweep : EngineBase {
   template <typename A, typename B>
   static constexpr bool kTorusOnPlane = std::is_same_v<A, Torus> && std::is_same_v<B, HalfSpace>;
 
+  static constexpr bool stands_in_for(Engine asked) { return asked == Engine::kLines; }
   template <typename A, typename B>
   static constexpr bool serves() {
     return kMadeOfSimple<A> && kMadeOfSimple<B> && !(kHasPlanesOnly<A> && kHasPlanesOnly<B>) &&

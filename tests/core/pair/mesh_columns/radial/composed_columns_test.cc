@@ -141,7 +141,7 @@ TEST(ComposedColumns, AMeshOfABoxMeetsComposedSolidsAsTheBox) {
       const Pose X_AB =
           overlapping(box, kind.solid, random, std::pow(10.0, random.uniform(-3.5, -1.0)));
       const Interference expected = evaluated(box, kind.solid, X_AB, Engine::kLines, 1e-5);
-      if (!expected.total.touching() || expected.engine != Engine::kLines) continue;
+      if (!expected.total.touching() || expected.engine == Engine::kOctree) continue;
       ++compared;
       const Interference out = evaluated(mesh, kind.solid, X_AB);
       if (out.engine != Engine::kColumns) continue;

@@ -76,7 +76,7 @@ TEST(TorusInComposed, ABoreInReachIsServed) {
   const Shape plug = Cylinder({.radius = 0.2, .half_length = 0.1});
   const Pose X{Mat3::Identity(), {0.2, 0.0, -0.19}};
   const Interference out = evaluated(kRing, bored, X);
-  EXPECT_EQ(out.engine, Engine::kLines);
+  EXPECT_EQ(out.engine, Engine::kSurfaceSweep);
   const double expected =
       evaluated(kRing, block, X).total.volume - evaluated(kRing, plug, X).total.volume;
   EXPECT_NEAR(out.total.volume, expected, 1e-4 * expected);
