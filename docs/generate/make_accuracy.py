@@ -231,8 +231,8 @@ def _weak(rows: list[Row], search: dict[str, Any]) -> str:
         poses = sum(int(row["poses"]) for row in estimated)
         held = sum(int(row["bounds_held"]) for row in estimated)
         parts.append(
-            f"* `volume_error` of `{engine}` is an estimate: the error was larger in {poses - held} "
-            f"of {poses} poses."
+            f"* `volume_error` of `{engine}` is an estimate: the error was larger in "
+            f"{poses - held} of {poses} poses."
         )
     beyond = [
         (float(row[key]) / _limit(row["engine"], key), row, name)

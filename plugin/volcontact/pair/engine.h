@@ -16,9 +16,9 @@ enum class Engine : int {
   kOctree = 4,        ///< recursive cells with certified bounds; serves every pair
 };
 
-inline constexpr Engine kEngines[] = {
-    Engine::kAuto,         Engine::kClosedForm, Engine::kClip,  Engine::kLines,
-    Engine::kSurfaceSweep, Engine::kColumns,    Engine::kOctree};
+inline constexpr Engine kEngines[] = {Engine::kAuto,  Engine::kClosedForm,   Engine::kClip,
+                                      Engine::kLines, Engine::kSurfaceSweep, Engine::kColumns,
+                                      Engine::kOctree};
 
 /// Usual time of one overlap by this engine, on one core of 2020 [s]; to plan work, not to report.
 double typical_time(Engine engine);
