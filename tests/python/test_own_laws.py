@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import gc
+import json
 import math
 import os
 import re
@@ -316,6 +317,53 @@ def test_own_law_in_a_scene(own_plugin: Path, yield_speed: float, speed: float):
     assert out == pytest.approx(speed, rel=5e-3)
     assert elastic == 0.0
     assert dissipated == pytest.approx(0.5 * (1.0 - out**2), abs=1e-3)
+
+
+SPRINGS = """
+<mujoco><option timestep="0.002" gravity="1 0 -9.81"/>
+  <size nuserdata="400"/>
+  <worldbody>
+    <geom name="floor" type="plane" size="1 1 1"/>
+    <body pos="0 0 .0499"><freejoint/><geom name="box" type="box" size=".05 .05 .05" mass="1"/></body>
+  </worldbody>
+  <custom>
+    <text name="volcontact/material/soft/geoms" data="floor"/>
+    <text name="volcontact/material/hard/geoms" data="box"/>
+    <text name="volcontact/material/soft/friction_law" data="springs"/>
+    <numeric name="volcontact/material/soft/shear_stiffness" data="1e7"/>
+    <numeric name="volcontact/material/hard/shear_stiffness" data="3e7"/>
+  </custom>
+</mujoco>"""
+REST = """
+import json, sys
+import mujoco
+import volcontact as vc
+model = vc.load(sys.argv[1])
+data = mujoco.MjData(model)
+with vc.attach(model) as contact:
+    (pair,) = contact.describe()["pairs"]
+    mujoco.mj_step(model, data, 1000)
+    before = data.qpos.copy()
+    mujoco.mj_step(model, data, 500)
+    print(json.dumps([pair, data.qvel.tolist(), (data.qpos - before).tolist()]))
+"""
+
+
+# h^2 k/m = 30: explicit steps would shake the box. Its law has no name in common with the bristles.
+def test_own_friction_too_stiff_for_explicit_steps_is_implicit(own_plugin: Path):
+    run = subprocess.run(
+        [sys.executable, "-c", REST, SPRINGS],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "VOLCONTACT_ADAPTOR": str(own_plugin)},
+    )
+    assert run.returncode == 0, run.stderr
+    pair, speeds, moved = json.loads(run.stdout)
+    assert pair["implicit"] == "always, for its friction"
+    assert pair["shear_stiffness"] == pytest.approx(7.5e6)
+    assert np.abs(speeds).max() < 1e-6
+    assert np.abs(moved).max() < 1e-9
 
 
 def test_scene_without_the_own_plugin_names_the_laws_there_are():

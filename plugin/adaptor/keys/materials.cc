@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adaptor/keys/materials.h"
 
-#include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "volcontact/force/elastic_layer.h"
 #include "volcontact/force/laws.h"
 
 namespace volcontact::adaptor {
 namespace {
-
-constexpr const char* kStiffness = "stiffness";
-constexpr const char* kDamping = "damping";
-constexpr const char* kRestitution = "restitution";
-constexpr const char* kFriction = "friction";
-constexpr const char* kStaticFriction = "static_friction";
-constexpr double kDefaultDamping = 1.0;  // [s/m]; a resting contact settles within 1 / (g a)
 
 std::string material_text(const Side& side) {
   return side.material ? side.material->key : "the default material";
@@ -32,22 +26,21 @@ const std::string* chosen(const KeyedValues* keyed, const std::string& name) {
   return found == keyed->choices.end() ? nullptr : &found->second;
 }
 
+// Where a material gives no number, that of the field which its rule names.
+const std::vector<double>* given_for(const KeyedValues* keyed, const FieldRow& field) {
+  const std::vector<double>* own = given(keyed, field.name);
+  return own || !field.rule->at_least ? own : given(keyed, field.rule->at_least);
+}
+
 std::vector<double> value_of(const Side& side, const FieldRow& field) {
-  if (const std::vector<double>* own = given(side.material, field.name)) return *own;
-  if (field.name == kStaticFriction) {  // without a number of its own, as the kinetic one
-    const std::vector<double>* kinetic = given(side.material, kFriction);
-    return kinetic ? *kinetic : std::vector<double>{side.native_friction};
-  }
-  return default_value(field, side.native_friction);
+  const std::vector<double>* own = given_for(side.material, field);
+  return own ? *own : default_value(field, side.native_friction);
 }
 
 std::string source_of(const Side& side, const FieldRow& field) {
   if (given(side.material, field.name)) return side.material->key;
-  if (field.name == kStaticFriction && given(side.material, kFriction)) {
-    return side.material->key + "/" + kFriction;
-  }
-  const bool native = field.name == kFriction || field.name == kStaticFriction;
-  if (!native) return "default";
+  if (given_for(side.material, field)) return side.material->key + "/" + field.rule->at_least;
+  if (field.rule->native == NativeValue::kNone) return "default";
   return "friction of " + (side.friction_giver.empty() ? "geom " + side.name : side.friction_giver);
 }
 
@@ -75,34 +68,33 @@ struct Stiffnesses {
   double b;
 };
 
-double combined(const std::string& field, double a, double b, const Stiffnesses& k) {
-  if (field == kStiffness) return series_stiffness(a, b);
-  if (field == kDamping) return series_damping(k.a, a, k.b, b);
-  if (field == kRestitution) return series_restitution(k.a, a, k.b, b);
-  return std::max(a, b);
+// The field of the law that `field` may replace, or that may replace it; null where there is none.
+const FieldRow* replaced_by(const LawRow& law, const FieldRow& field) {
+  return field.rule->in_place_of ? law.field(field.rule->in_place_of) : nullptr;
+}
+const FieldRow* replacing(const LawRow& law, const FieldRow& field) {
+  for (const FieldRow& other : law.fields) {
+    if (other.rule->in_place_of && field.name == other.rule->in_place_of) return &other;
+  }
+  return nullptr;
 }
 
-const char* rule_of(const std::string& field) {
-  if (field == kStiffness) return "in series: ";
-  if (field == kDamping) return "weighted by compliance: ";
-  if (field == kRestitution) return "its damping weighted by compliance: ";
-  return "larger of: ";
+// Whether `field` holds in place of the one that it replaces: where it is given.
+bool replaces(const FieldRow& field, const Side& a, const Side& b, const KeyedValues* pair) {
+  const std::string replaced = field.rule->in_place_of;
+  if (given(pair, field.name)) return true;
+  if (given(pair, replaced)) return false;
+  const bool old = given(a.material, replaced) || given(b.material, replaced);
+  const bool own = given(a.material, field.name) || given(b.material, field.name);
+  require(!(old && own), "geoms '" + a.name + "' and '" + b.name +
+                             "': one of their materials gives " + replaced + " and one " +
+                             field.name +
+                             ", which exclude each other; give one of the two in a "
+                             "volcontact/pair/<name> that lists the two geoms");
+  return own;
 }
 
-// How the normal law of a pair is damped: by `damping`, or by `restitution` where that is given.
-bool has_restitution(const Side& a, const Side& b, const KeyedValues* pair) {
-  if (given(pair, kRestitution)) return true;
-  if (given(pair, kDamping)) return false;
-  const bool damping = given(a.material, kDamping) || given(b.material, kDamping);
-  const bool restitution = given(a.material, kRestitution) || given(b.material, kRestitution);
-  require(!(damping && restitution),
-          "geoms '" + a.name + "' and '" + b.name +
-              "': one of their materials gives damping and one restitution, which exclude each "
-              "other; give one of the two in a volcontact/pair/<name> that lists the two geoms");
-  return restitution;
-}
-
-PairField combine_field(const FieldRow& field, const Side& a, const Side& b,
+PairField combine_field(const LawRow& law, const FieldRow& field, const Side& a, const Side& b,
                         const KeyedValues* pair, const Stiffnesses& stiffnesses) {
   PairField out{field.name, field.unit, {}, {}};
   if (const std::vector<double>* own = given(pair, field.name)) {
@@ -110,40 +102,43 @@ PairField combine_field(const FieldRow& field, const Side& a, const Side& b,
     out.source = pair->key;
     return out;
   }
-  if (field.name == kDamping && has_restitution(a, b, pair)) {
-    return {field.name, field.unit, {0.0}, "none: restitution is given"};
+  const FieldRow* other = replacing(law, field);
+  if (other && replaces(*other, a, b, pair)) {
+    return {field.name, field.unit, field.defaults, "none: " + other->name + " is given"};
   }
-  if (field.name == kRestitution && !has_restitution(a, b, pair)) {
-    return {field.name, field.unit, {1.0}, "none: damping holds"};
+  const FieldRow* usual = replaced_by(law, field);
+  if (usual && !replaces(field, a, b, pair)) {
+    return {field.name, field.unit, field.defaults, "none: " + usual->name + " holds"};
   }
   std::vector<double> of_a = value_of(a, field), of_b = value_of(b, field);
-  if (field.name == kRestitution) {  // where one side alone gives it, it holds for both
+  if (usual) {  // where one side alone gives it, it holds for both
     if (!given(a.material, field.name)) of_a = of_b;
     if (!given(b.material, field.name)) of_b = of_a;
   }
+  const Combination& combination = *field.rule->combination;
   for (std::size_t i = 0; i < of_a.size(); ++i) {
-    out.value.push_back(combined(field.name, of_a[i], of_b[i], stiffnesses));
+    out.value.push_back(combination.of(of_a[i], of_b[i], stiffnesses.a, stiffnesses.b));
   }
   const std::string source_a = source_of(a, field), source_b = source_of(b, field);
   const bool same = source_a == source_b && of_a == of_b;
-  out.source = rule_of(field.name) + (same ? source_a + " (both)" : source_a + ", " + source_b);
+  out.source = combination.text + (same ? source_a + " (both)" : source_a + ", " + source_b);
   return out;
 }
 
 // A pair that gives a kinetic friction above the static one of its materials means both.
-void raise_static(std::vector<PairField>& fields) {
-  PairField& least = fields.back();
-  for (const PairField& field : fields) {
-    if (field.name != kFriction || field.value[0] <= least.value[0]) continue;
-    least.value = field.value;
-    least.source = "as friction";
+void raise(PairField& field, const char* at_least, const std::vector<PairField>& fields) {
+  for (const PairField& other : fields) {
+    if (other.name != at_least || other.value[0] <= field.value[0]) continue;
+    field.value = other.value;
+    field.source = "as " + other.name;
   }
 }
 
-Stiffnesses stiffnesses_of(const LawRow& law, const Side& a, const Side& b) {
-  const FieldRow* field = law.field(kStiffness);
-  if (!field) return {1.0, 1.0};
-  return {value_of(a, *field)[0], value_of(b, *field)[0]};
+const FieldRow* stiffness_of(const LawRow& law) {
+  for (const FieldRow& field : law.fields) {
+    if (field.rule->is_stiffness) return &field;
+  }
+  return nullptr;
 }
 
 // Fields that the pair or a material gives and neither law has.
@@ -169,8 +164,8 @@ ChoiceValues law_choices(const LawRow& law, const Side& a, const Side& b, const 
 }  // namespace
 
 std::vector<double> default_value(const FieldRow& field, double native_friction) {
-  if (field.name == kFriction || field.name == kStaticFriction) return {native_friction};
-  if (field.name == kDamping) return {kDefaultDamping};
+  if (field.rule->native == NativeValue::kSlidingFriction) return {native_friction};
+  if (!std::isnan(field.rule->usual)) return {field.rule->usual};
   return field.defaults;
 }
 
@@ -181,7 +176,10 @@ PairLaws combine(const Side& a, const Side& b, const KeyedValues* pair) {
   };
   const LawRow& normal = law(kNormalLaw, normal_laws());
   const LawRow& friction = law(kFrictionLaw, friction_laws());
-  const Stiffnesses stiffnesses = stiffnesses_of(normal, a, b);
+  const FieldRow* stiffness = stiffness_of(normal);
+  const Stiffnesses stiffnesses =
+      stiffness ? Stiffnesses{value_of(a, *stiffness)[0], value_of(b, *stiffness)[0]}
+                : Stiffnesses{1.0, 1.0};
 
   PairLaws out;
   out.normal_law = normal.name;
@@ -189,9 +187,12 @@ PairLaws combine(const Side& a, const Side& b, const KeyedValues* pair) {
   FieldValues normal_values, friction_values;
   const auto fill = [&](const LawRow& row, FieldValues& values) {
     for (const FieldRow& field : row.fields) {
-      out.fields.push_back(combine_field(field, a, b, pair, stiffnesses));
-      if (field.name == kStaticFriction && !given(pair, field.name)) raise_static(out.fields);
-      values[field.name] = out.fields.back().value;
+      PairField found = combine_field(row, field, a, b, pair, stiffnesses);
+      const char* at_least = field.rule->at_least;
+      if (at_least && !given(pair, field.name)) raise(found, at_least, out.fields);
+      values[field.name] = found.value;
+      if (&field == stiffness) out.stiffness = found.value[0];
+      out.fields.push_back(std::move(found));
     }
   };
   fill(normal, normal_values);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -39,17 +40,17 @@ struct PairLaws {
   std::string friction_law;
   ChoiceValues choices;  ///< of the laws themselves: coupling
   std::vector<PairField> fields;
+  double stiffness = HUGE_VAL;  ///< of the normal law [N/m^3]; infinite where it says none
   std::vector<std::string> warnings;
 };
 
-/// Values of the default material, which also fills what a material leaves out: friction is the
-/// geom's own sliding friction in MuJoCo, damping 1 s/m, all else the law's default.
+/// Value of the default material, which also fills what a material leaves out, after the rule of
+/// the field: MuJoCo's own value of the geom, the rule's usual one, or the law's default.
 std::vector<double> default_value(const FieldRow& field, double native_friction);
 
-/// Laws of a pair from two materials: the pair's own values first, else stiffness in series,
-/// damping weighted by the compliance, and the larger one of anything else. docs/theory.md,
-/// "Materials". Throws std::invalid_argument where the materials name different laws and the pair
-/// does not choose.
+/// Laws of a pair from two materials: the pair's own values first, else what the rules of the
+/// fields make of the two (force/material_rule.h). docs/theory.md, "Materials". Throws
+/// std::invalid_argument where the materials name different laws and the pair does not choose.
 PairLaws combine(const Side& a, const Side& b, const KeyedValues* pair);
 
 }  // namespace volcontact::adaptor

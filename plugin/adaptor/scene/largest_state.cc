@@ -6,26 +6,17 @@
 #include "adaptor/memory/userdata_layout.h"
 #include "adaptor/memory/work_limit.h"
 #include "adaptor/scene/mocap_motion.h"
-#include "volcontact/force/laws.h"
-#include "volcontact/model/contact_model.h"
+#include "volcontact/model/site_memory.h"
 
 namespace volcontact::adaptor {
 namespace {
 
 // Numbers that a site of some pair of laws keeps at most.
 int largest_row() {
-  int largest = 0;
-  for (const LawRow& normal : normal_laws()) {
-    // The speed at impact is kept where restitution is given.
-    const FieldValues latching =
-        normal.field("restitution") ? FieldValues{{"restitution", {0.5}}} : FieldValues{};
-    for (const LawRow& friction : friction_laws()) {
-      const ContactLaws laws{make_normal(normal.name, latching), make_friction(friction.name, {})};
-      const ContactModel model({{Sphere({.radius = 1.0}), HalfSpace(), Pose{}, Pose{}}}, laws, {});
-      largest = std::max(largest, model.row_size());
-    }
-  }
-  return largest;
+  int normal = 0, friction = 0;
+  for (const LawRow& law : normal_laws()) normal = std::max(normal, law.largest_state);
+  for (const LawRow& law : friction_laws()) friction = std::max(friction, law.largest_state);
+  return normal + friction == 0 ? 0 : kSiteHead + normal + friction;
 }
 
 }  // namespace

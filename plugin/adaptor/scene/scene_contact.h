@@ -31,10 +31,11 @@ struct PairContact {
   PairLaws laws;
   ContactModel model;
   /// k/m of a patch as large as the smaller solid's box against a displacement [1/s^2].
-  double largest_rate;
-  double bristle_rate;          ///< the same of its bristles against sliding [1/s^2]
-  double bristle_damping_rate;  ///< and of their damping [1/s]
-  bool is_jointed = false;      ///< whether one of the bodies hangs on joints
+  double largest_rate = 0.0;
+  /// The same of friction with a memory against sliding, 0 without one [1/s^2].
+  double bristle_rate = 0.0;
+  double bristle_damping_rate = 0.0;  ///< and of its damping [1/s]
+  bool is_jointed = false;            ///< whether one of the bodies hangs on joints
 };
 
 /// Volumetric contact of one scene. Const once made: what lasts from step to step is in
@@ -114,7 +115,7 @@ class SceneContact {
   /// Whether and from which patch on steps are implicit in the contact of a pair.
   struct ImplicitUse {
     bool is_possible = false;     ///< for `auto`
-    bool by_bristles = false;     ///< these need it in every contact
+    bool by_friction = false;     ///< this needs it in every contact
     double largest_number = 0.0;  ///< h^2 k/m of a patch as large as the smaller solid's box [-]
     double least_area = 0.0;      ///< of a patch that `auto` makes implicit [m^2]
     double explicit_step = 0.0;   ///< the longest that an explicit step should be there [s]

@@ -130,7 +130,7 @@ std::string implicit_text(const mjModel* m, const SceneContact& contact, const P
   if (contact.options().implicit == Implicit::kNever) return "off";
   if (contact.options().implicit == Implicit::kAlways) return "on";
   const SceneContact::ImplicitUse use = contact.implicit_use(m, pair);
-  if (use.by_bristles) return "always, for its bristles";
+  if (use.by_friction) return "always, for its friction";
   const Friction* friction = pair.laws.laws.friction.get();
   const bool by_friction = friction && friction->states().empty();
   if (!use.is_possible) return by_friction ? "where friction would reverse the slip" : "not needed";

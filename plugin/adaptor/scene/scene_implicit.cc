@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <string_view>
 #include <utility>
 
 #include "adaptor/keys/scene_key.h"
@@ -68,12 +67,20 @@ double mobility_along(const mjModel* m, mjData* d, const GeomPair& geoms, const 
   return std::inner_product(row.begin(), row.begin() + m->nv, row.begin() + m->nv, 0.0);
 }
 
-// Of a field of the laws; another where they have none of this name, as one of the user's own may.
-double number_of(const PairLaws& laws, std::string_view name, double otherwise) {
-  for (const PairField& field : laws.fields) {
-    if (field.name == name) return field.value[0];
-  }
-  return otherwise;
+// Force with which the pair lies still, one upon the other [N].
+double resting_force(const mjModel* m, double inverse_mass) {
+  const double gravity = Eigen::Map<const Vec3>(m->opt.gravity).norm();
+  return inverse_mass > 0.0 ? gravity / inverse_mass : 0.0;
+}
+
+// Of friction at rest under a normal force, when nothing has slipped yet.
+FrictionSlope slope_at_rest(const Friction& friction, double normal_force) {
+  FrictionInput at_rest;
+  at_rest.normal_force = normal_force;
+  const auto size = static_cast<std::size_t>(friction.state_size());
+  const std::vector<double> committed(size, 0.0);
+  std::vector<double> pending(size, 0.0);
+  return friction.slope(at_rest, LawState{committed.data(), pending.data(), 0.0});
 }
 
 // What explicit steps hold: h^2 k/m of an undamped spring, h c/m of a damper. Of both Euler's,
@@ -126,14 +133,9 @@ double longest_friction_step(const mjModel* m, const PairContact& pair, double i
                              double weight) {
   const bool is_rk4 = m->opt.integrator == mjINT_RK4;
   const Friction& friction = *pair.laws.laws.friction;
-  if (friction.states().empty()) {
-    FrictionInput at_rest;
-    at_rest.normal_force = weight;
-    const double rate = friction.slope(at_rest, LawState{}).damping * inverse_mass;
-    return (is_rk4 ? kRungeKuttaDamper : kEulerDamper) / rate;
-  }
-  const double spring = number_of(pair.laws, "bristle_stiffness", 0.0) * inverse_mass;
-  const double damper = number_of(pair.laws, "bristle_damping", 0.0) * inverse_mass;
+  const FrictionSlope slope = slope_at_rest(friction, weight);
+  const double spring = slope.stiffness * inverse_mass, damper = slope.damping * inverse_mass;
+  if (friction.states().empty()) return (is_rk4 ? kRungeKuttaDamper : kEulerDamper) / damper;
   if (is_rk4) return std::min(std::sqrt(kRungeKuttaSpring / spring), kRungeKuttaDamper / damper);
   return kEulerSpring / (damper + std::sqrt(damper * damper + kEulerSpring * spring));
 }
@@ -144,21 +146,21 @@ void SceneContact::set_rates(const mjModel* m, PairContact& pair) const {
   const double face = std::min(largest_face(solids_[static_cast<std::size_t>(pair.geoms.a)]),
                                largest_face(solids_[static_cast<std::size_t>(pair.geoms.b)]));
   const double along = inverse_mass(m, pair.geoms).along, sliding = kBall * along;
-  const PairLaws& laws = pair.laws;
   pair.is_jointed = is_jointed(m, pair.geoms.a) || is_jointed(m, pair.geoms.b);
-  pair.largest_rate = number_of(laws, "stiffness", HUGE_VAL) * face * along;
-  pair.bristle_rate = number_of(laws, "bristle_stiffness", 0.0) * sliding;
-  pair.bristle_damping_rate =
-      (number_of(laws, "bristle_damping", 0.0) + number_of(laws, "viscous_friction", 0.0)) *
-      sliding;
+  pair.largest_rate = pair.laws.stiffness * face * along;
+  const Friction* friction = pair.laws.laws.friction.get();
+  if (!friction || friction->states().empty()) return;
+  const double weight = resting_force(m, along);
+  const FrictionSlope slope = slope_at_rest(*friction, weight > 0.0 ? weight : 1.0);
+  pair.bristle_rate = slope.stiffness * sliding;
+  pair.bristle_damping_rate = slope.damping * sliding;
 }
 
 SceneContact::ImplicitUse SceneContact::implicit_use(const mjModel* m,
                                                      const PairContact& pair) const {
   const double square = m->opt.timestep * m->opt.timestep;
   const double number = square * pair.largest_rate;
-  const double per_area =
-      square * number_of(pair.laws, "stiffness", HUGE_VAL) * inverse_mass(m, pair.geoms).along;
+  const double per_area = square * pair.laws.stiffness * inverse_mass(m, pair.geoms).along;
   const bool is_rk4 = m->opt.integrator == mjINT_RK4;
   const ExplicitBounds bounds = ExplicitBounds::of(is_rk4);
   return {number >= std::max(kPossibleNumber, bounds.spring),
@@ -170,14 +172,13 @@ void SceneContact::warn_about_friction(const mjModel* m) {
   if (is_implicit() && !(m->opt.integrator == mjINT_RK4 && options().implicit == Implicit::kAuto)) {
     return;
   }
-  const double gravity = Eigen::Map<const Vec3>(m->opt.gravity).norm();
   for (const PairContact& pair : pairs_) {
     const int a = pair.geoms.a, b = pair.geoms.b;
     const double along = inverse_mass(m, pair.geoms).along;
     if (!pair.laws.laws.friction || along == 0.0) continue;
     const double inverse = inverse_sliding_mass(m, a, solids_[static_cast<std::size_t>(a)]) +
                            inverse_sliding_mass(m, b, solids_[static_cast<std::size_t>(b)]);
-    const double longest = longest_friction_step(m, pair, inverse, gravity / along);
+    const double longest = longest_friction_step(m, pair, inverse, resting_force(m, along));
     if (m->opt.timestep <= longest) continue;
     warn_once("friction of geoms '" + label(m, mjOBJ_GEOM, a) + "' and '" +
               label(m, mjOBJ_GEOM, b) +

@@ -203,7 +203,7 @@ void SceneContact::add_pair(const mjModel* m, const GeomPair& geoms) {
   ContactModel model({{a, b, Pose{}, Pose{}}}, laws.laws,
                      {options.tolerance, engine, kInnerThreads, most_cells});
   sites_.row_size = std::max(sites_.row_size, model.row_size());
-  pairs_.push_back({geoms, engine, std::move(laws), std::move(model), 0.0, 0.0, 0.0});
+  pairs_.push_back({geoms, engine, std::move(laws), std::move(model)});
   set_rates(m, pairs_.back());
 }
 

@@ -38,9 +38,12 @@ inline constexpr Range kNonNegative{0.0, kInfinity, false, true, ">= 0"};
 inline constexpr Range kAnyNumber{-kInfinity, kInfinity, true, true, "any finite number"};
 inline constexpr Range kZeroToOne{0.0, 1.0, false, false, "0 to 1"};
 
-/// One row of a component's table: the parameter's name, unit, member, range and meaning. From this
-/// table come validation, MJCF keys, Python keywords and the reference page. A field is one number
-/// or a 3-vector.
+struct MaterialRule;
+
+/// One row of a component's table: the parameter's name, unit, member, range and meaning, and for a
+/// law how a pair finds it from its materials (force/material_rule.h). From this table come
+/// validation, MJCF keys, Python keywords and the reference page. A field is one number or a
+/// 3-vector.
 template <typename Params>
 struct Field {
   const char* name;
@@ -49,10 +52,16 @@ struct Field {
   Vec3 Params::* vector = nullptr;
   Range range;
   const char* meaning;
+  const MaterialRule* rule = nullptr;
 
   constexpr Field(const char* field_name, const char* field_unit, double Params::* member,
-                  Range allowed, const char* text)
-      : name(field_name), unit(field_unit), scalar(member), range(allowed), meaning(text) {}
+                  Range allowed, const char* text, const MaterialRule* of_materials = nullptr)
+      : name(field_name),
+        unit(field_unit),
+        scalar(member),
+        range(allowed),
+        meaning(text),
+        rule(of_materials) {}
   constexpr Field(const char* field_name, const char* field_unit, Vec3 Params::* member,
                   Range allowed, const char* text)
       : name(field_name), unit(field_unit), vector(member), range(allowed), meaning(text) {}

@@ -6,6 +6,7 @@
 #include "volcontact/base/fields.h"
 #include "volcontact/force/coupling.h"
 #include "volcontact/force/friction.h"
+#include "volcontact/force/material_rule.h"
 
 namespace volcontact {
 
@@ -28,19 +29,20 @@ class Bristle final : public Friction {
     Coupling coupling = Coupling::kEllipsoid;
   };
   static constexpr std::array kFields{
-      Field<Params>{"friction", "-", &Params::friction, kNonNegative, "mu_C, kinetic"},
+      Field<Params>{"friction", "-", &Params::friction, kNonNegative, "mu_C, kinetic",
+                    &rules::kFriction},
       Field<Params>{"static_friction", "-", &Params::static_friction, kNonNegative,
-                    "mu_S, after a long rest; at least mu_C"},
+                    "mu_S, after a long rest; at least mu_C", &rules::kStaticFriction},
       Field<Params>{"bristle_stiffness", "N/m", &Params::bristle_stiffness, kPositive,
-                    "sigma_0, tangential stiffness of a contact site"},
+                    "sigma_0, tangential stiffness of a contact site", &rules::kLargerOfTwo},
       Field<Params>{"bristle_damping", "N s/m", &Params::bristle_damping, kPositive,
-                    "sigma_1, damping of the deflection"},
+                    "sigma_1, damping of the deflection", &rules::kLargerOfTwo},
       Field<Params>{"viscous_friction", "N s/m", &Params::viscous_friction, kNonNegative,
-                    "sigma_2, of the slip itself"},
+                    "sigma_2, of the slip itself", &rules::kLargerOfTwo},
       Field<Params>{"stribeck_speed", "m/s", &Params::stribeck_speed, kPositive,
-                    "v_s, where sticking gives way to sliding"},
+                    "v_s, where sticking gives way to sliding", &rules::kLargerOfTwo},
       Field<Params>{"dwell_time", "s", &Params::dwell_time, kPositive,
-                    "tau_dw, in which friction at rest grows to mu_S"}};
+                    "tau_dw, in which friction at rest grows to mu_S", &rules::kLargerOfTwo}};
   static constexpr std::array kChoices{
       Choice<Params, Coupling, 3>{"coupling", &Params::coupling, kCouplingWords, kCouplingMeaning}};
   static constexpr std::array kStates{

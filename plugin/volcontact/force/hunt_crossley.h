@@ -5,6 +5,7 @@
 #include <array>
 
 #include "volcontact/base/fields.h"
+#include "volcontact/force/material_rule.h"
 #include "volcontact/force/normal_force.h"
 #include "volcontact/force/restitution.h"
 
@@ -27,13 +28,14 @@ class HuntCrossley final : public NormalForce {
   static constexpr Range kRestitution{0.0, 1.0, true, false, "> 0 and <= 1"};
   static constexpr std::array kFields{
       Field<Params>{"stiffness", "N/m^3", &Params::stiffness, kPositive,
-                    "k_v, force per interference volume"},
+                    "k_v, force per interference volume", &rules::kStiffness},
       Field<Params>{"damping", "s/m", &Params::damping, kNonNegative,
-                    "a, relative rise of the force per approach speed"},
+                    "a, relative rise of the force per approach speed", &rules::kDamping},
       Field<Params>{"restitution", "-", &Params::restitution, kRestitution,
-                    "e, in place of damping: a from the speed at first touch"},
+                    "e, in place of damping: a from the speed at first touch",
+                    &rules::kRestitution},
       Field<Params>{"restitution_speed_floor", "m/s", &Params::restitution_speed_floor, kPositive,
-                    "slower impacts are damped as if they had this speed"}};
+                    "slower impacts are damped as if they had this speed", &rules::kLargerOfTwo}};
   static constexpr std::array kStates{
       StateField{"impact_speed", "m/s", Keeping::kValue, "v_n at first touch, 0 before"}};
 

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "volcontact/base/fields.h"
+#include "volcontact/force/law_state.h"
+#include "volcontact/force/material_rule.h"
 
 namespace volcontact {
 
@@ -15,6 +17,7 @@ struct FieldRow {
   std::string unit;
   Range range;
   std::vector<double> defaults;
+  const MaterialRule* rule;  ///< never null in the entries of force/laws.h
 };
 struct ChoiceRow {
   std::string name;
@@ -24,6 +27,7 @@ struct LawRow {
   std::string name;
   std::vector<FieldRow> fields;
   std::vector<ChoiceRow> choices;
+  int largest_state = 0;  ///< numbers that the law keeps of a contact site at most
 
   const FieldRow* field(std::string_view field_name) const { return find(fields, field_name); }
   const ChoiceRow* choice(std::string_view choice_name) const { return find(choices, choice_name); }
@@ -41,9 +45,9 @@ struct LawRow {
 template <typename Law>
 LawRow row_of() {
   const typename Law::Params params{};
-  LawRow row{Law::kName, {}, {}};
+  LawRow row{Law::kName, {}, {}, 0};
   for (const auto& field : Law::kFields) {
-    FieldRow entry{field.name, field.unit, field.range, {}};
+    FieldRow entry{field.name, field.unit, field.range, {}, field.rule};
     for (int i = 0; i < field.size(); ++i) entry.defaults.push_back(field.get(params, i));
     row.fields.push_back(entry);
   }
@@ -52,6 +56,7 @@ LawRow row_of() {
       row.choices.push_back({choice.name, {choice.words.begin(), choice.words.end()}});
     }
   }
+  if constexpr (requires { Law::kStates; }) row.largest_state = size_of(Law::kStates);
   return row;
 }
 

@@ -42,11 +42,32 @@ std::shared_ptr<const Base> make(const char* kind, const Entries<Base>& entries,
   return nullptr;
 }
 
+const MaterialRule* rule_in(const std::vector<FieldRow>& fields, const std::string& name) {
+  for (const FieldRow& field : fields) {
+    if (field.name == name) return field.rule;
+  }
+  return nullptr;
+}
+
+// The rule of the first law that has a field of this name.
+const MaterialRule& rule_of(const std::string& name) {
+  for (const auto& entry : normal_entries()) {
+    if (const MaterialRule* rule = rule_in(entry.row.fields, name)) return *rule;
+  }
+  for (const auto& entry : friction_entries()) {
+    if (const MaterialRule* rule = rule_in(entry.row.fields, name)) return *rule;
+  }
+  return rules::kLargerOfTwo;
+}
+
 template <typename Base>
 void add(Entries<Base>& entries, LawEntry<Base> entry) {
   for (const LawEntry<Base>& other : entries) {
     require(other.row.name != entry.row.name,
             "add_law: there is a law '" + entry.row.name + "' already");
+  }
+  for (FieldRow& field : entry.row.fields) {
+    if (!field.rule) field.rule = &rule_of(field.name);
   }
   entries.push_back(std::move(entry));
 }

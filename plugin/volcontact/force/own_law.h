@@ -5,6 +5,7 @@
 
 #include "volcontact/base/fields.h"
 #include "volcontact/force/friction.h"
+#include "volcontact/force/material_rule.h"
 #include "volcontact/force/normal_force.h"
 
 namespace volcontact {

@@ -6,6 +6,7 @@
 #include "volcontact/base/fields.h"
 #include "volcontact/force/coupling.h"
 #include "volcontact/force/friction.h"
+#include "volcontact/force/material_rule.h"
 
 namespace volcontact {
 
@@ -21,9 +22,10 @@ class RegularizedCoulomb final : public Friction {
     Coupling coupling = Coupling::kEllipsoid;
   };
   static constexpr std::array kFields{
-      Field<Params>{"friction", "-", &Params::friction, kNonNegative, "mu, kinetic"},
+      Field<Params>{"friction", "-", &Params::friction, kNonNegative, "mu, kinetic",
+                    &rules::kFriction},
       Field<Params>{"slip_speed", "m/s", &Params::slip_speed, kPositive,
-                    "speed from which friction has its full strength"}};
+                    "speed from which friction has its full strength", &rules::kLargerOfTwo}};
   static constexpr std::array kChoices{
       Choice<Params, Coupling, 3>{"coupling", &Params::coupling, kCouplingWords, kCouplingMeaning}};
 

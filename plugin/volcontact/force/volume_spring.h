@@ -4,6 +4,7 @@
 #include <array>
 
 #include "volcontact/base/fields.h"
+#include "volcontact/force/material_rule.h"
 #include "volcontact/force/normal_force.h"
 
 namespace volcontact {
@@ -16,8 +17,9 @@ class VolumeSpring final : public NormalForce {
   struct Params {
     double stiffness = 1e7;
   };
-  static constexpr std::array kFields{Field<Params>{
-      "stiffness", "N/m^3", &Params::stiffness, kPositive, "k_v, force per interference volume"}};
+  static constexpr std::array kFields{Field<Params>{"stiffness", "N/m^3", &Params::stiffness,
+                                                    kPositive, "k_v, force per interference volume",
+                                                    &rules::kStiffness}};
 
   explicit VolumeSpring(const Params& params) : p_(validated<VolumeSpring>(params)) {}
   const Params& params() const { return p_; }
