@@ -51,8 +51,11 @@ ROOMS = {
         "pressure",
         "picture",
     ),
-    "adaptor": ("mujoco", "keys", "geoms", "memory", "step", "scene", ""),
+    "adaptor": ("mujoco", "keys", "geoms", "memory", "step", "scene", "evaluation", "readings", ""),
 }
+# Files of python/bindings; each may use those before it. `bind` stands for all bind_*.cc, which are
+# side by side.
+BINDINGS = ("arrays", "fields", "python_distance", "python_law", "bindings", "bind", "module")
 MOST_FILES = 25  # in a folder of the plugin
 # The only folder that may include each library of others.
 OWNER = {"mujoco": "adaptor", "CGAL": "cgal"}
@@ -117,6 +120,38 @@ def fault(source: str, included: str) -> str | None:
     return room_fault(source, included)
 
 
+def bindings_fault(source: str, included: str) -> str | None:
+    """Why a file of python/bindings may not include `included`; None if it may."""
+    library = included.split("/")[0]
+    if library in {"adaptor", "c_api", "fmu", "cgal", "mujoco", "CGAL"}:
+        return f"python/bindings/{source}: must not include {included}"
+    if not included.endswith(".h") or "/" in included:
+        return None
+    ranks = []
+    for name in (source, included):
+        stem = name.split(".")[0]
+        stem = "bind" if stem.startswith("bind_") else stem
+        if stem not in BINDINGS:
+            return f"python/bindings/{name}: has no place in the order of tests/test_layering.py"
+        ranks.append(BINDINGS.index(stem))
+    own = source.split(".")[0] == included.split(".")[0]
+    if ranks[0] > ranks[1] or own:
+        return None
+    return f"python/bindings/{source}: must not include {included}"
+
+
+def bindings_faults() -> list[str]:
+    """All includes in python/bindings that point up or sideways, one line each."""
+    sources = sorted(p for p in (ROOT / "python/bindings").iterdir() if p.suffix in {".h", ".cc"})
+    assert sources
+    found = (
+        bindings_fault(path.name, included)
+        for path in sources
+        for included in re.findall(r'^\s*#\s*include\s*"([^"]+)"', path.read_text(), re.MULTILINE)
+    )
+    return [line for line in found if line]
+
+
 def include_faults() -> list[str]:
     """All includes under plugin/ that point up, one line each."""
     sources = sorted(p for p in PLUGIN.rglob("*") if p.suffix in {".h", ".cc", ".inc"})
@@ -159,11 +194,30 @@ def faults_of_core_tests() -> list[str]:
 
 def faults() -> list[str]:
     """All faults, one line each."""
-    return include_faults() + forgotten_sources() + faults_of_core_tests() + crowded_folders()
+    return [
+        *include_faults(),
+        *bindings_faults(),
+        *forgotten_sources(),
+        *faults_of_core_tests(),
+        *crowded_folders(),
+    ]
 
 
 def test_no_include_points_up():
     assert include_faults() == []
+
+
+def test_no_include_of_the_bindings_points_up():
+    assert bindings_faults() == []
+    assert bindings_fault("bind_laws.cc", "fields.h") is None
+    assert bindings_fault("arrays.cc", "arrays.h") is None
+    for source, included in [
+        ("fields.h", "bindings.h"),
+        ("bind_laws.cc", "bind_model.h"),
+        ("bindings.h", "adaptor/volcontact_mujoco.h"),
+        ("attic.cc", "fields.h"),
+    ]:
+        assert bindings_fault(source, included), (source, included)
 
 
 def test_no_folder_is_crowded():

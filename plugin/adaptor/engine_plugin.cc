@@ -11,10 +11,11 @@
 #include <exception>
 
 #include "adaptor/auto_attach.h"
+#include "adaptor/evaluation/apply_contact.h"
 #include "adaptor/mujoco/plugin_room.h"
 #include "adaptor/passive_callback.h"
+#include "adaptor/readings/drawing.h"
 #include "adaptor/scene/largest_state.h"
-#include "adaptor/scene/scene_drawing.h"
 #include "adaptor/scene_registry.h"
 #include "adaptor/step/look_ahead.h"
 
@@ -49,7 +50,9 @@ void reset(const mjModel* m, mjtNum* state, void* /*data*/, int instance) {
 
 void compute(const mjModel* m, mjData* d, int /*instance*/, int /*capability*/) {
   if (is_looking_ahead()) return;
-  if (const SceneContact* contact = contact_in_plugin(m)) contact->step(m, d, thread_scratch());
+  if (const SceneContact* contact = contact_in_plugin(m)) {
+    apply_contact(*contact, m, d, thread_scratch());
+  };
 }
 
 void visualize(const mjModel* m, mjData* d, const mjvOption* option, mjvScene* scene,

@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "adaptor/auto_attach.h"
+#include "adaptor/evaluation/apply_contact.h"
 #include "adaptor/scene_registry.h"
 #include "adaptor/step/look_ahead.h"
 #include "adaptor/volcontact_mujoco.h"
@@ -49,8 +50,8 @@ void uninstall_callback() {
 
 bool callback_is_installed() { return mjcb_passive == volcontact_passive; }
 
-SceneContact::Scratch& thread_scratch() {
-  thread_local SceneContact::Scratch scratch;
+EvaluationScratch& thread_scratch() {
+  thread_local EvaluationScratch scratch;
   return scratch;
 }
 
@@ -64,5 +65,7 @@ extern "C" void volcontact_passive(const mjModel* m, mjData* d) {
   const SceneContact* contact =
       attaches_by_itself() ? contact_by_itself(m, Wish::kByKeys) : contact_of(m);
   // The engine plugin steps its own scenes.
-  if (contact && !contact->is_in_plugin()) contact->step(m, d, thread_scratch());
+  if (contact && !contact->is_in_plugin()) {
+    apply_contact(*contact, m, d, thread_scratch());
+  }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "adaptor/evaluation/scratch.h"
 #include "adaptor/scene/scene_contact.h"
 
 namespace volcontact::adaptor {
@@ -14,6 +15,6 @@ void uninstall_callback();
 bool callback_is_installed();
 
 /// Scratch memory of the calling thread.
-SceneContact::Scratch& thread_scratch();
+EvaluationScratch& thread_scratch();
 
 }  // namespace volcontact::adaptor

@@ -11,10 +11,12 @@
 #include <utility>
 
 #include "adaptor/auto_attach.h"
+#include "adaptor/evaluation/apply_contact.h"
 #include "adaptor/mujoco/mjgeoms.h"
 #include "adaptor/passive_callback.h"
-#include "adaptor/scene/contact_list.h"
-#include "adaptor/scene/scene_description.h"
+#include "adaptor/readings/contact_list.h"
+#include "adaptor/readings/description.h"
+#include "adaptor/readings/last_evaluation.h"
 #include "adaptor/scene_registry.h"
 #include "adaptor/watched_steps.h"
 #include "volcontact/base/check.h"
@@ -125,7 +127,7 @@ struct FoundSite {
   const PairContact* pair = nullptr;
   const VolumeMetrics* metrics = nullptr;
 };
-FoundSite find_site(const SceneContact& contact, const SceneContact::Scratch& scratch, int site) {
+FoundSite find_site(const SceneContact& contact, const EvaluationScratch& scratch, int site) {
   std::size_t left = static_cast<std::size_t>(site);
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const auto& sites = scratch.reports[k].sites;
@@ -245,7 +247,7 @@ int volcontact_release(const mjModel* m, mjData* d) {
   return guarded(nullptr, 0, [&] {
     const SceneContact* contact = contact_of(m);
     if (!contact) return static_cast<int>(VOLCONTACT_ERROR_STATE);
-    contact->release(m, d);
+    release_contact(*contact, m, d);
     return 0;
   });
 }
@@ -254,8 +256,8 @@ int volcontact_sites(const mjModel* m, const mjData* d, volcontact_site* sites, 
   return guarded(nullptr, 0, [&] {
     const SceneContact* contact = contact_of(m);
     if (!contact) return static_cast<int>(VOLCONTACT_ERROR_STATE);
-    SceneContact::Scratch& scratch = thread_scratch();
-    if (!contact->revisit(m, d, scratch)) return 0;
+    EvaluationScratch& scratch = thread_scratch();
+    if (!revisit(*contact, m, d, scratch)) return 0;
     int count = 0;
     for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
       const int index = scratch.cull.near[k];
@@ -294,8 +296,8 @@ int volcontact_site_surface(const mjModel* m, const mjData* d, int site, int res
     if (site < 0 || resolution < 2 || resolution > kMostColumns) {
       return static_cast<int>(VOLCONTACT_ERROR_SCENE);
     }
-    SceneContact::Scratch& scratch = thread_scratch();
-    if (!contact->revisit(m, d, scratch)) return static_cast<int>(VOLCONTACT_ERROR_SCENE);
+    EvaluationScratch& scratch = thread_scratch();
+    if (!revisit(*contact, m, d, scratch)) return static_cast<int>(VOLCONTACT_ERROR_SCENE);
     const FoundSite found = find_site(*contact, scratch, site);
     if (!found.pair) return static_cast<int>(VOLCONTACT_ERROR_SCENE);
     const int a = found.pair->geoms.a, b = found.pair->geoms.b;
@@ -321,7 +323,7 @@ int volcontact_get_energy(const mjModel* m, const mjData* d, volcontact_energy* 
   return guarded(nullptr, 0, [&] {
     const SceneContact* contact = contact_of(m);
     if (!contact) return static_cast<int>(VOLCONTACT_ERROR_STATE);
-    const EnergyAccount account = contact->energy(m, d);
+    const EnergyAccount account = volcontact::adaptor::energy(*contact, m, d);
     energy->elastic = account.elastic;
     copy_channels(account.dissipated, energy->dissipated);
     copy_channels(account.power, energy->power);
@@ -331,8 +333,8 @@ int volcontact_get_energy(const mjModel* m, const mjData* d, volcontact_energy* 
     energy->driven = account.driven;
     energy->made = account.made;
     energy->released = account.released;
-    energy->dropped = contact->dropped(m, d);
-    energy->forgotten = contact->forgotten(m, d);
+    energy->dropped = dropped(*contact, m, d);
+    energy->forgotten = forgotten(*contact, m, d);
     return 0;
   });
 }

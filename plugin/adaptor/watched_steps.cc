@@ -8,6 +8,7 @@
 
 #include "adaptor/mujoco/mjgeoms.h"
 #include "adaptor/passive_callback.h"
+#include "adaptor/readings/last_evaluation.h"
 #include "adaptor/scene_registry.h"
 
 namespace volcontact::adaptor {
@@ -86,8 +87,7 @@ class Feeling {
   volcontact_watch& watch_;
 };
 
-void feel_sites(const SceneContact& contact, const SceneContact::Scratch& scratch,
-                Feeling& feeling) {
+void feel_sites(const SceneContact& contact, const EvaluationScratch& scratch, Feeling& feeling) {
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const auto& geoms = contact.pairs()[static_cast<std::size_t>(scratch.cull.near[k])].geoms;
     for (const SiteReport& site : scratch.reports[k].sites) {
@@ -188,7 +188,7 @@ double read_number(const mjModel* m, const mjData* d, const volcontact_number& n
 
 int step_watched(const mjModel* m, mjData* d, int most, volcontact_watch& watch) {
   const SceneContact* contact = contact_of(m);
-  SceneContact::Scratch& scratch = thread_scratch();
+  EvaluationScratch& scratch = thread_scratch();
   int steps = 0;
   while (steps < most && watch.outcome == VOLCONTACT_GOES_ON) {
     const double began = d->time;
@@ -200,7 +200,7 @@ int step_watched(const mjModel* m, mjData* d, int most, volcontact_watch& watch)
       break;
     }
     // The last stage of Runge-Kutta does not have the forces that were solved at the first.
-    if (contact && m->opt.integrator == mjINT_RK4) contact->revisit(m, d, scratch);
+    if (contact && m->opt.integrator == mjINT_RK4) revisit(*contact, m, d, scratch);
     Feeling feeling(m, watch);
     if (contact) feel_sites(*contact, scratch, feeling);
     feel_native(m, d, feeling);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "bindings.h"
@@ -64,6 +66,23 @@ void bind_makers(nb::module_& m) {
       "The same for friction laws");
 }
 
+void bind_units(nb::module_& m) {
+  m.def(
+      "units_of_law_fields",
+      [] {
+        std::map<std::string, std::string> units;
+        const auto add = [&](const auto& entries) {
+          for (const auto& entry : entries) {
+            for (const FieldRow& field : entry.row.fields) units.emplace(field.name, field.unit);
+          }
+        };
+        add(normal_law_entries());
+        add(friction_law_entries());
+        return units;
+      },
+      "Unit of each parameter of the laws by its name, as in messages: \"N/m^3\"");
+}
+
 void bind_layers(nb::module_& m) {
   m.def(
       "layer_stiffness",
@@ -108,6 +127,7 @@ void bind_laws(nb::module_& m) {
     bind_law<typename decltype(tag)::Type, Friction>(m, "Friction law");
   });
   bind_makers(m);
+  bind_units(m);
   bind_layers(m);
 }
 

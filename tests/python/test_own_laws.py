@@ -324,7 +324,8 @@ SPRINGS = """
   <size nuserdata="400"/>
   <worldbody>
     <geom name="floor" type="plane" size="1 1 1"/>
-    <body pos="0 0 .0499"><freejoint/><geom name="box" type="box" size=".05 .05 .05" mass="1"/></body>
+    <body pos="0 0 .0499"><freejoint/>
+      <geom name="box" type="box" size=".05 .05 .05" mass="1"/></body>
   </worldbody>
   <custom>
     <text name="volcontact/material/soft/geoms" data="floor"/>

@@ -2,10 +2,10 @@
 #include "adaptor/scene/largest_state.h"
 
 #include "adaptor/keys/law_tables.h"
+#include "adaptor/memory/mocap_row.h"
 #include "adaptor/memory/site_pool.h"
 #include "adaptor/memory/userdata_layout.h"
 #include "adaptor/memory/work_limit.h"
-#include "adaptor/scene/mocap_motion.h"
 #include "volcontact/model/site_memory.h"
 
 namespace volcontact::adaptor {

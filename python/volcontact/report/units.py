@@ -5,22 +5,18 @@ from __future__ import annotations
 
 import math
 
+import volcontact._volcontact as core
+
 _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
-# Fields of materials, laws and options, with the units of docs and MJCF.
-FIELD_UNITS = {
-    "stiffness": "N/m³",
-    "damping": "s/m",
-    "restitution": "-",
-    "restitution_speed_floor": "m/s",
-    "friction": "-",
-    "static_friction": "-",
-    "bristle_stiffness": "N/m",
-    "bristle_damping": "N·s/m",
-    "viscous_friction": "N·s/m",
-    "stribeck_speed": "m/s",
-    "slip_speed": "m/s",
-    "dwell_time": "s",
+
+def _written(unit: str) -> str:
+    """A unit of the core's tables as people write it: "N s/m^3" is "N·s/m³"."""
+    return unit.replace("^2", "²").replace("^3", "³").replace(" ", "·")
+
+
+# Fields of laws, of options and of reports, with the units of docs and MJCF.
+FIELD_UNITS = {name: _written(unit) for name, unit in core.units_of_law_fields().items()} | {
     "tolerance": "-",
     "timestep": "s",
     "volume": "m³",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/scene/work_sharing.h"
+#include "adaptor/evaluation/work_sharing.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The forces of a solved step cannot be had from positions and velocities alone. SceneContact keeps
-// them: for whoever reads them, and for the later stages of a Runge-Kutta step, in which they go on
-// to act as they are, so that the work they do is the one that was solved for.
+#include "adaptor/evaluation/held_forces.h"
+
 #include <algorithm>
 #include <cstddef>
 
-#include "adaptor/scene/report_sums.h"
-#include "adaptor/scene/scene_contact.h"
+#include "adaptor/evaluation/report_sums.h"
+#include "adaptor/evaluation/stiff_sites.h"
 
 namespace volcontact::adaptor {
 namespace {
@@ -66,42 +65,42 @@ class Kept {
 
 }  // namespace
 
-void SceneContact::keep_solved(const UserdataBlock& our, const Scratch& scratch) const noexcept {
+void keep_solved(const SceneContact& contact, const UserdataBlock& our,
+                 const EvaluationScratch& scratch) noexcept {
   int count = 0;
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const std::vector<SiteReport>& sites = scratch.reports[k].sites;
     if (!scratch.held[k]) continue;
-    if (count + std::ssize(sites) > solved_rows_) break;
+    if (count + std::ssize(sites) > contact.solved_rows()) break;
     for (const SiteReport& site : sites) our.solved_site(count++).set(scratch.cull.near[k], site);
   }
   our.set_solved(count);
 }
 
-void SceneContact::recall_solved(const UserdataBlock& our, Scratch& scratch) const noexcept {
+void recall_solved(const UserdataBlock& our, EvaluationScratch& scratch) noexcept {
   Kept kept(our);
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     kept.take(scratch.cull.near[k], scratch.reports[k]);
   }
 }
 
-// At a later stage of Runge-Kutta.
-void SceneContact::hold_solved(const mjModel* m, mjData* d, const UserdataBlock& our,
-                               Scratch& scratch) const noexcept {
+void hold_solved(const SceneContact& contact, const mjModel* m, mjData* d, const UserdataBlock& our,
+                 EvaluationScratch& scratch) noexcept {
   Kept kept(our);
   scratch.stiff.clear();
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     ContactReport& report = scratch.reports[k];
     scratch.held[k] = kept.take(scratch.cull.near[k], report) ? 1 : 0;
-    const PairContact& pair = pairs_[static_cast<std::size_t>(scratch.cull.near[k])];
+    const PairContact& pair = contact.pairs()[static_cast<std::size_t>(scratch.cull.near[k])];
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
-      const bool is_stiff = scratch.held[k] || this->is_stiff(m, d, pair, report, i,
-                                                              ExplicitBounds::of_stage(), scratch);
-      scratch.stiff.push_back(is_stiff ? 1 : 0);
+      const bool stiff =
+          scratch.held[k] || is_stiff(m, d, pair, report, i, ExplicitBounds::of_stage(), scratch);
+      scratch.stiff.push_back(stiff ? 1 : 0);
     }
   }
 }
 
-void SceneContact::postpone_stiff(Scratch& scratch) const noexcept {
+void postpone_stiff(EvaluationScratch& scratch) noexcept {
   std::size_t site = 0;
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     ContactReport& report = scratch.reports[k];
@@ -110,6 +109,16 @@ void SceneContact::postpone_stiff(Scratch& scratch) const noexcept {
       is_stiff = scratch.stiff[site++] != 0 || is_stiff;
     }
     if (is_stiff && !scratch.held[k]) take_share(0.0, report);
+  }
+}
+
+void add_held(const SceneContact& contact, const mjModel* m, const mjData* d,
+              const UserdataBlock& our, BodyForces& forces) noexcept {
+  for (int i = 0; i < our.solved(); ++i) {
+    const HeldSite site = our.solved_site(i);
+    const GeomPair& geoms = contact.pairs()[static_cast<std::size_t>(site.pair())].geoms;
+    forces.add(m, d, m->geom_bodyid[geoms.a], site.centroid(), site.force(), site.torque());
+    forces.add(m, d, m->geom_bodyid[geoms.b], site.centroid(), -site.force(), -site.torque());
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/scene/json_text.h"
+#include "adaptor/readings/json_text.h"
 
 #include <gtest/gtest.h>
 

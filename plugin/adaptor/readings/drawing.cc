@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/scene/scene_drawing.h"
+#include "adaptor/readings/drawing.h"
+#include "adaptor/readings/last_evaluation.h"
 
 #include <cmath>
 
@@ -21,11 +22,11 @@ void draw(mjvScene* scene, mjtGeom type, const Vec3& size, const Vec3& position,
 }  // namespace
 
 void draw_sites(const SceneContact& contact, const mjModel* m, const mjData* d,
-                const mjvOption* option, mjvScene* scene, SceneContact::Scratch& scratch) noexcept {
+                const mjvOption* option, mjvScene* scene, EvaluationScratch& scratch) noexcept {
   const bool patches = option->flags[mjVIS_CONTACTPOINT] != 0;
   const bool forces = option->flags[mjVIS_CONTACTFORCE] != 0;
   if (!patches && !forces) return;
-  if (!contact.revisit(m, d, scratch)) return;
+  if (!revisit(contact, m, d, scratch)) return;
   const double thickness = 0.5 * m->vis.scale.contactheight * m->stat.meansize;
   const double width = m->vis.scale.forcewidth * m->stat.meansize;
   const double scale = m->vis.map.force / m->stat.meanmass;

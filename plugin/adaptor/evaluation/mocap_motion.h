@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
-
+#include "adaptor/memory/mocap_row.h"
 #include "adaptor/mujoco/mujoco_compat.h"
 #include "volcontact/base/types.h"
 
@@ -14,21 +13,6 @@ namespace volcontact::adaptor {
 /// Faster than this, or further in a step than its own size, a mocap body was not moved but put
 /// elsewhere [m/s].
 inline constexpr double kFastestMocap = 10.0;
-
-/// What is kept of each mocap body at an evaluation: its pose, its twist, and the wrench of all
-/// contacts on it and on what hangs on it, about its origin.
-struct MocapRow {
-  static constexpr int kNumbers = 7 + 6 + 6;
-  double* p;
-
-  Eigen::Map<Eigen::Matrix<double, 7, 1>> pose() const {
-    return Eigen::Map<Eigen::Matrix<double, 7, 1>>(p);
-  }
-  Eigen::Map<Vec3> angular() const { return Eigen::Map<Vec3>(p + 7); }
-  Eigen::Map<Vec3> linear() const { return Eigen::Map<Vec3>(p + 10); }
-  Eigen::Map<Vec3> force() const { return Eigen::Map<Vec3>(p + 13); }
-  Eigen::Map<Vec3> torque() const { return Eigen::Map<Vec3>(p + 16); }
-};
 
 /// The mocap bodies of one evaluation.
 class MocapMotion {

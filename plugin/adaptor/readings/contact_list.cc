@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/scene/contact_list.h"
+#include "adaptor/readings/contact_list.h"
 
 #include <algorithm>
 
 #include "adaptor/mujoco/mjgeoms.h"
 #include "adaptor/mujoco/mujoco_compat.h"
+#include "adaptor/readings/last_evaluation.h"
 
 namespace volcontact::adaptor {
 namespace {
@@ -43,9 +44,9 @@ double in_zone(const mjModel* m, const mjData* d, int site, const SceneForce& fo
 }  // namespace
 
 void list_contacts(const SceneContact& contact, const mjModel* m, const mjData* d,
-                   SceneContact::Scratch& scratch, std::vector<SceneForce>& out) {
+                   EvaluationScratch& scratch, std::vector<SceneForce>& out) {
   out.clear();
-  if (contact.revisit(m, d, scratch)) {
+  if (revisit(contact, m, d, scratch)) {
     for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
       const auto& geoms = contact.pairs()[static_cast<std::size_t>(scratch.cull.near[k])].geoms;
       for (const SiteReport& site : scratch.reports[k].sites) {
@@ -60,7 +61,7 @@ void list_contacts(const SceneContact& contact, const mjModel* m, const mjData* 
 }
 
 void update_touch_sensors(const SceneContact& contact, const mjModel* m, mjData* d,
-                          SceneContact::Scratch& scratch) {
+                          EvaluationScratch& scratch) {
   std::vector<SceneForce> forces;
   list_contacts(contact, m, d, scratch, forces);
   for (int i = 0; i < m->nsensor; ++i) {

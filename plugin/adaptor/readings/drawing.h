@@ -3,6 +3,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include "adaptor/evaluation/scratch.h"
 #include "adaptor/scene/scene_contact.h"
 
 namespace volcontact::adaptor {
@@ -12,6 +13,6 @@ namespace volcontact::adaptor {
 /// the force on the second geom, scaled by the model's `vis.map.force`. Draws as many as there is
 /// room for.
 void draw_sites(const SceneContact& contact, const mjModel* m, const mjData* d,
-                const mjvOption* option, mjvScene* scene, SceneContact::Scratch& scratch) noexcept;
+                const mjvOption* option, mjvScene* scene, EvaluationScratch& scratch) noexcept;
 
 }  // namespace volcontact::adaptor

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/scene/scene_description.h"
+#include "adaptor/readings/description.h"
 
 #include <cstdio>
 #include <set>
 
-#include "adaptor/scene/json_text.h"
+#include "adaptor/readings/json_text.h"
+#include "adaptor/scene/pair_rates.h"
 
 namespace volcontact::adaptor {
 namespace {
@@ -129,7 +130,7 @@ void write_solids(const mjModel* m, const SceneContact& contact, JsonText& json)
 std::string implicit_text(const mjModel* m, const SceneContact& contact, const PairContact& pair) {
   if (contact.options().implicit == Implicit::kNever) return "off";
   if (contact.options().implicit == Implicit::kAlways) return "on";
-  const SceneContact::ImplicitUse use = contact.implicit_use(m, pair);
+  const ImplicitUse use = implicit_use(m, pair);
   if (use.by_friction) return "always, for its friction";
   const Friction* friction = pair.laws.laws.friction.get();
   const bool by_friction = friction && friction->states().empty();
@@ -150,7 +151,7 @@ void write_pair(const mjModel* m, const SceneContact& contact, const PairContact
   json.member("because", kPairOriginWords[static_cast<int>(pair.geoms.origin)]);
   json.member("engine", to_string(pair.engine));
   json.member("implicit", implicit_text(m, contact, pair));
-  json.member("explicit_step", contact.implicit_use(m, pair).explicit_step);
+  json.member("explicit_step", implicit_use(m, pair).explicit_step);
   json.member("normal_law", pair.laws.normal_law);
   json.member("friction_law", pair.laws.friction_law);
   json.member("rolling", pair.laws.laws.rolling ? "on" : kOff);

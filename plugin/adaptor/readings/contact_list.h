@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "adaptor/evaluation/scratch.h"
 #include "adaptor/scene/scene_contact.h"
 
 namespace volcontact::adaptor {
@@ -19,12 +20,12 @@ struct SceneForce {
 
 /// All contacts of the last evaluation: our sites, then the contacts that MuJoCo solved.
 void list_contacts(const SceneContact& contact, const mjModel* m, const mjData* d,
-                   SceneContact::Scratch& scratch, std::vector<SceneForce>& out);
+                   EvaluationScratch& scratch, std::vector<SceneForce>& out);
 
 /// Writes what the touch sensors measure to sensordata, by MuJoCo's rule: the sum of the normal
 /// forces on the body of the sensor's site whose outward ray meets the site. MuJoCo sees its own
 /// contacts alone.
 void update_touch_sensors(const SceneContact& contact, const mjModel* m, mjData* d,
-                          SceneContact::Scratch& scratch);
+                          EvaluationScratch& scratch);
 
 }  // namespace volcontact::adaptor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/scene/contact_list.h"
+#include "adaptor/readings/contact_list.h"
 
 #include <gtest/gtest.h>
 

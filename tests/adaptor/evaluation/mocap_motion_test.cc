@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/scene/mocap_motion.h"
+#include "adaptor/evaluation/mocap_motion.h"
 
 #include <gtest/gtest.h>
 

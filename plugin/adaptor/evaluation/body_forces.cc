@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/scene/body_forces.h"
+#include "adaptor/evaluation/body_forces.h"
 
 #include "adaptor/mujoco/mjgeoms.h"
 

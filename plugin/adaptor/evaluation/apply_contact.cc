@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/evaluation/apply_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <utility>
+
+#include "adaptor/evaluation/evaluate_pairs.h"
+#include "adaptor/evaluation/held_forces.h"
+#include "adaptor/evaluation/pair_energies.h"
+#include "adaptor/evaluation/report_sums.h"
+#include "adaptor/evaluation/stiff_sites.h"
+#include "adaptor/memory/applied_ledger.h"
+#include "adaptor/memory/energy_account.h"
+#include "adaptor/memory/moved_clock.h"
+#include "adaptor/mujoco/mjgeoms.h"
+#include "adaptor/scene/pair_rates.h"
+#include "adaptor/step/look_ahead.h"
+
+namespace volcontact::adaptor {
+namespace {
+
+// Zero for velocities that are no numbers: the account stays one.
+double power_of(const double* forces, const double* velocities, std::ptrdiff_t count) {
+  const double power = std::inner_product(forces, forces + count, velocities, 0.0);
+  return std::isfinite(power) ? power : 0.0;
+}
+
+bool any(const std::vector<char>& flags, std::size_t count) {
+  return std::any_of(flags.begin(), flags.begin() + static_cast<std::ptrdiff_t>(count),
+                     [](char flag) { return flag != 0; });
+}
+
+void solve_implicit(const SceneContact& contact, const mjModel* m, mjData* d,
+                    EvaluationScratch& scratch) noexcept {
+  ImplicitStep& implicit = scratch.implicit;
+  implicit.clear();
+  const double fall = fall_of(m);
+  std::size_t site = 0;
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    const PairContact& pair = contact.pairs()[static_cast<std::size_t>(scratch.cull.near[k])];
+    ContactReport& report = scratch.reports[k];
+    const double along = inverse_mass(m, pair.geoms).along;
+    const PairEnergy::Now now(report);
+    implicit.begin_pair(WorkLimit::of(scratch.energies[k], scratch.dissipated,
+                                      contact.options().exit_speed, now.moving(along))
+                            .for_bodies(along, fall));
+    for (std::size_t i = 0; i < report.sites.size(); ++i) {
+      const bool is_stiff = scratch.stiff[site++] != 0;
+      if (report.sites[i].normal.isZero(0.0)) continue;
+      const int a = m->geom_bodyid[pair.geoms.a], b = m->geom_bodyid[pair.geoms.b];
+      const Vec3& point = report.sites[i].metrics.centroid;
+      const Twist of_a = scratch.mocaps.at(m, d, a, point),
+                  of_b = scratch.mocaps.at(m, d, b, point);
+      const Twist driven{of_a.angular - of_b.angular, of_a.linear - of_b.linear};
+      implicit.add(pair.model, report, i, a, b, driven, is_stiff);
+    }
+  }
+  if (implicit.empty()) return;
+  const UserdataBlock our = contact.block(m, d);
+  const auto share = [&](Target target, int count, const double* array, std::vector<double>& out) {
+    out.resize(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) {
+      out[static_cast<std::size_t>(i)] =
+          contact.options().target == target ? user_share(our, i, array) : array[i];
+    }
+  };
+  share(Target::kApplied, static_cast<int>(m->nv), d->qfrc_applied, scratch.user_qfrc);
+  share(Target::kXfrc, 6 * static_cast<int>(m->nbody), d->xfrc_applied, scratch.user_xfrc);
+  known_forces(m, d, scratch.user_qfrc.data(), scratch.user_xfrc.data(), scratch.known);
+  // What is held through the stages of Runge-Kutta must be implicit in all directions: forces that
+  // stay as they were at the begin of a step make its oscillations grow.
+  const auto parts = m->opt.integrator == mjINT_RK4                    ? ImplicitParts::kHeld
+                     : contact.options().implicit == Implicit::kAlways ? ImplicitParts::kAll
+                                                                       : ImplicitParts::kStiff;
+  implicit.solve(m, d, parts, scratch.known.data());
+  for (const int pair : scratch.order) total_up(scratch.reports[static_cast<std::size_t>(pair)]);
+  for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
+    if (!implicit.is_pair_solved(k)) continue;
+    scratch.energies[k].solve(implicit.work(k), implicit.friction_work(k),
+                              implicit.released_at_most(k));
+    scratch.held[k] = 1;
+  }
+}
+
+// What the step that ends here released: solved pairs know when they are, others at its end.
+void release(const AccountKeeper& account, EnergyAccount& now,
+             EvaluationScratch& scratch) noexcept {
+  if (!account.continues()) return;
+  const EnergyAccount before = account.begin().energy();
+  now.released = before.released + before.releasing;
+  for (PairEnergy& energy : scratch.energies) now.released += std::exchange(energy.released, 0.0);
+}
+
+// The forces that act, in place of what the laws say at this evaluation.
+void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
+                   const UserdataBlock& our, const AccountKeeper& account, EnergyAccount& now,
+                   EvaluationScratch& scratch) noexcept {
+  const bool is_rk4 = m->opt.integrator == mjINT_RK4;
+  const double* begin = account.continues() ? account.begin().states() : nullptr;
+  if (account.is_within_step()) {
+    hold_solved(contact, m, d, our, scratch);
+    now.unpaid = read_energies(contact, begin, account.since_begin(), is_rk4, scratch);
+    release(account, now, scratch);
+    scratch.dissipated = 0.0;
+    find_unpaid_pairs(contact, m, scratch);
+    postpone_stiff(scratch);
+    return;
+  }
+  now.implicit = find_stiff_sites(contact, m, d, scratch);
+  now.unpaid = read_energies(contact, begin, account.since_begin(), is_rk4, scratch);
+  release(account, now, scratch);
+  scratch.dissipated = 0.0;
+  if (begin) {
+    double elastic = -now.unpaid;
+    for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+      elastic += scratch.reports[k].elastic_energy;
+    }
+    scratch.dissipated = least_dissipated(account.begin().energy(), account.since_begin(), elastic);
+  }
+  if (is_rk4 && find_unpaid_pairs(contact, m, scratch)) now.implicit = true;
+  if (now.implicit) solve_implicit(contact, m, d, scratch);
+  const bool limited = !is_rk4 && limit_explicit(contact, m, scratch);
+  if (now.implicit || limited) keep_solved(contact, our, scratch);
+  for (const PairEnergy& energy : scratch.energies) {
+    if (energy.is_solved) now.releasing += energy.released;
+  }
+}
+
+// Writes what the sites of this evaluation keep; false when there was no room for all.
+bool keep_sites(const SceneContact& contact, double* states,
+                const EvaluationScratch& scratch) noexcept {
+  const SitePool<double> pool(states, contact.sites());
+  pool.clear();
+  if (contact.sites().rows == 0) return true;
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    const int pair = scratch.cull.near[k];
+    const int size = contact.pairs()[static_cast<std::size_t>(pair)].model.row_size();
+    const std::vector<double>& memory = scratch.reports[k].memory;
+    for (std::size_t start = 0; start < memory.size(); start += static_cast<std::size_t>(size)) {
+      if (!pool.push(pair, &memory[start], size)) return false;
+    }
+  }
+  return true;
+}
+
+void write_forces(const SceneContact& contact, const mjModel* m, mjData* d, bool goes_on,
+                  EvaluationScratch& scratch) noexcept {
+  const UserdataBlock our = contact.block(m, d);
+  BodyForces& forces = scratch.forces;
+  const bool cartesian = contact.options().target == Target::kXfrc;
+  forces.reset(m);
+  // Later stages of Runge-Kutta hold generalized forces: a force that stays in space loads the
+  // joints of a body that turns.
+  if (m->opt.integrator == mjINT_RK4 && !goes_on && our.solved() > 0) {
+    add_held(contact, m, d, our, forces);
+    std::vector<double>& held = forces.generalized(m, d);
+    drop_non_finite(held);
+    std::copy(held.begin(), held.end(), our.held());
+    forces.reset(m);
+  }
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    const GeomPair& geoms = contact.pairs()[static_cast<std::size_t>(scratch.cull.near[k])].geoms;
+    const int a = m->geom_bodyid[geoms.a], b = m->geom_bodyid[geoms.b];
+    for (const SiteReport& site : scratch.reports[k].sites) {
+      const Vec3& c = site.metrics.centroid;
+      scratch.mocaps.add_load(m, d, a, c, site.force_on_A, site.torque_on_A);
+      scratch.mocaps.add_load(m, d, b, c, -site.force_on_A, -site.torque_on_A);
+      if (goes_on && scratch.held[k]) continue;
+      forces.add(m, d, a, c, site.force_on_A, site.torque_on_A);
+      forces.add(m, d, b, c, -site.force_on_A, -site.torque_on_A);
+    }
+  }
+  if (goes_on && cartesian) add_held(contact, m, d, our, forces);
+  std::vector<double>& numbers = cartesian ? forces.cartesian(m, d) : forces.generalized(m, d);
+  if (goes_on && !cartesian && our.solved() > 0) {
+    std::transform(numbers.begin(), numbers.end(), our.held(), numbers.begin(), std::plus<>());
+  }
+  const bool dropped = drop_non_finite(numbers);
+  if (dropped || any(scratch.invalid, scratch.cull.near.size())) our.dropped() += 1.0;
+  const int count = static_cast<int>(numbers.size());
+  switch (contact.options().target) {
+    case Target::kApplied:
+      apply_beside_user(our, count, numbers.data(), d->qfrc_applied);
+      break;
+    case Target::kXfrc:
+      apply_beside_user(our, count, numbers.data(), d->xfrc_applied);
+      break;
+    case Target::kPassive:
+      for (int i = 0; i < count; ++i) {
+        d->qfrc_passive[i] += numbers[static_cast<std::size_t>(i)];
+      }
+      break;
+  }
+  std::vector<double>& acting = cartesian ? forces.generalized(m, d) : numbers;
+  if (cartesian) drop_non_finite(acting);
+  std::copy(acting.begin(), acting.end(), our.slot(0).forces());
+}
+
+// How the mocap bodies move, into the slot of this evaluation. Returns the work that they did on
+// the contacts since the last [J].
+double follow_mocaps(const mjModel* m, const mjData* d, const UserdataBlock& our,
+                     const AccountKeeper& account, EvaluationScratch& scratch) noexcept {
+  scratch.mocaps = MocapMotion(our.slot(0).mocaps());
+  if (m->nmocap == 0) return 0.0;
+  if (!account.continues()) {
+    scratch.mocaps.read(m, d, nullptr, 0.0, false);
+    return 0.0;
+  }
+  const MocapMotion before(our.slot(1).mocaps());
+  // They are moved between steps. The evaluation before lies within Runge-Kutta's step.
+  const double elapsed = m->opt.integrator == mjINT_RK4 ? m->opt.timestep : account.elapsed();
+  scratch.mocaps.read(m, d, &before, elapsed, account.is_within_step());
+  return account.is_within_step() ? 0.0 : scratch.mocaps.work_since(m, before, elapsed);
+}
+
+}  // namespace
+
+void apply_contact(const SceneContact& contact, const mjModel* m, mjData* d,
+                   EvaluationScratch& scratch) noexcept {
+  if (!contact.has_room(m)) return;
+  const UserdataBlock our = contact.block(m, d);
+  our.claim();
+  // Nobody tells a block beside mjData of a reset; to it a time that goes back is one.
+  if (!contact.is_beside()) follow_clock(m, d, our, scratch.way);
+  const AccountKeeper account(our, d->time, m->opt.timestep, m->opt.integrator == mjINT_RK4);
+  const double* committed = account.continues() ? our.slot(1).states() : nullptr;
+  const bool goes_on = account.is_within_step();
+  const double driven = follow_mocaps(m, d, our, account, scratch);
+  evaluate_pairs(contact, m, d, {committed, account.elapsed(), contact.is_implicit()}, scratch);
+  EnergyAccount now;
+  scratch.held.assign(scratch.cull.near.size(), 0);
+  if (!goes_on) our.set_solved(0);
+  if (contact.is_implicit()) choose_forces(contact, m, d, our, account, now, scratch);
+  bool kept = keep_sites(contact, our.slot(0).states(), scratch);
+  if (contact.is_implicit()) kept = keep_energies(contact, our.slot(0).states(), scratch) && kept;
+  if (!kept) our.forgotten() += 1.0;
+
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    const ContactReport& report = scratch.reports[k];
+    now.elastic += report.elastic_energy;
+    if (!now.implicit) now.stored += stored_power(report);
+    now.power += report.power;
+    now.taken += report.taken;
+    now.slide_energy += report.bristle_energy.slide;
+    now.spin_energy += report.bristle_energy.spin;
+  }
+  now.elastic -= now.unpaid;
+  write_forces(contact, m, d, goes_on, scratch);
+  now.force_power = power_of(our.slot(0).forces(), d->qvel, m->nv);
+  keep_motion(m, d, our);
+  account.write(now, account.continues() ? power_of(our.slot(1).forces(), d->qvel, m->nv) : 0.0,
+                driven);
+}
+
+void release_contact(const SceneContact& contact, const mjModel* m, mjData* d) noexcept {
+  if (!contact.has_room(m)) return;
+  const UserdataBlock our = contact.block(m, d);
+  if (contact.options().target == Target::kApplied) {
+    release_to_user(our, contact.layout(m).channels, d->qfrc_applied);
+  } else if (contact.options().target == Target::kXfrc) {
+    release_to_user(our, contact.layout(m).channels, d->xfrc_applied);
+  }
+}
+
+}  // namespace volcontact::adaptor

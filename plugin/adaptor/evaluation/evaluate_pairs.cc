@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/evaluation/evaluate_pairs.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "adaptor/evaluation/work_sharing.h"
+#include "adaptor/mujoco/mjgeoms.h"
+
+namespace volcontact::adaptor {
+namespace {
+
+// The octree can share the cells of one pair among threads; the other engines are too quick for
+// that, and their pairs are shared instead.
+bool shares_its_own_work(Engine engine) { return engine == Engine::kOctree; }
+
+// The time from which OpenMP saves more than it costs, also on a busy machine [s].
+constexpr double kWorthSharing = 200e-6;
+constexpr int kPairsPerTask = 16;
+
+bool is_finite(const ContactReport& report) {
+  double sum = report.elastic_energy + report.power.sum();
+  for (const SiteReport& site : report.sites) {
+    sum += site.force_on_A.sum() + site.torque_on_A.sum() + site.metrics.centroid.sum();
+  }
+  return sum - sum == 0.0;
+}
+
+// How the pairs of one evaluation are worked off, in the order of `scratch.order`: some one after
+// the other, each sharing its own work; then, in one parallel region, some alone and the rest by
+// the handful.
+struct Work {
+  int threads = 1;
+  int pairs = 0;
+  int own_sharing = 0;
+  int single_tasks = 0;
+};
+Work plan_work(const SceneContact& contact, int threads, EvaluationScratch& scratch) {
+  const std::vector<int>& near = scratch.cull.near;
+  const auto is_long = [&](int k) {
+    return shares_its_own_work(
+        contact.pairs()[static_cast<std::size_t>(near[static_cast<std::size_t>(k)])].engine);
+  };
+  Work work;
+  work.pairs = static_cast<int>(near.size());
+  double time = 0.0;
+  scratch.order.clear();
+  for (const bool wanted : {true, false}) {
+    for (int k = 0; k < work.pairs; ++k) {
+      if (is_long(k) == wanted) scratch.order.push_back(k);
+    }
+    if (wanted) work.single_tasks = static_cast<int>(scratch.order.size());
+  }
+  for (const int pair : near) {
+    time += typical_time(contact.pairs()[static_cast<std::size_t>(pair)].engine);
+  }
+  if (work.single_tasks < threads) {
+    time -= work.single_tasks * typical_time(Engine::kOctree);
+    work.own_sharing = std::exchange(work.single_tasks, 0);
+  }
+  work.threads = time < kWorthSharing ? 1 : threads;
+  return work;
+}
+
+void evaluate_one(const SceneContact& contact, const mjModel* m, const mjData* d,
+                  const SitesBefore& before, int k, ContactModel::Workspace& workspace,
+                  EvaluationScratch& scratch) noexcept {
+  const std::size_t index = static_cast<std::size_t>(k);
+  const int pair_index = scratch.cull.near[index];
+  const PairContact& pair = contact.pairs()[static_cast<std::size_t>(pair_index)];
+  const auto twist_of = [&](int geom) {
+    const Twist own = twist_of_geom(m, d, geom);
+    const Twist driven = scratch.mocaps.at(m, d, m->geom_bodyid[geom], vec3_at(d->geom_xpos, geom));
+    return Twist{own.angular + driven.angular, own.linear + driven.linear};
+  };
+  const BodyMotion motion{pose_of_geom(d, pair.geoms.a), pose_of_geom(d, pair.geoms.b),
+                          twist_of(pair.geoms.a), twist_of(pair.geoms.b)};
+  SiteMemory memory;
+  memory.elapsed = before.elapsed;
+  if (before.committed && pair.model.row_size() > 0) {
+    memory = SitePool<const double>(before.committed, contact.sites())
+                 .rows_of(pair_index, before.elapsed);
+  }
+  ContactReport& report = scratch.reports[index];
+  report.keeps_inputs = before.keeps_inputs;
+  pair.model.evaluate(motion, memory, workspace, report);
+  scratch.invalid[index] =
+      workspace.interference.total.status == Status::kInvalid || !is_finite(report);
+  if (!scratch.invalid[index]) return;
+  report.sites.clear();
+  report.memory.clear();
+  report.inputs.clear();
+  report.elastic_energy = 0.0;
+  report.bristle_energy = {};
+  report.power = {};
+  report.taken = {};
+}
+
+}  // namespace
+
+void evaluate_pairs(const SceneContact& contact, const mjModel* m, const mjData* d,
+                    const SitesBefore& before, EvaluationScratch& scratch) noexcept {
+  contact.cull().run(d, scratch.cull);
+  const std::vector<int>& near = scratch.cull.near;
+  if (scratch.reports.size() < near.size()) {
+    scratch.reports.resize(near.size());
+    scratch.invalid.resize(near.size());
+  }
+
+  const EvaluationGuard guard(contact.options().threads);
+  const Work work = plan_work(contact, guard.threads(), scratch);
+  if (scratch.workspaces.size() < static_cast<std::size_t>(work.threads)) {
+    scratch.workspaces.resize(static_cast<std::size_t>(work.threads));
+  }
+  const auto evaluate_some = [&](int first, int last, int thread) {
+    ContactModel::Workspace& workspace = scratch.workspaces[static_cast<std::size_t>(thread)];
+    for (int i = first; i < last; ++i) {
+      evaluate_one(contact, m, d, before, scratch.order[static_cast<std::size_t>(i)], workspace,
+                   scratch);
+    }
+  };
+  evaluate_some(0, work.own_sharing, 0);
+  const int single = work.own_sharing + work.single_tasks;
+  const int tasks = work.single_tasks + (work.pairs - single + kPairsPerTask - 1) / kPairsPerTask;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(work.threads) if (work.threads > 1)
+  for (int task = 0; task < tasks; ++task) {
+    const int thread = work.threads > 1 ? omp_get_thread_num() : 0;
+    if (task < work.single_tasks) {
+      evaluate_some(work.own_sharing + task, work.own_sharing + task + 1, thread);
+    } else {
+      const int first = single + (task - work.single_tasks) * kPairsPerTask;
+      evaluate_some(first, std::min(first + kPairsPerTask, work.pairs), thread);
+    }
+  }
+}
+
+}  // namespace volcontact::adaptor

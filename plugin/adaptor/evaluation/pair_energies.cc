@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/evaluation/pair_energies.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "adaptor/evaluation/report_sums.h"
+#include "adaptor/scene/pair_rates.h"
+
+namespace volcontact::adaptor {
+namespace {
+
+struct ExplicitShare {
+  double share, released_at_most;
+  bool slowly;  // whether it needs what may be released
+};
+
+// The share of the explicit forces of a pair that does no more work than the pair may.
+ExplicitShare share_of(const SceneContact& contact, const mjModel* m, std::size_t k,
+                       const PairEnergy::Now& now, const EvaluationScratch& scratch) noexcept {
+  const double h = m->opt.timestep;
+  const double fall = fall_of(m);
+  const PairContact& pair = contact.pairs()[static_cast<std::size_t>(scratch.cull.near[k])];
+  const double along = inverse_mass(m, pair.geoms).along;
+  WorkLimit limit = WorkLimit::of(scratch.energies[k], scratch.dissipated,
+                                  contact.options().exit_speed, now.moving(along));
+  const double slow = std::exchange(limit.for_bodies(along, fall).slow, 0.0);
+  const auto share_now = [&] {
+    return explicit_share(limit, now.force, -now.approach(), along, fall, h);
+  };
+  const bool slowly = share_now() < 1.0;  // whether it needs what bodies that part slowly get
+  limit.slow = slow;
+  const double share = share_now();
+  const double exit = h * share * now.force * along - now.approach();
+  return {share, exit <= contact.options().exit_speed ? slow : 0.0, slowly};
+}
+
+}  // namespace
+
+double fall_of(const mjModel* m) {
+  return m->opt.timestep * Eigen::Map<const Vec3>(m->opt.gravity).norm();
+}
+
+double read_energies(const SceneContact& contact, const double* committed, double elapsed,
+                     bool is_rk4, EvaluationScratch& scratch) noexcept {
+  const std::size_t count = scratch.cull.near.size();
+  scratch.energies.assign(count, PairEnergy());
+  double unpaid = 0.0;
+  std::size_t first = 0;  // of the pair's sites
+  for (std::size_t k = 0; k < count; ++k) {
+    const ContactReport& report = scratch.reports[k];
+    const auto stiff = scratch.stiff.begin() + static_cast<std::ptrdiff_t>(first);
+    first += report.sites.size();
+    if (!report.touching()) continue;
+    PairEnergy& energy = scratch.energies[k];
+    const PairEnergy::Now now(report);
+    SiteMemory row;
+    if (committed) {
+      const SitePool<const double> pool(committed + contact.sites().size(), contact.energies());
+      row = pool.rows_of(scratch.cull.near[k], elapsed);
+    }
+    if (row.count > 0) energy = PairEnergy::from(row.rows);
+    if (!committed) {
+      energy.found = now.elastic;
+    } else if (is_rk4 && energy.explains(elapsed, now) &&
+               std::find(stiff, stiff + std::ssize(report.sites), 1) ==
+                   stiff + std::ssize(report.sites)) {
+      energy.follow(now);
+    } else {
+      energy.take_in(elapsed, now, is_rk4);
+    }
+    unpaid += now.elastic - energy.stored - energy.found;
+  }
+  return unpaid;
+}
+
+bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m,
+                       EvaluationScratch& scratch) noexcept {
+  constexpr double kRounding = 1e-9;
+  bool some = false;
+  std::size_t first = 0;  // of the pair's sites
+  for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
+    const ContactReport& report = scratch.reports[k];
+    const auto stiff = scratch.stiff.begin() + static_cast<std::ptrdiff_t>(first);
+    first += report.sites.size();
+    if (!report.touching()) continue;
+    PairEnergy& energy = scratch.energies[k];
+    const PairEnergy::Now now(report);
+    const double unpaid = now.elastic - energy.stored - energy.found;
+    if (energy.found == 0.0 && unpaid <= kRounding * now.elastic) continue;
+    const auto [share, released_at_most, slowly] = share_of(contact, m, k, now, scratch);
+    if (share == 1.0) {
+      if (!slowly) continue;
+      energy.rubbed = now.bristle;
+      energy.force = now.force;
+      energy.power = now.power;
+      energy.slow = released_at_most;
+      continue;
+    }
+    std::fill(stiff, stiff + std::ssize(report.sites), 1);
+    some = true;
+  }
+  return some;
+}
+
+bool limit_explicit(const SceneContact& contact, const mjModel* m,
+                    EvaluationScratch& scratch) noexcept {
+  bool limited = false;
+  for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
+    PairEnergy& energy = scratch.energies[k];
+    ContactReport& report = scratch.reports[k];
+    if (energy.is_solved || !report.touching()) continue;
+    const PairEnergy::Now now(report);
+    const auto [share, released_at_most, slowly] = share_of(contact, m, k, now, scratch);
+    energy.rubbed = now.bristle;
+    energy.force = share * now.force;
+    energy.power = share * now.power;
+    energy.slow = released_at_most;
+    if (share == 1.0) continue;
+    limited = true;
+    scratch.held[k] = 1;
+    take_share(share, report);
+  }
+  return limited;
+}
+
+bool keep_energies(const SceneContact& contact, double* states,
+                   const EvaluationScratch& scratch) noexcept {
+  const SitePool<double> pool(states + contact.sites().size(), contact.energies());
+  pool.clear();
+  for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
+    if (!scratch.reports[k].touching()) continue;
+    double row[PairEnergy::kNumbers];
+    scratch.energies[k].write(row);
+    if (!pool.push(scratch.cull.near[k], row, PairEnergy::kNumbers)) return false;
+  }
+  return true;
+}
+
+}  // namespace volcontact::adaptor

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "adaptor/evaluation/body_forces.h"
+#include "adaptor/evaluation/mocap_motion.h"
+#include "adaptor/geoms/pair_list.h"
+#include "adaptor/memory/work_limit.h"
+#include "adaptor/step/implicit_step.h"
+#include "volcontact/model/contact_model.h"
+
+namespace volcontact::adaptor {
+
+/// Memory of one evaluation; one per thread, reused from call to call.
+struct EvaluationScratch {
+  Cull::Scratch cull;                  ///< `near`: the pairs evaluated
+  std::vector<ContactReport> reports;  ///< of the pairs in `near`, finite numbers only
+  std::vector<char> invalid;           ///< whether a report was left out, having no numbers
+  std::vector<char> stiff;             ///< of all sites, whether an explicit step cannot hold it
+  std::vector<char> held;  ///< of the pairs in `near`, whether other forces than its laws say act
+  std::vector<int> order;  ///< of `near`, as worked off: the long pairs first
+  std::vector<ContactModel::Workspace> workspaces;  ///< one per OpenMP thread
+  BodyForces forces;
+  ImplicitStep implicit;
+  double dissipated = 0.0;           ///< by the contacts up to the evaluation before [J]
+  std::vector<PairEnergy> energies;  ///< of the pairs in `near`
+  std::vector<double> user_qfrc, user_xfrc, known, row;
+  MocapMotion mocaps;
+  std::vector<double> way;  ///< of the dofs since the evaluation before
+};
+
+}  // namespace volcontact::adaptor

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "adaptor/geoms/pair_list.h"
+#include "adaptor/keys/materials.h"
+#include "volcontact/model/contact_model.h"
+
+namespace volcontact::adaptor {
+
+/// The contact model of one pair of geoms. Body A is the frame of geom a, body B that of geom b.
+struct PairContact {
+  GeomPair geoms;
+  Engine engine;  ///< the one that will serve
+  PairLaws laws;
+  ContactModel model;
+  /// k/m of a patch as large as the smaller solid's box against a displacement [1/s^2].
+  double largest_rate = 0.0;
+  /// The same of friction with a memory against sliding, 0 without one [1/s^2].
+  double friction_rate = 0.0;
+  double friction_damping_rate = 0.0;  ///< and of its damping [1/s]
+  bool is_jointed = false;             ///< whether one of the bodies hangs on joints
+};
+
+}  // namespace volcontact::adaptor
