@@ -22,10 +22,12 @@ TABLES = ROOT / "tests" / "benchmarks" / "results"
 # Releases whose structs or functions differ from those before, and what is tested on each.
 MATRIX = [BASELINE, "2.3.7", "3.0.1", "3.3.7", "3.10.0", "3.17.0", "newest"]
 _MATRIX_TESTS = [
-    f"tests/python/test_{name}.py"
+    f"tests/python/{name}.py"
     for name in (
-        "ledger", "checkpoints", "parallel_runs", "mixed_scenes", "hosts", "scene", "scene_batches",
-        "scene_errors", "scene_reading", "releases_agree",
+        "adaptor/test_ledger", "adaptor/test_checkpoints", "adaptor/test_parallel_runs",
+        "adaptor/test_mixed_scenes", "adaptor/test_releases_agree", "hosts/test_hosts",
+        "scene/test_scene", "scene/test_scene_batches", "scene/test_scene_errors",
+        "scene/test_scene_reading",
     )
 ]  # fmt: skip
 # In turns, so that a busy second spoils no row.

@@ -25,7 +25,7 @@ from process_tree import Process, growth, processes, seconds_between
 import volcontact as vc
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "python"))
+sys.path.insert(0, str(ROOT / "tests" / "python" / "support"))
 ENGINES = ("serial", "processes", "ray", "dask")
 DURATION = 3.4  # [s]; about 20 ms of work
 INSTANT = "def trial(values, rng):\n    return {'sum': values['x'] + values['y']}\n"

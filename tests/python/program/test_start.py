@@ -8,7 +8,7 @@ from pathlib import Path
 
 from volcontact.cli import main
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 MOST_COMMANDS = 9  # fewer than ten from a clone to a scene of one's own
 
 

@@ -18,7 +18,7 @@ import pytest
 import volcontact as vc
 from volcontact.cli import make_parser
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 PAGES = [ROOT / "README.md", ROOT / "plugin" / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 SOURCES = [
     path

@@ -15,7 +15,7 @@ from volcontact.simulation import to_start
 fmpy = pytest.importorskip("fmpy", reason="FMPy is missing: pip install fmpy")
 from fmu_master import Exchange, Master, RigidBody  # noqa: E402 - needs FMPy
 
-MODELS = Path(__file__).parents[2] / "mjcf_models"
+MODELS = Path(__file__).parents[3] / "mjcf_models"
 
 
 def master_of(tmp_path, name, body, fmi=2):

@@ -11,7 +11,7 @@ from types import ModuleType
 import mujoco
 import pytest
 
-BENCHMARKS = Path(__file__).resolve().parents[1] / "benchmarks"
+BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
 
 SCENE = """
 <mujoco>

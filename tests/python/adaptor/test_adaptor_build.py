@@ -12,7 +12,7 @@ import pytest
 
 from volcontact import _adaptor, _adaptor_build
 
-TOOLS = Path(__file__).parents[2] / ".venv" / "tools"
+TOOLS = Path(__file__).parents[3] / ".venv" / "tools"
 SOURCE = _adaptor._library_folders()[0] / "source"
 NAME = f"libvolcontact_mujoco-{mujoco.__version__}.so"
 
@@ -46,7 +46,7 @@ def test_compiles_once_what_steps_to_the_same_bits(tmp_path, monkeypatch, capfd)
     library = _adaptor_build.build(NAME, SOURCE)
     assert library.is_relative_to(tmp_path / "cache" / "volcontact")
     assert "compiling for MuJoCo" in capfd.readouterr().err
-    scene = Path(__file__).parents[2] / "mjcf_models" / "spinning_disc" / "scene.xml"
+    scene = Path(__file__).parents[3] / "mjcf_models" / "spinning_disc" / "scene.xml"
     states = []
     for own in ({}, {"VOLCONTACT_ADAPTOR": str(library)}):
         command = [sys.executable, "-c", PROGRAM, str(scene)]

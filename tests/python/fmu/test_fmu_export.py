@@ -14,7 +14,7 @@ from volcontact.cli import main
 from volcontact.fmu.units import exponents, limits
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy is missing: pip install fmpy")
-MODELS = Path(__file__).parents[2] / "mjcf_models"
+MODELS = Path(__file__).parents[3] / "mjcf_models"
 SCENES = {
     "bouncing_ball": ["ball", "world"],
     "ball_in_cylinder": ["ball", "world"],

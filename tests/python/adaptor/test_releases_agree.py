@@ -12,7 +12,7 @@ import numpy as np
 import pose_stream
 import pytest
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 def release(name: str) -> tuple[int, ...]:

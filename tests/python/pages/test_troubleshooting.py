@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 PAGE = ROOT / "docs" / "troubleshooting.md"
 CPP = ("plugin/volcontact", "plugin/adaptor", "plugin/c_api", "python/bindings")
 SHORTEST = 12  # of the fixed words of a message that say something

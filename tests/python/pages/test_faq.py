@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
-PAGE = Path(__file__).parents[2] / "docs" / "faq.md"
+PAGE = Path(__file__).parents[3] / "docs" / "faq.md"
 VERSION = tuple(int(number) for number in mujoco.__version__.split("."))
 POSES = 72
 

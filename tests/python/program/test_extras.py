@@ -12,7 +12,7 @@ import pytest
 from volcontact.cli import main
 from volcontact.extras import EXTRAS
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture

@@ -19,7 +19,7 @@ import volcontact as vc
 from volcontact.gym import ENV_ID, ForceGuided, oru_insertion
 from volcontact.gym.scene_files import scene_file
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 KINDS = ["volumetric", "native"]
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-EXAMPLES = Path(__file__).parents[2] / "python" / "examples"
+EXAMPLES = Path(__file__).parents[3] / "python" / "examples"
 # Stand at the end of a number: m, mm, J and so on may follow.
 NUMBER = r"-?\d+\.?\d*(?:e[+-]?\d+)?"
 

@@ -14,7 +14,7 @@ import volcontact as vc
 integrate = pytest.importorskip("scipy.integrate", reason="scipy is missing")
 optimize = pytest.importorskip("scipy.optimize", reason="scipy is missing")
 
-HOSTS = Path(__file__).parents[2] / "python" / "examples" / "hosts"
+HOSTS = Path(__file__).parents[3] / "python" / "examples" / "hosts"
 RADIUS, GRAVITY, STIFFNESS, FRICTION = 0.05, 9.81, 1e8, 0.3
 
 SCENE = """

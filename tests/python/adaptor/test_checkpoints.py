@@ -10,7 +10,7 @@ from checkpoints import checkpoint, restore, state_vector
 
 import volcontact as vc
 
-SCENE = Path(__file__).parents[2] / "mjcf_models/battery_box/scene.xml"
+SCENE = Path(__file__).parents[3] / "mjcf_models/battery_box/scene.xml"
 STEPS = 400  # from first touch on; it is seated by then, but under RK4
 CHECKPOINTS = 100
 AHEAD = 12  # steps compared after each of them

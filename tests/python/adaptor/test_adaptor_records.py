@@ -13,7 +13,7 @@ import pytest
 
 from volcontact import _adaptor
 
-HEADER = Path(__file__).parents[2] / "plugin" / "adaptor" / "volcontact_mujoco.h"
+HEADER = Path(__file__).parents[3] / "plugin" / "adaptor" / "volcontact_mujoco.h"
 RECORDS = {
     "volcontact_site": _adaptor.SITE_DTYPE,
     "volcontact_contact": _adaptor.CONTACT_DTYPE,

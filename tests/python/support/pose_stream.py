@@ -14,7 +14,7 @@ import numpy as np
 
 import volcontact as vc
 
-SCENE = Path(__file__).parents[2] / "mjcf_models/battery_box/scene.xml"
+SCENE = Path(__file__).parents[3] / "mjcf_models/battery_box/scene.xml"
 POSES = 400
 
 

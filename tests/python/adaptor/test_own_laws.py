@@ -22,7 +22,7 @@ from scenes import over_floor
 
 import volcontact as vc
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 BALL = vc.Pair(vc.Sphere(radius=0.05), vc.HalfSpace())
 
 

@@ -16,8 +16,8 @@ import pytest
 
 import volcontact as vc
 
-CAMPAIGN = Path(__file__).resolve().parents[1] / "campaign"
-RESULTS = Path(__file__).resolve().parents[1] / "benchmarks" / "results"
+CAMPAIGN = Path(__file__).resolve().parents[2] / "campaign"
+RESULTS = Path(__file__).resolve().parents[2] / "benchmarks" / "results"
 
 
 @pytest.fixture

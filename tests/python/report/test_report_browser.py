@@ -9,7 +9,7 @@ import pytest
 
 from volcontact.cli import main
 
-SCENE = Path(__file__).parents[2] / "mjcf_models" / "battery_box" / "scene.xml"
+SCENE = Path(__file__).parents[3] / "mjcf_models" / "battery_box" / "scene.xml"
 
 pytestmark = pytest.mark.skipif(
     shutil.which("chromium") is None, reason="the program chromium is not installed"

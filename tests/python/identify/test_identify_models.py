@@ -14,7 +14,7 @@ from volcontact.identify.costs import trial_cost
 from volcontact.identify.measurements import read_trials
 from volcontact.identify.reading import read_settings
 
-FOLDER = Path(__file__).parents[2] / "mjcf_models" / "identification"
+FOLDER = Path(__file__).parents[3] / "mjcf_models" / "identification"
 CUBE = FOLDER / "cube_tosses"
 
 
