@@ -80,7 +80,7 @@ void bind_units(nb::module_& m) {
         add(friction_law_entries());
         return units;
       },
-      "Unit of each parameter of the laws by its name, as in messages: \"N/m^3\"");
+      "Unit of each parameter of the laws by its name, such as N/m^3");
 }
 
 void bind_layers(nb::module_& m) {

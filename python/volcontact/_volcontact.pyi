@@ -933,6 +933,9 @@ def make_normal(name: str, **parameters: float | str) -> NormalForce:
 def make_friction(name: str, **parameters: float | str) -> Friction:
     """The same for friction laws"""
 
+def units_of_law_fields() -> dict[str, str]:
+    """Unit of each parameter of the laws by its name, such as N/m^3"""
+
 def layer_stiffness(*, modulus: float, thickness: float, poisson_ratio: float | None = None) -> float:
     """
     Stiffness of an elastic layer on a rigid core.

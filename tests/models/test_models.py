@@ -181,7 +181,7 @@ def test_every_scene_loads_and_runs_in_plain_mujoco() -> None:
 
 def test_every_model_folder_is_complete() -> None:
     table = (MODELS / "README.md").read_text()
-    # Those of identification have tests of their own, tests/python/identify/test_identify_models.py.
+    # Those of identification have tests of their own, in tests/python/identify.
     folders = [p for p in MODELS.iterdir() if p.is_dir() and p.name != "identification"]
     for folder in sorted(folders):
         for name in ("scene.xml", "README.md", "expected.json"):

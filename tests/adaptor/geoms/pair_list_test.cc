@@ -7,6 +7,7 @@
 #include <random>
 #include <set>
 
+#include "adaptor/geoms/solids_of_geoms.h"
 #include "adaptor/support/models.h"
 
 namespace volcontact::adaptor::pair_list_test {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "adaptor/scene/scene_contact.h"
+#include "adaptor/readings/last_evaluation.h"
 #include "adaptor/scene_registry.h"
 #include "adaptor/support/count_allocations.h"
 #include "adaptor/support/models.h"
@@ -54,7 +54,7 @@ class MovedClock : public ::testing::TestWithParam<const char*> {
     for (int i = 0; i < m->nv; ++i) EXPECT_NEAR(d->qvel[i], same->qvel[i], 1e3 * tolerance) << i;
   }
   EnergyAccount energy(const testing::DataPointer& data) {
-    return contact_of(m.get())->energy(m.get(), data.get());
+    return volcontact::adaptor::energy(*contact_of(m.get()), m.get(), data.get());
   }
 
   testing::ModelPointer m;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "adaptor/memory/work_limit.h"
 #include "adaptor/scene/largest_state.h"
 #include "adaptor/scene/scene_contact.h"
 #include "adaptor/support/count_allocations.h"

@@ -328,9 +328,13 @@ SPRINGS = """
       <geom name="box" type="box" size=".05 .05 .05" mass="1"/></body>
   </worldbody>
   <custom>
-    <text name="volcontact/material/soft/geoms" data="floor"/>
-    <text name="volcontact/material/hard/geoms" data="box"/>
-    <text name="volcontact/material/soft/friction_law" data="springs"/>
+    <tuple name="volcontact/material/soft">
+      <element objtype="geom" objname="floor"/>
+    </tuple>
+    <tuple name="volcontact/material/hard">
+      <element objtype="geom" objname="box"/>
+    </tuple>
+    <numeric name="volcontact/material/soft/friction_law/springs" data="1"/>
     <numeric name="volcontact/material/soft/shear_stiffness" data="1e7"/>
     <numeric name="volcontact/material/hard/shear_stiffness" data="3e7"/>
   </custom>
@@ -342,7 +346,7 @@ import volcontact as vc
 model = vc.load(sys.argv[1])
 data = mujoco.MjData(model)
 with vc.attach(model) as contact:
-    (pair,) = contact.describe()["pairs"]
+    (pair,) = contact.description["pairs"]
     mujoco.mj_step(model, data, 1000)
     before = data.qpos.copy()
     mujoco.mj_step(model, data, 500)
