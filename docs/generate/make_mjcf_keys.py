@@ -81,6 +81,7 @@ All are `<numeric>` and `<tuple>` elements below `<custom>`:
 | `volcontact/pair/PAIR/FIELD`, `.../CHOICE/WORD` | `<numeric>` | replaces what the two materials give |
 | `volcontact/shape/SHAPE` | `<tuple>` of geoms | geoms that stand for another shape: [writing_a_scene.md](writing_a_scene.md#shapes-that-mujoco-has-no-geom-for) |
 | `volcontact/shape/SHAPE/frustum`, `.../torus` | `<numeric>`, its fields in metres | which one: `bottom_radius top_radius half_length`, or `major_radius minor_radius` |
+| `volcontact/shape/SHAPE/rounded_box` | `<numeric>`, a length in metres | the radius of the edges and corners of box geoms |
 | `volcontact/shape/SHAPE/convex_polytope` | `<numeric>`, data 1 | the convex hull of mesh geoms |
 | `volcontact/solid/SOLID` | `<tuple>` of geoms of one body | one solid: `prm="1"` adds a geom, `prm="-1"` cuts it out, `prm="2"` keeps what lies in it |
 

@@ -33,6 +33,7 @@ SOLIDS = {
     "frustum": vc.Frustum(0.1, 0.05, 0.1),
     "torus": vc.Torus(0.1, 0.03),
     "box": vc.Box((0.1, 0.08, 0.12)),
+    "rounded box": vc.RoundedBox((0.1, 0.08, 0.12), 0.02),
     "convex polytope": vc.ConvexPolytope(_CUBE),
     "composed solid": vc.Box((0.1, 0.1, 0.1)) - vc.Cylinder(0.05, 0.2),
     "mesh": vc.Mesh(_CUBE, np.vstack([_FACES[:, [0, 1, 2]], _FACES[:, [0, 2, 3]]])),

@@ -140,7 +140,7 @@ VC_API const char* vc_error(void);
  */
 
 /* A solid of a simple shape with default parameters: half_space, sphere, ellipsoid, capsule,
- * cylinder, frustum, box, torus. docs/components.md has their parameters. */
+ * cylinder, frustum, box, rounded_box, torus. docs/components.md has their parameters. */
 VC_API int vc_solid_create(const char* shape, vc_solid** solid);
 
 /* The solid inside a closed triangle mesh, convex or not. `vertices` has 3 numbers each [m],

@@ -21,7 +21,9 @@ Pose pose_in_body(const mjModel* m, int geom) {
 Shape simple_solid(const mjModel* m, int geom, const SceneKeys& keys) {
   const GivenShape* given = keys.given_shape(geom);
   if (!given) return solid_of_geom(m, geom, keys.options.mesh);
-  return given->shape ? *given->shape : mesh_solid(m, geom, MeshForm::kHull);
+  if (given->shape) return *given->shape;
+  if (given->word == RoundedBox::kName) return rounded_box_of(m, geom, *given);
+  return mesh_solid(m, geom, MeshForm::kHull);
 }
 
 Shape composed_solid(const mjModel* m, const ComposedGeoms& solid, const SceneKeys& keys) {

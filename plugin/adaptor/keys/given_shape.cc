@@ -12,6 +12,7 @@ namespace {
 // Shapes by their numbers, in the order of their fields.
 using NumberedShapes = TypeList<Frustum, Torus>;
 constexpr const char* kHull = ConvexPolytope::kName;
+constexpr const char* kRounded = RoundedBox::kName;
 
 template <typename Solid>
 Shape shape_of(const SceneKey& key, const std::vector<double>& numbers) {
@@ -35,6 +36,7 @@ std::vector<std::string> shape_words() {
   std::vector<std::string> words;
   for_each_type(NumberedShapes{},
                 [&](auto tag) { words.emplace_back(decltype(tag)::Type::kName); });
+  words.emplace_back(kRounded);
   words.emplace_back(kHull);
   return words;
 }
@@ -55,10 +57,26 @@ void read_shape(const SceneKey& key, const std::vector<double>& numbers, GivenSh
     return;
   }
   given.word = word;
+  if (word == kRounded) {
+    require(numbers.size() == 1, key.text +
+                                     " takes 1 number, the radius of the edges in metres, got " +
+                                     std::to_string(numbers.size()));
+    given.radius = numbers[0];
+    return;
+  }
   for_each_type(NumberedShapes{}, [&](auto tag) {
     using Solid = typename decltype(tag)::Type;
     if (word == Solid::kName) given.shape = shape_of<Solid>(key, numbers);
   });
+}
+
+Shape rounded_box_of(const mjModel* m, int geom, const GivenShape& given) {
+  try {
+    return RoundedBox({.half_sizes = vec3_at(m->geom_size, geom), .radius = given.radius});
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(given.key + ": geom '" + label(m, mjOBJ_GEOM, geom) +
+                                "': " + error.what());
+  }
 }
 
 void check_stand_in(const mjModel* m, int geom, const GivenShape& given) {
@@ -67,6 +85,11 @@ void check_stand_in(const mjModel* m, int geom, const GivenShape& given) {
   require(!given.word.empty(), given.key + ": no <numeric> says what it is: " +
                                    joined(shape_words()) + " comes after the name");
   const int type = m->geom_type[geom];
+  if (given.word == kRounded) {
+    require(type == mjGEOM_BOX, name + "; a box is what edges can be rounded of");
+    rounded_box_of(m, geom, given);
+    return;
+  }
   if (given.word == kHull) {
     require(type == mjGEOM_MESH, name + "; the convex hull of a mesh geom is a " + kHull);
     return;

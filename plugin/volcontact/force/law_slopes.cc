@@ -14,6 +14,7 @@ constexpr double kRelative = 1e-7;
 constexpr double kSpeedDifference = 1e-6;  // [m/s]
 constexpr double kWayDifference = 1e-9;    // [m]
 constexpr double kFastSlip = 1.0;          // from which friction is taken to slide [m/s]
+constexpr double kFarTravel = 1.0;         // and over which way, where it has a memory [m]
 
 // The part of friction that works against `along`, a unit vector in the contact plane [N].
 double held(const Friction& law, const FrictionInput& in, const Vec3& along,
@@ -41,6 +42,7 @@ FrictionSlope Friction::slope(const FrictionInput& in, const LawState& state) co
   const Vec3 along = speed > 0.0 ? Vec3(in.slip / speed) : Vec3(basis_with_z(in.normal).col(0));
   FrictionInput fast = in;
   fast.slip = std::max(speed, kFastSlip) * along;
+  if (state_size() > 0) fast.travel += kFarTravel * along;  // what it keeps has come to its limit
   FrictionInput slow = in;
   slow.slip = std::max(speed, kSpeedDifference) * along;
   FrictionInput still = in;

@@ -12,6 +12,7 @@ namespace volcontact {
 /// Box about the origin, faces normal to the axes.
 class Box {
  public:
+  static constexpr bool kPlanesOnly = true;
   static constexpr const char* kName = "box";
   struct Params {
     Vec3 half_sizes = Vec3::Ones();
@@ -70,6 +71,13 @@ class Box {
       list.add(Quadric::plane(-Vec3::Unit(i), p_.half_sizes[i]));
     }
     list.end_piece();
+  }
+  template <typename Writer>
+  void write_faces(Writer& writer) const {
+    for (int i = 0; i < 3; ++i) {
+      writer.plane(Vec3::Unit(i), p_.half_sizes[i]);
+      writer.plane(-Vec3::Unit(i), p_.half_sizes[i]);
+    }
   }
 
  private:

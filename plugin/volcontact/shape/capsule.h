@@ -82,6 +82,24 @@ class Capsule {
       list.end_piece();
     }
   }
+  template <typename Writer>
+  void write_parts(Writer& writer) const {
+    const double h = p_.half_length;
+    writer.plane(Vec3::UnitZ(), h, true);
+    writer.plane(-Vec3::UnitZ(), h, true);
+    writer.tube(2, p_.radius, Vec3::Zero());
+    writer.end_part();
+    for (const double side : {1.0, -1.0}) {
+      const Vec3 out(0.0, 0.0, side);
+      writer.plane(-out, -h, true);
+      writer.ball(p_.radius, h * out);
+      writer.end_part();
+    }
+  }
+  template <typename Writer>
+  void write_faces(Writer& writer) const {
+    writer.rounded_tube(p_.radius, p_.half_length);
+  }
 
  private:
   Vec3 from_axis(const Vec3& p) const {

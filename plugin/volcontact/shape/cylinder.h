@@ -91,6 +91,13 @@ class Cylinder {
     list.add(Quadric::plane(-Vec3::UnitZ(), p_.half_length));
     list.end_piece();
   }
+  template <typename Writer>
+  void write_faces(Writer& writer) const {
+    const double scale = 1.0 / p_.radius;
+    writer.round({scale, scale, 0.0}, Vec3::Zero());
+    writer.end(1.0, p_.radius, p_.half_length);
+    writer.end(-1.0, p_.radius, p_.half_length);
+  }
 
  private:
   Params p_;

@@ -73,6 +73,10 @@ class Ellipsoid {
     m.inertia = (0.2 * m.volume * (Vec3::Constant(squares.sum()) - squares)).asDiagonal();
     return m;
   }
+  template <typename Writer>
+  void write_faces(Writer& writer) const {
+    writer.round(p_.semi_axes.cwiseInverse(), Vec3::Zero());
+  }
 
  private:
   // Below this length the inverse square overflows: such an axis counts as zero.

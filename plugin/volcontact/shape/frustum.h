@@ -114,6 +114,19 @@ class Frustum {
     list.add(Quadric::plane(-Vec3::UnitZ(), p_.half_length));
     list.end_piece();
   }
+  template <typename Writer>
+  void write_faces(Writer& writer) const {
+    constexpr double kStraight = 1e-12;  // radii that differ less are one, relatively
+    const double mean = 0.5 * (p_.bottom_radius + p_.top_radius);
+    const double slope = (p_.top_radius - p_.bottom_radius) / (2.0 * p_.half_length);
+    if (std::abs(slope) * p_.half_length < kStraight * mean) {
+      writer.round({1.0 / mean, 1.0 / mean, 0.0}, Vec3::Zero());
+    } else {
+      writer.cone(slope, -mean / slope);
+    }
+    writer.end(1.0, p_.top_radius, p_.half_length);
+    writer.end(-1.0, p_.bottom_radius, p_.half_length);
+  }
 
  private:
   using Vec2 = Eigen::Vector2d;

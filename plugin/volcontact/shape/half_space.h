@@ -12,6 +12,7 @@ namespace volcontact {
 /// Everything at or below the plane z = 0 of its frame, as MuJoCo's plane.
 class HalfSpace {
  public:
+  static constexpr bool kPlanesOnly = true;
   static constexpr const char* kName = "half_space";
   struct Params {};
   static constexpr std::array<Field<Params>, 0> kFields{};
@@ -43,6 +44,11 @@ class HalfSpace {
   void pieces(PieceList& list) const {
     list.add(Quadric::plane(Vec3::UnitZ(), 0.0));
     list.end_piece();
+  }
+
+  template <typename Writer>
+  void write_faces(Writer& writer) const {
+    writer.plane(Vec3::UnitZ(), 0.0);
   }
 
  private:

@@ -114,4 +114,26 @@ class PieceList {
   std::vector<int> ends_;
 };
 
+/// Pieces from the parts that a solid writes: solid.h, "write_parts".
+class PieceWriter {
+ public:
+  explicit PieceWriter(PieceList& list) : list_(list) {}
+  /// normal . x <= offset.
+  void plane(const Vec3& normal, double offset, bool seam) {
+    list_.add(seam ? Quadric::seam_plane(normal, offset) : Quadric::plane(normal, offset));
+  }
+  /// Within `radius` of the line through `center` along an axis.
+  void tube(int axis, double radius, const Vec3& center) {
+    const Vec3 weights = Vec3::Ones() - Vec3::Unit(axis);
+    list_.add(Quadric::round(weights, center.cwiseProduct(weights), radius * radius));
+  }
+  void ball(double radius, const Vec3& center) {
+    list_.add(Quadric::round(Vec3::Ones(), center, radius * radius));
+  }
+  void end_part() { list_.end_piece(); }
+
+ private:
+  PieceList& list_;
+};
+
 }  // namespace volcontact

@@ -11,14 +11,15 @@
 #include "volcontact/shape/frustum.h"
 #include "volcontact/shape/half_space.h"
 #include "volcontact/shape/polytope/convex_polytope.h"
+#include "volcontact/shape/rounded_box.h"
 #include "volcontact/shape/sphere.h"
 #include "volcontact/shape/torus.h"
 
 namespace volcontact {
 
 /// The shapes that are not made of others.
-using SimpleShapes =
-    TypeList<HalfSpace, Sphere, Ellipsoid, Capsule, Cylinder, Frustum, Box, Torus, ConvexPolytope>;
+using SimpleShapes = TypeList<HalfSpace, Sphere, Ellipsoid, Capsule, Cylinder, Frustum, Box,
+                              RoundedBox, Torus, ConvexPolytope>;
 
 /// One solid of a simple shape, in its own frame.
 using SimpleShape = SimpleShapes::Variant;
@@ -38,6 +39,18 @@ template <typename S>
   requires requires(const S& solid, PieceList& list) { solid.pieces(list); }
 void add_pieces(const S& solid, PieceList& list) {
   solid.pieces(list);
+}
+template <typename S>
+concept HasPieces = requires(const S& solid, PieceList& list) { add_pieces(solid, list); };
+
+inline bool has_pieces(const SimpleShape& shape) {
+  return std::visit([](const auto& solid) { return HasPieces<std::decay_t<decltype(solid)>>; },
+                    shape);
+}
+/// Whether its faces have it as their intersection: HasFaces.
+inline bool is_made_of_faces(const SimpleShape& shape) {
+  return std::visit([](const auto& solid) { return HasFaces<std::decay_t<decltype(solid)>>; },
+                    shape);
 }
 
 }  // namespace volcontact

@@ -56,4 +56,38 @@ concept ConvexSolid = Solid<S> && requires(const S& solid, const Vec3& x) {
   { solid.ray(x, x) } -> std::same_as<RayInterval>;
 };
 
+// What a solid may supply besides, so that engines know its surface: the octree asks for none.
+//  pieces(list)         itself as pieces of quadric faces with disjoint interiors: pieces.h
+//  write_faces(writer)  the faces whose insides have it as their intersection, with `kPlanesOnly`
+//                       where none of them is round. They bear the sections and the columns.
+//  write_parts(writer)  such faces for each of several parts, which go on in each other without an
+//                       edge, or a ring. They bear the surface sweep.
+// Written into a member template, so that a shape knows no engine: FaceWriter in
+// pair/convex/face_set.h, PartWriter in pair/surface_sweep/sweep_solid.cc.
+
+/// What `write_faces` may say, in the solid's frame.
+struct AnyFaces {
+  void plane(const Vec3&, double) {}       ///< normal . x <= offset
+  void round(const Vec3&, const Vec3&) {}  ///< |diag(scales) (x - center)| <= 1
+  void cone(double, double) {}             ///< sqrt(x^2 + y^2) <= slope (z - apex)
+  void rounded_tube(double, double) {}     ///< radius, half_length
+  void end(double, double, double) {}      ///< side z <= half_length, with its radius
+};
+/// What `write_parts` may say, in the solid's frame.
+struct AnyParts {
+  void plane(const Vec3&, double, bool) {}  ///< and whether it is a seam, no surface
+  void tube(int, double, const Vec3&) {}    ///< axis, radius, center
+  void ball(double, const Vec3&) {}         ///< radius, center
+  void ring(double, double) {}              ///< major_radius, minor_radius, about z
+  void end_part() {}
+};
+
+template <typename S>
+concept HasFaces = requires(const S& solid, AnyFaces& writer) { solid.write_faces(writer); };
+/// Whether any of them is round.
+template <typename S>
+concept HasRoundFaces = HasFaces<S> && !requires { S::kPlanesOnly; };
+template <typename S>
+concept HasParts = requires(const S& solid, AnyParts& writer) { solid.write_parts(writer); };
+
 }  // namespace volcontact

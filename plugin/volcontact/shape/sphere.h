@@ -50,6 +50,10 @@ class Sphere {
     list.add(Quadric::round(Vec3::Ones(), Vec3::Zero(), p_.radius * p_.radius));
     list.end_piece();
   }
+  template <typename Writer>
+  void write_faces(Writer& writer) const {
+    writer.round(Vec3::Constant(1.0 / p_.radius), Vec3::Zero());
+  }
 
  private:
   Params p_;

@@ -70,6 +70,11 @@ class Torus {
     m.inertia = Vec3(across, across, m.volume * (R2 + r2 * 3.0 / 4.0)).asDiagonal();
     return m;
   }
+  template <typename Writer>
+  void write_parts(Writer& writer) const {
+    writer.ring(p_.major_radius, p_.minor_radius);
+    writer.end_part();
+  }
 
  private:
   // From the nearest point of the circle; on the axis, from the one towards x.

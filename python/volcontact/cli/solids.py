@@ -19,6 +19,7 @@ SHAPES: dict[str, type] = {
     "cylinder": vc.Cylinder,
     "frustum": vc.Frustum,
     "box": vc.Box,
+    "rounded_box": vc.RoundedBox,
     "torus": vc.Torus,
 }
 

@@ -157,7 +157,8 @@ TEST(SceneKeysError, UnknownChoiceWord) {
       error(kSteel + numeric("volcontact/material/steel/normal_law/huntcrossley")),
       "did you mean 'volcontact/material/steel/normal_law/hunt_crossley'?"));
   const std::string engine = error(numeric("volcontact/option/engine/octre"));
-  EXPECT_TRUE(testing::contains(engine, "auto, closed_form, clip, lines, columns, octree"));
+  EXPECT_TRUE(
+      testing::contains(engine, "auto, closed_form, clip, lines, surface_sweep, columns, octree"));
   EXPECT_TRUE(testing::contains(engine, "did you mean 'volcontact/option/engine/octree'?"));
 }
 

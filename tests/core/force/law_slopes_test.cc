@@ -144,6 +144,23 @@ class Hidden final : public Friction {
   const Friction& law_;
 };
 
+// F = -k z with z the way, no longer than 0.3 f_n / k.
+class LimitedSpring final : public Friction {
+ public:
+  static constexpr std::array kStates{StateField{"deflection", "m", Keeping::kVector, ""}};
+  const char* name() const noexcept override { return "limited_spring"; }
+  std::span<const StateField> states() const noexcept override { return kStates; }
+  FrictionOutput evaluate(const FrictionInput& in, const LawState& state) const noexcept override {
+    Vec3 z = Vec3(state.committed[0], state.committed[1], state.committed[2]) + in.travel;
+    const double most = 0.3 * in.normal_force / 1e5;
+    if (z.norm() > most) z *= most / z.norm();
+    for (int i = 0; i < 3; ++i) state.pending[i] = z[i];
+    FrictionOutput out;
+    out.force = -1e5 * z;
+    return out;
+  }
+};
+
 TEST(FrictionSlope, OfALawThatDoesNotKnowItComesFromDifferences) {
   const RegularizedCoulomb coulomb({.friction = 0.3, .slip_speed = 1e-3});
   for (const double speed : {0.0, 2e-4, 0.5}) {
@@ -163,6 +180,17 @@ TEST(FrictionSlope, OfALawThatDoesNotKnowItComesFromDifferences) {
   EXPECT_NEAR(found.stiffness / own.stiffness, 1.0, 1e-3);
   EXPECT_NEAR(found.damping / own.damping, 1.0, 1e-3);
   EXPECT_EQ(pending, own_pending);
+}
+
+// What a spring holds at most shows only once it has been drawn out.
+TEST(FrictionSlope, OfASpringThatIsNotDrawnYetIsItsLimit) {
+  const LimitedSpring spring;
+  const std::array<double, 3> committed{};
+  std::array<double, 3> pending{};
+  const FrictionSlope slope = spring.slope(sliding(0.0), {committed.data(), pending.data(), 1e-3});
+  EXPECT_NEAR(slope.strength, 0.3 * 50.0, 1e-9);
+  EXPECT_NEAR(slope.stiffness, 1e5, 1.0);
+  EXPECT_EQ(slope.damping, 0.0);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "core/support/reference_solid.h"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 
 namespace volcontact::test {
@@ -68,6 +69,31 @@ Solid solid_of(const Box& box) {
     }
   }
   return Solid::piece(faces);
+}
+// From its definition: the ball swept over the box of its centres.
+Solid solid_of(const RoundedBox& box) {
+  const double r = box.radius();
+  const Vec3 inner = box.half_sizes() - Vec3::Constant(r);
+  std::optional<Solid> whole;
+  const auto add = [&](const Solid& part) { whole = whole ? *whole | part : part; };
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<ReferenceFace> slab;
+    for (int i = 0; i < 3; ++i) {
+      for (const double side : {1.0, -1.0}) {
+        slab.push_back(plane(side * Vec3::Unit(i), inner[i] + (i == axis ? r : 0.0)));
+      }
+    }
+    add(Solid::piece(slab));
+    for (int k = 0; k < 4; ++k) {
+      Vec3 center = Vec3::Zero();
+      center[(axis + 1) % 3] = (k & 1 ? 1.0 : -1.0) * inner[(axis + 1) % 3];
+      center[(axis + 2) % 3] = (k & 2 ? 1.0 : -1.0) * inner[(axis + 2) % 3];
+      add(Solid::piece({plane(Vec3::Unit(axis), inner[axis]), plane(-Vec3::Unit(axis), inner[axis]),
+                        round_face(Vec3::Ones() - Vec3::Unit(axis), center, r * r)}));
+    }
+  }
+  for (int i = 0; i < 8; ++i) add(ball(r, inner.cwiseProduct(corner_signs(i))));
+  return *whole;
 }
 Solid solid_of(const Torus& t) { return Solid::torus(t.major_radius(), t.minor_radius()); }
 Solid solid_of(const ConvexPolytope& polytope) {

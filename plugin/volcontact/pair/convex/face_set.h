@@ -97,70 +97,50 @@ struct FaceSet {
   }
 };
 
-/// Writes the faces of one solid posed in A's frame. The one table of what the lines engine serves:
-/// a shape is served when it stands here.
+/// Takes the faces of one solid posed in A's frame, which the solid writes by itself: solid.h,
+/// "write_faces". What it says is in the frame S of the solid.
 class FaceWriter {
  public:
   FaceWriter(FaceSet& faces, const Pose& X_AS, Owner owner)
       : faces_(faces), X_(X_AS), owner_(owner) {}
 
-  void write(const HalfSpace&) { plane(Vec3::UnitZ(), 0.0); }
-  void write(const Box& box) {
-    for (int i = 0; i < 3; ++i) {
-      plane(Vec3::Unit(i), box.half_sizes()[i]);
-      plane(-Vec3::Unit(i), box.half_sizes()[i]);
-    }
-  }
-  void write(const ConvexPolytope& polytope) {
-    for (const ConvexPolytope::Face& face : polytope.faces()) plane(face.normal, face.offset);
-  }
-  void write(const Sphere& sphere) { round(Vec3::Constant(1.0 / sphere.radius()), Vec3::Zero()); }
-  void write(const Ellipsoid& ellipsoid) {
-    round(ellipsoid.semi_axes().cwiseInverse(), Vec3::Zero());
-  }
-  void write(const Cylinder& cylinder) {
-    const double scale = 1.0 / cylinder.radius();
-    round({scale, scale, 0.0}, Vec3::Zero());
-    end(1.0, cylinder.radius(), cylinder.half_length());
-    end(-1.0, cylinder.radius(), cylinder.half_length());
-  }
-  void write(const Capsule& capsule) {
-    const double scale = 1.0 / capsule.radius(), h = capsule.half_length();
-    round({scale, scale, 0.0}, Vec3::Zero()).part = CapsulePart::kTube;
-    round(Vec3::Constant(scale), {0.0, 0.0, h}).part = CapsulePart::kTopBall;
-    round(Vec3::Constant(scale), {0.0, 0.0, -h}).part = CapsulePart::kBottomBall;
-    faces_.capsule[index(owner_)] = {true, X_.translation, X_.rotation.col(2), h};
-    rim(h, capsule.radius());
-    rim(-h, capsule.radius());
-  }
-  void write(const Frustum& frustum) {
-    const auto& p = frustum.params();
-    const double mean = 0.5 * (p.bottom_radius + p.top_radius);
-    const double slope = (p.top_radius - p.bottom_radius) / (2.0 * p.half_length);
-    if (std::abs(slope) * p.half_length < kStraight * mean) {
-      round({1.0 / mean, 1.0 / mean, 0.0}, Vec3::Zero());
-    } else {
-      round({1.0, 1.0, slope}, {0.0, 0.0, -mean / slope}).cone = true;
-    }
-    end(1.0, p.top_radius, p.half_length);
-    end(-1.0, p.bottom_radius, p.half_length);
+  template <typename S>
+  void write(const S& solid) {
+    solid.write_faces(*this);
   }
 
- private:
-  // A cone whose radii differ less than this, relatively, is a tube.
-  static constexpr double kStraight = 1e-12;
-
+  /// normal . x <= offset, the normal of unit length.
   void plane(const Vec3& normal_S, double offset) {
     const Vec3 normal = X_.rotation * normal_S;
     faces_.planes.push_back({normal, offset + normal.dot(X_.translation), owner_});
   }
-  RoundFace& round(const Vec3& scales, const Vec3& center_S) {
-    faces_.rounds.push_back({scales.asDiagonal() * X_.rotation.transpose(), X_ * center_S, owner_});
-    return faces_.rounds.back();
+  /// |diag(scales) (x - center)| <= 1: a ball, an ellipsoid, or a tube about z where that scale is
+  /// 0.
+  void round(const Vec3& scales, const Vec3& center_S) { add_round(scales, center_S); }
+  /// sqrt(x^2 + y^2) <= slope (z - apex).
+  void cone(double slope, double apex) {
+    add_round({1.0, 1.0, slope}, {0.0, 0.0, apex}).cone = true;
   }
+  /// A tube about z, closed by balls of its radius about (0, 0, +-half_length).
+  void rounded_tube(double radius, double half_length) {
+    const double scale = 1.0 / radius;
+    add_round({scale, scale, 0.0}, Vec3::Zero()).part = CapsulePart::kTube;
+    add_round(Vec3::Constant(scale), {0.0, 0.0, half_length}).part = CapsulePart::kTopBall;
+    add_round(Vec3::Constant(scale), {0.0, 0.0, -half_length}).part = CapsulePart::kBottomBall;
+    faces_.capsule[index(owner_)] = {true, X_.translation, X_.rotation.col(2), half_length};
+    rim(half_length, radius);
+    rim(-half_length, radius);
+  }
+  /// The plane side z <= half_length, whose edge has this radius.
   void end(double side, double radius, double half_length) {
     plane(Vec3(0.0, 0.0, side), half_length);
     rim(side * half_length, radius);
+  }
+
+ private:
+  RoundFace& add_round(const Vec3& scales, const Vec3& center_S) {
+    faces_.rounds.push_back({scales.asDiagonal() * X_.rotation.transpose(), X_ * center_S, owner_});
+    return faces_.rounds.back();
   }
   void rim(double z, double radius) {
     faces_.rims.push_back(
@@ -171,14 +151,5 @@ class FaceWriter {
   const Pose& X_;
   Owner owner_;
 };
-
-/// Whether the lines engine knows the faces of a shape.
-template <typename S>
-concept HasFaces = requires(FaceWriter writer, const S& solid) { writer.write(solid); };
-
-/// Whether any of them is round.
-template <typename S>
-concept HasRoundFaces = HasFaces<S> && !std::same_as<S, HalfSpace> && !std::same_as<S, Box> &&
-                        !std::same_as<S, ConvexPolytope>;
 
 }  // namespace volcontact

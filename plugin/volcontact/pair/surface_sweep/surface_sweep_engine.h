@@ -14,8 +14,7 @@ struct SurfaceSweep : EngineBase {
   using Scratch = TypeList<SurfaceSweepScratch>;
 
   template <typename S>
-  static constexpr bool kMadeOfSimple =
-      HasFaces<S> || std::is_same_v<S, Torus> || std::is_same_v<S, Csg>;
+  static constexpr bool kMadeOfSimple = HasFaces<S> || HasParts<S> || std::is_same_v<S, Csg>;
   template <typename S>
   static constexpr bool kHasPlanesOnly = HasFaces<S> && !HasRoundFaces<S>;
 

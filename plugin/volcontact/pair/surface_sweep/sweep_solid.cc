@@ -95,7 +95,7 @@ bool SweepSolids::read_solid(const Shape& shape, const Pose& X_WS, Owner owner) 
                              0});
           }
           return true;
-        } else if constexpr (HasFaces<S> || std::is_same_v<S, Torus>) {
+        } else if constexpr (HasFaces<S> || HasParts<S>) {
           const std::size_t before = parts.size();
           add_parts(solid, X_WS, owner);
           if (parts.size() > kMostParts) return false;
@@ -120,53 +120,87 @@ bool SweepSolids::read_member(const SimpleShape& shape, const Pose& X_WM, Owner 
   return true;
 }
 
+// Takes the parts of a solid posed in W, which the solid writes by itself: solid.h, "write_parts".
+class SweepSolids::PartWriter {
+ public:
+  PartWriter(SweepSolids& to, const Pose& X_WM, Owner owner)
+      : to_(to), X_(X_WM), owner_(owner), first_(static_cast<int>(to.faces.size())) {}
+
+  void plane(const Vec3& normal_M, double offset, bool seam) {
+    SweepFace& face = add(Kind::kPlane);
+    face.normal = X_.rotation * normal_M;
+    face.offset = offset + face.normal.dot(X_.translation);
+    face.seam = seam;
+  }
+  void tube(int axis, double radius, const Vec3& center_M) {
+    const double scale = 1.0 / radius;
+    RoundFace round{Mat3::Zero(), X_ * center_M, owner_};
+    round.map.row(0) = scale * X_.rotation.col((axis + 1) % 3).transpose();
+    round.map.row(1) = scale * X_.rotation.col((axis + 2) % 3).transpose();
+    add(Kind::kTube).round = round;
+  }
+  void ball(double radius, const Vec3& center_M) {
+    add(Kind::kBall).round = {1.0 / radius * X_.rotation.transpose(), X_ * center_M, owner_};
+  }
+  void ring(double major, double minor) {
+    SweepFace& face = add(Kind::kTorus);
+    face.normal = X_.rotation.col(2);
+    face.round.center = X_.translation;
+    face.major = major;
+    face.minor = minor;
+  }
+  void end_part() {
+    to_.end_part(begin_ < 0 ? first_ : begin_, owner_);
+    begin_ = static_cast<int>(to_.faces.size());
+    ++parts_;
+  }
+  /// Parts of one solid go on in each other without an edge.
+  void end() {
+    if (parts_ < 2) return;
+    for (auto f = static_cast<std::size_t>(first_); f < to_.faces.size(); ++f) {
+      to_.faces[f].smooth = -1 - first_;
+    }
+  }
+
+ private:
+  SweepFace& add(Kind kind) {
+    SweepFace& face = to_.faces.emplace_back();
+    face.kind = kind;
+    face.owner = owner_;
+    face.smooth = static_cast<int>(to_.faces.size());
+    return face;
+  }
+
+  SweepSolids& to_;
+  const Pose& X_;
+  Owner owner_;
+  int first_, begin_ = -1, parts_ = 0;
+};
+
 template <typename S>
 void SweepSolids::add_parts(const S& solid, const Pose& X_WM, Owner owner) {
-  const auto first = static_cast<int>(faces.size());
-  const auto add = [&](Kind kind) -> SweepFace& {
-    SweepFace& face = faces.emplace_back();
-    face.kind = kind;
-    face.owner = owner;
-    face.smooth = std::is_same_v<S, Capsule> ? -1 - first : static_cast<int>(faces.size());
-    return face;
-  };
-  const auto add_plane = [&](const Vec3& normal, double offset, bool seam) {
-    SweepFace& face = add(Kind::kPlane);
-    face.normal = normal;
-    face.offset = offset;
-    face.seam = seam;
-  };
-  if constexpr (std::is_same_v<S, Torus>) {
-    SweepFace& face = add(Kind::kTorus);
-    face.normal = X_WM.rotation.col(2);
-    face.round.center = X_WM.translation;
-    face.major = solid.major_radius();
-    face.minor = solid.minor_radius();
-    end_part(first, owner);
+  if constexpr (HasParts<S>) {
+    PartWriter writer(*this, X_WM, owner);
+    solid.write_parts(writer);
+    writer.end();
   } else {
+    const auto first = static_cast<int>(faces.size());
+    const auto add = [&](Kind kind) -> SweepFace& {
+      SweepFace& face = faces.emplace_back();
+      face.kind = kind;
+      face.owner = owner;
+      face.smooth = static_cast<int>(faces.size());
+      return face;
+    };
     set_.clear();
     FaceWriter(set_, X_WM, owner).write(solid);
-    if constexpr (std::is_same_v<S, Capsule>) {
-      const Vec3 axis = X_WM.rotation.col(2);
-      const double middle = axis.dot(X_WM.translation), h = solid.half_length();
-      for (const RoundFace& round : set_.rounds) {
-        const auto begin = static_cast<int>(faces.size());
-        if (round.part != CapsulePart::kBottomBall) {
-          const double side = round.part == CapsulePart::kTube ? 1.0 : -1.0;
-          add_plane(side * axis, side * (middle + h), true);
-        }
-        if (round.part != CapsulePart::kTopBall) {
-          const double side = round.part == CapsulePart::kTube ? -1.0 : 1.0;
-          add_plane(side * axis, side * (middle - h), true);
-        }
-        add(kind_of(round)).round = round;
-        end_part(begin, owner);
-      }
-    } else {
-      for (const PlaneFace& plane : set_.planes) add_plane(plane.normal, plane.offset, false);
-      for (const RoundFace& round : set_.rounds) add(kind_of(round)).round = round;
-      end_part(first, owner);
+    for (const PlaneFace& plane : set_.planes) {
+      SweepFace& face = add(Kind::kPlane);
+      face.normal = plane.normal;
+      face.offset = plane.offset;
     }
+    for (const RoundFace& round : set_.rounds) add(kind_of(round)).round = round;
+    end_part(first, owner);
   }
 }
 

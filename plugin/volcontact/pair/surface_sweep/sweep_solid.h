@@ -69,6 +69,7 @@ class SweepSolids {
 
   bool read_solid(const Shape& shape, const Pose& X_WS, Owner owner);
   bool read_member(const SimpleShape& shape, const Pose& X_WM, Owner owner);
+  class PartWriter;
   template <typename S>
   void add_parts(const S& solid, const Pose& X_WM, Owner owner);
   void end_part(int first, Owner owner);

@@ -70,7 +70,7 @@ bool is_carved_by(const Carving& piece, const MemberFace& face) {
 }
 
 Carvings Carver::of_member(const Csg::Member& member) const {
-  if (std::holds_alternative<Torus>(member.shape)) throw NotPossible{};
+  if (!is_made_of_faces(member.shape)) throw NotPossible{};
   if (faces_of({member.shape, member.X_SM}).empty()) return {};  // of no volume
   return {Carving({member.shape, member.X_SM})};
 }

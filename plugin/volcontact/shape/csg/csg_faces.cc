@@ -115,7 +115,7 @@ std::vector<std::vector<MemberFace>> member_faces(const SimpleShape& shape, cons
   PieceList list;
   std::visit(
       [&list](const auto& solid) {
-        if constexpr (requires { add_pieces(solid, list); }) {
+        if constexpr (HasPieces<std::decay_t<decltype(solid)>>) {
           if (solid.own_metrics().volume > 0.0) add_pieces(solid, list);
         }
       },

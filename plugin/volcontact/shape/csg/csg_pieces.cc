@@ -366,7 +366,7 @@ void Decomposition::branch(const Part& original, const PartHull& hull,
 PieceList csg_pieces(const Csg& solid) {
   PieceList list;
   for (const Csg::Member& member : solid.members()) {
-    if (std::holds_alternative<Torus>(member.shape)) return list;
+    if (!has_pieces(member.shape)) return list;
   }
   try {
     for (const Part& part : Decomposition(solid).all()) {

@@ -13,6 +13,7 @@ namespace volcontact {
 /// Convex hull of given points. Immutable; copies share one data block.
 class ConvexPolytope {
  public:
+  static constexpr bool kPlanesOnly = true;
   static constexpr const char* kName = "convex_polytope";
 
   /// A face: the plane normal . x = offset, normal outward and of unit length, and its corners,
@@ -46,6 +47,10 @@ class ConvexPolytope {
   RayInterval ray(const Vec3& o, const Vec3& d) const;
   VolumeMetrics own_metrics() const { return data_->metrics; }
   double surface_area() const { return data_->surface_area; }
+  template <typename Writer>
+  void write_faces(Writer& writer) const {
+    for (const Face& face : faces()) writer.plane(face.normal, face.offset);
+  }
 
  private:
   struct Data {
