@@ -20,6 +20,10 @@ Interference overlap(const Shape& a, const Shape& b, const Pose& X_AB,
   return out;
 }
 
+Csg cut(const Shape& from, const Shape& hole) {
+  return Csg(Csg::Operation::kDifference, composed(from), composed(hole));
+}
+
 // Sections of the flat side: a rectangle with corners of rho^2 = r^2 - (r - z)^2 at the depth z.
 double cap(double depth) {
   const double a = kHalf.x() - kRadius, b = kHalf.y() - kRadius, r = kRadius, u = r - depth;
@@ -57,15 +61,14 @@ TEST(RoundedBoxPairs, CornerFirstItIsTheCapOfABall) {
 }
 
 TEST(RoundedBoxPairs, AgreesWithLinesOfOtherCode) {
-  const Shape others[] = {
-      Box({.half_sizes = Vec3(0.12, 0.09, 0.1)}),
-      Cylinder({.radius = 0.1, .half_length = 0.12}),
-      Sphere({.radius = 0.13}),
-      Frustum({.bottom_radius = 0.12, .top_radius = 0.05, .half_length = 0.1}),
-      Torus({.major_radius = 0.15, .minor_radius = 0.05}),
-      kSolid,
-      Csg(Csg::Operation::kDifference, Box({.half_sizes = Vec3(0.15, 0.15, 0.1)}),
-          Cylinder({.radius = 0.07, .half_length = 0.2}))};
+  const Shape others[] = {Box({.half_sizes = Vec3(0.12, 0.09, 0.1)}),
+                          Cylinder({.radius = 0.1, .half_length = 0.12}),
+                          Sphere({.radius = 0.13}),
+                          Frustum({.bottom_radius = 0.12, .top_radius = 0.05, .half_length = 0.1}),
+                          Torus({.major_radius = 0.15, .minor_radius = 0.05}),
+                          kSolid,
+                          cut(Box({.half_sizes = Vec3(0.15, 0.15, 0.1)}),
+                              Cylinder({.radius = 0.07, .half_length = 0.2}))};
   test::Random random(19);
   int by_sweep = 0, all = 0;
   for (const Shape& other : others) {
@@ -87,13 +90,12 @@ TEST(RoundedBoxPairs, AgreesWithLinesOfOtherCode) {
 
 // What is cut out of a rounded box, and rounded boxes cut out of others.
 TEST(RoundedBoxPairs, IsAMemberOfComposedSolids) {
-  const Csg bored(Csg::Operation::kDifference, kSolid,
-                  Cylinder({.radius = 0.03, .half_length = 0.2}));
+  const Csg bored = cut(kSolid, Cylinder({.radius = 0.03, .half_length = 0.2}));
   // Of the bore, which leaves by the flat sides, only a tube is gone.
   const double gone = kPi * 0.03 * 0.03 * 2.0 * kHalf.z();
   EXPECT_NEAR(bored.own_metrics().volume, kSolid.own_metrics().volume - gone, 2e-3 * gone);
   const Sphere ball({.radius = 0.05});
-  const Csg pocket(Csg::Operation::kDifference, Box({.half_sizes = Vec3(0.3, 0.3, 0.2)}), kSolid);
+  const Csg pocket = cut(Box({.half_sizes = Vec3(0.3, 0.3, 0.2)}), kSolid);
   test::Random random(23);
   for (const Csg& solid : {bored, pocket}) {
     for (int i = 0; i < 4; ++i) {
