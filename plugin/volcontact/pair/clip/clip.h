@@ -25,6 +25,8 @@ struct ClipScratch {
 /// Exact interference of two convex solids with plane faces: B is cut by A's planes and summed face
 /// by face. In A's frame and about its origin; one site. docs/theory.md, "Clipping".
 ///
+///   V = 1/3 sum over faces of int x . n dS, with x from a point of the overlap; moments likewise
+///
 /// volume_error bounds the rounding; a volume below it is reported as none. One solid inside the
 /// other, and a solid pierced so evenly that S is rounding noise: S = 0, no normal, and no depth
 /// (but in a half-space depth is always along its axis). Faces of both solids in one plane, facing

@@ -13,6 +13,8 @@ namespace volcontact {
 /// therefore straight. Each strip is cut at one place; all integrals along it are polynomials,
 /// those over theta smooth between the strips through the corners of the profile, and nothing
 /// cancels. docs/theory.md, "Cylinder and frustum".
+///
+///   V = int dtheta int 2 r^2 sin(theta)^2 dq,   over the q of the strip below the plane
 class FrustumStrips {
  public:
   struct Solid {

@@ -15,6 +15,8 @@ namespace volcontact {
 /// The part of a torus below the plane z = 0 of A. A half plane through the axis, at the angle phi
 /// from the upward direction p, cuts the tube in a disc and the plane in a chord: a circular
 /// segment, to be integrated over phi. docs/theory.md, "Torus".
+///
+///   V = int dphi int rho dA,   rho from the axis, over the segment
 class TorusSections {
  public:
   TorusSections(const Torus& torus, const Tilt& tilt, double height)

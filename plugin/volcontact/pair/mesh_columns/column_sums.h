@@ -6,7 +6,8 @@
 
 namespace volcontact {
 
-/// Sums over the cells of one region, about the origin of C.
+/// Sums over the cells of one region, about the origin of C: int x^i y^j z^k dz dx dy, with z from
+/// A's face to B's.
 struct CellSum {
   MomentSum moments;      ///< with the area vector and moment of A's surface
   double energy = 0.0;    ///< int delta^2/2 over the cells [m^4]

@@ -32,6 +32,9 @@ struct ColumnsScratch {
 /// Interference of two solids bounded by closed triangle meshes, exact to rounding: metrics in A's
 /// frame about A's origin. When the budget of cells ends first, sampled columns with
 /// Status::kApproximate. docs/theory.md, "Columns".
+///
+///   V = sum over cells of +-int (z_B - z_A) dx dy
+/// over what the projections of two triangles have in common: a polynomial over a polygon
 void columns_interference(const SurfaceView& a, const SurfaceView& b, const Pose& X_AB,
                           const InterferenceOptions& options, ColumnsScratch& scratch,
                           Interference& out) noexcept;

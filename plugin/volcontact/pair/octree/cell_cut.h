@@ -15,6 +15,8 @@ namespace volcontact {
 /// it and corrects for their bend, whose second derivatives are known exactly, so that estimate and
 /// bounds are of third order in the cell size. One per thread; holds scratch memory only.
 /// docs/theory.md, "Octree".
+///
+///   int 1, x, x x^T dV over the cell where F_A <= 0 and F_B <= 0
 class CellCut {
  public:
   /// A point on a face, from the cell's centre, and the surface it stands for: n dS, n outward.

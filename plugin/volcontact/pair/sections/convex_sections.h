@@ -31,6 +31,10 @@ struct LinesScratch {
 /// normal: metrics in A's frame and about A's origin, one site. `volume_error` is an estimate, no
 /// less than the surface found is from closed. False in a degenerate pose that it cannot make out,
 /// or where the surface stays open. docs/theory.md, "Lines".
+///
+///   V = int dphi int rho (h_top - h_bottom) drho
+/// over half-planes at the angle phi about a column inside, with rho the distance from it and h the
+/// height along it: columns between A's face and B's.
 bool lines_interference(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
                         const InterferenceOptions& options, LinesScratch& scratch,
                         Interference& out) noexcept;

@@ -29,6 +29,9 @@ struct SurfaceSweepScratch {
 /// Interference of any two solids made of simple ones, from the surface of their overlap: metrics
 /// in A's frame and about A's origin. False where it finds no overlap, or not all of its surface,
 /// or where a solid is a mesh or a signed distance. docs/theory.md, "Surface sweep".
+///
+///   V = 1/3 int x . n dS = 1/3 sum over faces of int du int x . (x_u cross x_t) dt
+/// over the stretches in t of the curves u of a face that bound the overlap
 bool surface_sweep(const Shape& a, const Shape& b, const Pose& X_AB,
                    const InterferenceOptions& options, SurfaceSweepScratch& scratch,
                    Interference& out) noexcept;

@@ -26,6 +26,9 @@ struct TorusPairScratch {
 /// Interference of two rings from the surface of their overlap: metrics in A's frame; every
 /// connected region is a site. False when the surface found is not closed well enough.
 /// docs/theory.md, "Two tori".
+///
+///   V = 1/3 int x . n dS,   dS = r (R + r cos theta) dtheta dphi,
+/// over the arcs in theta of each ring's section circles, at the angle phi, that lie in the other
 bool torus_pair(const Torus& a, const Torus& b, const Pose& X_AB,
                 const InterferenceOptions& options, TorusPairScratch& scratch,
                 Interference& out) noexcept;

@@ -25,7 +25,8 @@ struct RoundPoints {
   void resize(std::size_t count);
 };
 
-/// Sums over columns from the triangles down to the surface of the solid, about the origin of Q.
+/// Sums over columns from the triangles down to the surface of the solid, about the origin of Q:
+///   V = int L n . up dS,   L the way from x against `up` to the surface
 struct RoundSum {
   double volume = 0.0;
   Vec3 first = Vec3::Zero();

@@ -9,7 +9,8 @@
 namespace volcontact {
 
 /// Sums over the rays from a point through pieces of a surface inside of a round solid, from there
-/// on to the solid's surface; about the origin of Q.
+/// on to the solid's surface; about the origin of Q:
+///   V = 1/3 int (s^3 - 1) (x - c) . n dS,   c + s (x - c) on the surface
 struct StarSum {
   MomentSum moments;     ///< negative where the pieces look at the point; without area_*
   double doubt = 0.0;    ///< of the volume, by the rule on the triangles

@@ -27,7 +27,9 @@ struct RadialPieces {
   void end();
 };
 
-/// Sums over the lines from pieces to the wall, about the origin of Q.
+/// Sums over the lines from pieces to the wall, about the origin of Q:
+///   V = int F . n dS,   div F = 1,   F along the lines and 0 on the wall
+/// so that the wall adds nothing; of a bore F = (rho - r^2 / rho) / 2 away from the axis.
 struct RadialSum {
   MomentSum moments;
   double depth_moment = 0.0;  ///< int of the distance along the line from the wall, over the volume

@@ -38,6 +38,8 @@ struct TorusSums {
 /// common is convex. Columns run along the axis. A section begins in a column inside, found by
 /// golden section as their length is a concave function of the place, and is followed as in
 /// Sections to either side. docs/theory.md, "Tori".
+///
+///   V = int dphi int rho (h_top - h_bottom) drho,   rho from the axis of the ring
 class TorusSection {
  public:
   /// The faces are those of the body alone, owned by Owner::kB.
