@@ -35,6 +35,15 @@ std::optional<Inner> inside(const Box& solid, double depth) {
   return Inner{Box({.half_sizes = solid.half_sizes() - Vec3::Constant(depth)})};
 }
 
+// Beyond the radius the edges are sharp.
+std::optional<Inner> inside(const RoundedBox& solid, double depth) {
+  if (!(solid.half_sizes().minCoeff() > depth)) return {};
+  const Vec3 half = solid.half_sizes() - Vec3::Constant(depth);
+  if (!(solid.radius() > depth)) return Inner{Box({.half_sizes = half})};
+  const double radius = std::min(solid.radius() - depth, half.minCoeff());
+  return Inner{RoundedBox({.half_sizes = half, .radius = radius})};
+}
+
 std::optional<Inner> inside(const Torus& solid, double depth) {
   if (!(solid.minor_radius() > depth)) return {};
   return Inner{
@@ -120,6 +129,7 @@ double depth_of(const Sphere& solid) { return solid.radius(); }
 double depth_of(const Capsule& solid) { return solid.radius(); }
 double depth_of(const Cylinder& solid) { return std::min(solid.radius(), solid.half_length()); }
 double depth_of(const Box& solid) { return solid.half_sizes().minCoeff(); }
+double depth_of(const RoundedBox& solid) { return solid.half_sizes().minCoeff(); }
 double depth_of(const Torus& solid) { return solid.minor_radius(); }
 // Of the ball that touches the wall and the wide end.
 double depth_of(const Frustum& solid) {
@@ -139,6 +149,11 @@ double area_of(const Cylinder& solid) {
 double area_of(const Box& solid) {
   const Vec3& h = solid.half_sizes();
   return 8.0 * (h.x() * h.y() + h.y() * h.z() + h.z() * h.x());
+}
+double area_of(const RoundedBox& solid) {
+  const double r = solid.radius();
+  const Vec3 a = solid.half_sizes() - Vec3::Constant(r);
+  return 8.0 * (a.x() * a.y() + a.y() * a.z() + a.z() * a.x()) + 4.0 * kPi * r * (a.sum() + r);
 }
 double area_of(const Torus& solid) {
   return 4.0 * kPi * kPi * solid.major_radius() * solid.minor_radius();

@@ -6,7 +6,7 @@
 namespace volcontact {
 
 /// Whether the points of a solid that lie deeper than d below its surface are, for every d, a solid
-/// of the same kind: balls, capsules, cylinders, frusta, boxes and tori.
+/// of the same kind: balls, capsules, cylinders, frusta, boxes, rounded or not, and tori.
 bool has_parallel_solids(const Shape& solid);
 
 /// Whether a composed solid has them: when all its members do, or are half-spaces. Members that are

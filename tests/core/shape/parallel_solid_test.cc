@@ -17,6 +17,7 @@ const std::vector<Shape> kSolids = {
     Cylinder({.radius = 0.3, .half_length = 0.5}),
     Cylinder({.radius = 0.6, .half_length = 0.2}),
     Box({.half_sizes = {0.3, 0.5, 0.4}}),
+    RoundedBox({.half_sizes = {0.3, 0.5, 0.4}, .radius = 0.12}),
     Torus({.major_radius = 0.6, .minor_radius = 0.25}),
     Frustum({.bottom_radius = 0.5, .top_radius = 0.2, .half_length = 0.4}),
     Frustum({.bottom_radius = 0.0, .top_radius = 0.5, .half_length = 0.6}),
