@@ -28,9 +28,10 @@ class RoundedBox {
 
   explicit RoundedBox(const Params& params)
       : p_(validated<RoundedBox>(params)), inner_(p_.half_sizes - Vec3::Constant(p_.radius)) {
-    require(inner_.minCoeff() >= 0.0, "rounded_box: radius = " + std::to_string(p_.radius) +
-                                          " [m] is above the smallest of half_sizes, " +
-                                          std::to_string(p_.half_sizes.minCoeff()) + " [m]");
+    static constexpr Range kHalfAtMost{0.0, kInfinity, true, true,
+                                       "no more than the smallest of half_sizes"};
+    require(inner_.minCoeff() >= 0.0,
+            out_of_range_message(kName, "radius", "m", p_.radius, kHalfAtMost));
   }
   const Params& params() const { return p_; }
   const Vec3& half_sizes() const { return p_.half_sizes; }

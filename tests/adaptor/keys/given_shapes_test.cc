@@ -74,6 +74,16 @@ TEST(GivenShapes, TorusHasPappusVolume) {
   EXPECT_NEAR(volume_of(shape("rod", "torus", ".02 .005")), 2.0 * kPi * kPi * .02 * 25e-6, 1e-17);
 }
 
+TEST(GivenShapes, RoundedBoxHasTheSizeOfItsGeom) {
+  const Shape given = solid_of(shape("cutter", "rounded_box", ".004"), "cutter");
+  EXPECT_STREQ(name_of(given), "rounded_box");
+  const Aabb box = bounds_of(solid_of("", "cutter"));
+  EXPECT_EQ(bounds_of(given).max, box.max);
+  EXPECT_EQ(std::get<RoundedBox>(given).radius(), .004);
+  const std::string cut = solid(element("rod", "1") + element("cutter", "-1"));
+  EXPECT_GT(volume_of(cut + shape("cutter", "rounded_box", ".004")), volume_of(cut));
+}
+
 // A conical seat, and a bore for comparison.
 TEST(GivenShapes, FrustumIsCutOutOfARod) {
   const std::string bored = element("rod", "1") + element("tool", "-1");
@@ -115,13 +125,23 @@ TEST(GivenShapes, ErrorsSayWhatWhereAndTheFix) {
             "volcontact/shape/rod/torus: it has no volume");
   EXPECT_EQ(message_of(shape("rod", "frustrum", ".03 .01 .02")),
             "volcontact/shape/rod/frustrum: unknown key; after 'volcontact/shape/rod/' comes one "
-            "of frustum, torus, convex_polytope (did you mean 'volcontact/shape/rod/frustum'?)");
+            "of frustum, torus, rounded_box, convex_polytope (did you mean "
+            "'volcontact/shape/rod/frustum'?)");
   EXPECT_EQ(message_of(numeric("volcontact/shape/rod/torus", ".03 .01")),
             "volcontact/shape/rod/torus: there is no <tuple name=\"volcontact/shape/rod\"> that "
             "says which geoms it is for");
   EXPECT_EQ(message_of("<tuple name=\"volcontact/shape/rod\">" + element("rod") + "</tuple>"),
-            "volcontact/shape/rod: no <numeric> says what it is: frustum, torus, convex_polytope "
-            "comes after the name");
+            "volcontact/shape/rod: no <numeric> says what it is: frustum, torus, rounded_box, "
+            "convex_polytope comes after the name");
+  EXPECT_EQ(message_of(shape("rod", "rounded_box", ".001")),
+            "volcontact/shape/rod: geom 'rod' is of type cylinder; a box is what edges can be "
+            "rounded of");
+  EXPECT_EQ(message_of(shape("cutter", "rounded_box", ".002 .001")),
+            "volcontact/shape/cutter/rounded_box takes 1 number, the radius of the edges in "
+            "metres, got 2");
+  EXPECT_EQ(message_of(shape("cutter", "rounded_box", ".03")),
+            "volcontact/shape/cutter: geom 'cutter': rounded_box: radius = 0.03 [m] is out of "
+            "range: must be no more than the smallest of half_sizes");
   EXPECT_EQ(message_of(shape("rod", "torus", ".03 .01") +
                        numeric("volcontact/shape/rod/frustum", ".03 .01 .02")),
             "volcontact/shape/rod/frustum: volcontact/shape/rod/torus is given already");

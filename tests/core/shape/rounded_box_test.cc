@@ -86,8 +86,10 @@ TEST(RoundedBox, ARadiusAboveHalfOfItIsRefused) {
     RoundedBox({.half_sizes = kHalf, .radius = 0.31});
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(),
-                 "rounded_box: radius = 0.31 [m] is above the smallest of half_sizes, 0.3 [m]");
+    EXPECT_STREQ(
+        error.what(),
+        "rounded_box: radius = 0.31 [m] is out of range: must be no more than the smallest "
+        "of half_sizes");
   }
   EXPECT_THROW(RoundedBox({.half_sizes = kHalf, .radius = 0.0}), std::invalid_argument);
 }

@@ -110,7 +110,7 @@ def test_a_solid_without_numbers_is_told_how_to_write_it(name, capsys):
     usage = capsys.readouterr().err.split("write ")[1].strip()
     filled = usage.replace("X,Y,Z", "0.1,0.2,0.3")
     for i in range(filled.count("=X")):
-        filled = filled.replace("=X", f"=0.{3 - i}", 1)
+        filled = filled.replace("=X", f"=0.0{3 - i}", 1)
     assert main(["metrics", "half_space", filled]) == 0
 
 
