@@ -91,13 +91,13 @@ class Csg:
     A half-space may be a member; where the solid stays unbounded it can only meet bounded ones.
     """
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -148,13 +148,13 @@ class Mesh:
         vertices [m], shape (n, 3); faces: indices of vertices from 0, counterclockwise seen from outside, shape (m, 3). Raises ValueError when they bound no solid, and says where
         """
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -208,13 +208,13 @@ class HalfSpace:
 
     def __init__(self) -> None: ...
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -264,13 +264,13 @@ class Sphere:
     def radius(self) -> float:
         """radius [m]"""
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -320,13 +320,13 @@ class Ellipsoid:
     def semi_axes(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
         """half the axis lengths [m]"""
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -381,13 +381,13 @@ class Capsule:
     def half_length(self) -> float:
         """half the length of the cylinder, without the round ends [m]"""
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -442,13 +442,13 @@ class Cylinder:
     def half_length(self) -> float:
         """half the length between the flat ends [m]"""
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -508,13 +508,13 @@ class Frustum:
     def half_length(self) -> float:
         """half the length between the flat ends [m]"""
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -564,13 +564,74 @@ class Box:
     def half_sizes(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
         """half the edge lengths [m]"""
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+        """This solid without the other, in one common frame"""
+
+    def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
+        """
+        The same solid elsewhere, as a member of a composed solid.
+
+        Args:
+            X: pose of this solid in the frame of the new one, shape (4, 4)
+
+        Returns:
+            Csg: the solid in its place
+
+        Raises:
+            ValueError: X is no pose
+        """
+
+    def own_metrics(self) -> VolumeMetrics:
+        """Volume, centroid and inertia of the whole solid"""
+
+    def signed_distance(self, point: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> float:
+        """
+        Negative inside; never larger in magnitude than the distance to the surface [m]
+        """
+
+    @property
+    def bounds(self) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]]:
+        """
+        Corners (low, high) of a box around the solid [m], shape (3,) each; infinite where the solid is unbounded
+        """
+
+    def support(self, direction: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """A point of the solid farthest along the direction [m]"""
+
+    def __repr__(self) -> str: ...
+
+class RoundedBox:
+    """
+    Solid 'rounded_box' in its own frame.
+
+    Args:
+        half_sizes [m]: half the lengths from face to face, shape (3,); > 0
+        radius [m]: of the edges and corners, no more than the smallest half size; > 0
+    """
+
+    def __init__(self, half_sizes: Sequence[float], radius: float) -> None: ...
+
+    @property
+    def half_sizes(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """half the lengths from face to face [m]"""
+
+    @property
+    def radius(self) -> float:
+        """of the edges and corners, no more than the smallest half size [m]"""
+
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+        """Union with another solid, in one common frame"""
+
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+        """What both solids hold, in one common frame"""
+
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -625,13 +686,13 @@ class Torus:
     def minor_radius(self) -> float:
         """of the tube, at most major_radius [m]"""
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -673,13 +734,13 @@ class ConvexPolytope:
     def __init__(self, vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')]) -> None:
         """vertices [m], shape (n, 3): the solid is their convex hull"""
 
-    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """Union with another solid, in one common frame"""
 
-    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __and__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """What both solids hold, in one common frame"""
 
-    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
+    def __sub__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
         """This solid without the other, in one common frame"""
 
     def posed(self, X: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')]) -> Csg:
@@ -758,7 +819,7 @@ class Interference(VolumeMetrics):
     def engine(self) -> str:
         """The engine that made the numbers"""
 
-def interference(a: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh, b: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh, X_AB: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, *, tolerance: float = 0.001, engine: str = 'auto', threads: int = 1) -> Interference:
+def interference(a: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh, b: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh, X_AB: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, *, tolerance: float = 0.001, engine: str = 'auto', threads: int = 1) -> Interference:
     """
     Interference volume of two solids, in A's frame and about its origin.
 
@@ -1061,7 +1122,7 @@ class PythonFriction(Friction):
 class Pair:
     """A solid fixed on body A and a solid fixed on body B."""
 
-    def __init__(self, a: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh, b: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | Torus | ConvexPolytope | Csg | SignedDistance | Mesh, *, X_Aa: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, X_Bb: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None) -> None:
+    def __init__(self, a: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh, b: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh, *, X_Aa: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, X_Bb: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None) -> None:
         """X_Aa, X_Bb: poses of the solids in their bodies, shape (4, 4)"""
 
 class ByChannel:
