@@ -32,14 +32,20 @@ double cap(double depth) {
   return 4.0 * a * b * depth + 4.0 * (a + b) * segment + kPi * squares;
 }
 
+// Which engine is taken by itself; what each is off by, against its own bound.
 TEST(RoundedBoxPairs, OnAPlaneItIsTheCap) {
   for (const double depth : {1e-5, 1e-3, 0.02, 0.0399}) {
     const Pose X_AB{Mat3::Identity(), Vec3(0.02, 0.01, kHalf.z() - depth)};
     const Interference out = overlap(HalfSpace(), kSolid, X_AB);
-    EXPECT_EQ(out.engine, Engine::kSurfaceSweep) << depth;
-    EXPECT_NEAR(out.total.volume / cap(depth), 1.0, 1e-7) << depth;
-    EXPECT_NEAR(out.total.centroid.x(), 0.02, 1e-7) << depth;
-    EXPECT_NEAR(out.total.area_vector.x(), 0.0, 1e-8) << depth;
+    EXPECT_EQ(out.engine, Engine::kOctree) << depth;
+    EXPECT_NEAR(out.total.volume, cap(depth), out.total.volume_error) << depth;
+    EXPECT_LE(out.total.volume_error, 1e-3 * cap(depth)) << depth;
+    EXPECT_NEAR(out.total.centroid.x(), 0.02, 1e-5) << depth;
+    EXPECT_NEAR(out.total.area_vector.x(), 0.0, 1e-5) << depth;
+    if (depth < 1e-4) continue;
+    const Interference swept = overlap(HalfSpace(), kSolid, X_AB, Engine::kSurfaceSweep);
+    EXPECT_EQ(swept.engine, Engine::kSurfaceSweep) << depth;
+    EXPECT_NEAR(swept.total.volume / cap(depth), 1.0, 1e-5) << depth;
   }
 }
 
@@ -47,7 +53,9 @@ TEST(RoundedBoxPairs, OnABoxThatIsWiderItIsTheCapAgain) {
   const Box table({.half_sizes = Vec3(0.5, 0.5, 0.1)});
   const Pose X_AB{Mat3::Identity(), Vec3(0.02, 0.01, 0.1 + kHalf.z() - 2e-3)};
   const Interference out = overlap(table, kSolid, X_AB);
-  EXPECT_NEAR(out.total.volume / cap(2e-3), 1.0, 1e-6);
+  EXPECT_NEAR(out.total.volume, cap(2e-3), out.total.volume_error);
+  EXPECT_NEAR(overlap(table, kSolid, X_AB, Engine::kSurfaceSweep).total.volume / cap(2e-3), 1.0,
+              1e-6);
 }
 
 // Corners and edges are parts of balls and tubes.
@@ -57,7 +65,11 @@ TEST(RoundedBoxPairs, CornerFirstItIsTheCapOfABall) {
   const double depth = 5e-3, r = kRadius;
   const double height = kSolid.support_height(corner);
   const Interference out = overlap(HalfSpace(), kSolid, {R, Vec3(0.0, 0.0, height - depth)});
-  EXPECT_NEAR(out.total.volume / (kPi * depth * depth * (r - depth / 3.0)), 1.0, 1e-7);
+  const double ball_cap = kPi * depth * depth * (r - depth / 3.0);
+  EXPECT_NEAR(out.total.volume, ball_cap, out.total.volume_error);
+  const Interference swept =
+      overlap(HalfSpace(), kSolid, {R, Vec3(0.0, 0.0, height - depth)}, Engine::kSurfaceSweep);
+  EXPECT_NEAR(swept.total.volume / ball_cap, 1.0, 1e-6);
 }
 
 TEST(RoundedBoxPairs, AgreesWithLinesOfOtherCode) {
@@ -75,7 +87,8 @@ TEST(RoundedBoxPairs, AgreesWithLinesOfOtherCode) {
     for (int i = 0; i < 6; ++i) {
       const Vec3 at = random.in_box(0.15);
       const Pose X_AB{random.rotation(), at};
-      const Interference out = overlap(kSolid, other, X_AB);
+      const Interference out = overlap(kSolid, other, X_AB, Engine::kSurfaceSweep);
+      const Interference cells = overlap(kSolid, other, X_AB, Engine::kOctree);
       const test::LatticeVolume lines =
           test::lattice_volume(test::reference_solid(kSolid), test::reference_solid(other), X_AB,
                                kSolid.bounds(), 4000, random);
@@ -83,6 +96,8 @@ TEST(RoundedBoxPairs, AgreesWithLinesOfOtherCode) {
       by_sweep += out.engine == Engine::kSurfaceSweep;
       EXPECT_NEAR(out.total.volume, lines.volume, lines.error + out.total.volume_error + 1e-9)
           << name_of(other) << " " << i << " by " << to_string(out.engine);
+      EXPECT_NEAR(cells.total.volume, lines.volume, lines.error + cells.total.volume_error + 1e-9)
+          << name_of(other) << " " << i;
     }
   }
   EXPECT_GT(by_sweep, all * 3 / 4);

@@ -28,6 +28,13 @@ struct SurfaceSweep : EngineBase {
     return kMadeOfSimple<A> && kMadeOfSimple<B> && !(kHasPlanesOnly<A> && kHasPlanesOnly<B>) &&
            !kTorusOnPlane<A, B> && !kTorusOnPlane<B, A>;
   }
+  /// Of many parts: the octree, which has their exact faces, is as quick, and bounds its error. But
+  /// a torus is none of its exact faces.
+  template <typename A, typename B>
+  static constexpr bool in_auto() {
+    constexpr bool has_rounded = std::is_same_v<A, RoundedBox> || std::is_same_v<B, RoundedBox>;
+    return !has_rounded || std::is_same_v<A, Torus> || std::is_same_v<B, Torus>;
+  }
   template <typename A, typename B>
   static Answer run(const Question<A, B>& q, SurfaceSweepScratch& scratch,
                     Interference& out) noexcept {
