@@ -21,6 +21,12 @@ concept UserSolid = std::copy_constructible<S> && requires(const S& solid, const
   { solid.signed_distance(p) } -> std::same_as<double>;
 };
 
+class SignedDistance;
+
+/// A SignedDistance is none: asked whether it can be copied, it would ask this of itself.
+template <typename S>
+concept OtherUserSolid = !std::same_as<S, SignedDistance> && UserSolid<S>;
+
 /// A user's solid among the shapes:
 ///
 ///     struct Gyroid {
@@ -54,9 +60,9 @@ class SignedDistance {
     virtual bool serves_steps() const { return true; }
   };
 
-  template <UserSolid S>
+  template <OtherUserSolid S>
   explicit SignedDistance(S solid) : SignedDistance(std::move(solid), Params{}) {}
-  template <UserSolid S>
+  template <OtherUserSolid S>
   SignedDistance(S solid, const Params& params)
       : SignedDistance(std::make_shared<const SourceOf<S>>(std::move(solid)), params) {}
   SignedDistance(std::shared_ptr<const Source> source, const Params& params)

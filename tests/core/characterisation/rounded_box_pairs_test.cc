@@ -40,7 +40,9 @@ TEST(RoundedBoxPairs, OnAPlaneItIsTheCap) {
     EXPECT_EQ(out.engine, Engine::kOctree) << depth;
     EXPECT_NEAR(out.total.volume, cap(depth), out.total.volume_error) << depth;
     EXPECT_LE(out.total.volume_error, 1e-3 * cap(depth)) << depth;
-    EXPECT_NEAR(out.total.centroid.x(), 0.02, 1e-5) << depth;
+    // What is too much or missing lies within the solid.
+    const double share = out.total.volume_error / out.total.volume;
+    EXPECT_NEAR(out.total.centroid.x(), 0.02, share * kHalf.x()) << depth;
     EXPECT_NEAR(out.total.area_vector.x(), 0.0, 1e-5) << depth;
     if (depth < 1e-4) continue;
     const Interference swept = overlap(HalfSpace(), kSolid, X_AB, Engine::kSurfaceSweep);
