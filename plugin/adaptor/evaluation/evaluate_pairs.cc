@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "adaptor/evaluation/work_sharing.h"
@@ -16,8 +17,6 @@ namespace {
 // that, and their pairs are shared instead.
 bool shares_its_own_work(Engine engine) { return engine == Engine::kOctree; }
 
-// The time from which OpenMP saves more than it costs, also on a busy machine [s].
-constexpr double kWorthSharing = 200e-6;
 constexpr int kPairsPerTask = 16;
 
 bool is_finite(const ContactReport& report) {
@@ -44,8 +43,8 @@ Work plan_work(const SceneContact& contact, int threads, EvaluationScratch& scra
         contact.pairs()[static_cast<std::size_t>(near[static_cast<std::size_t>(k)])].engine);
   };
   Work work;
+  work.threads = threads;
   work.pairs = static_cast<int>(near.size());
-  double time = 0.0;
   scratch.order.clear();
   for (const bool wanted : {true, false}) {
     for (int k = 0; k < work.pairs; ++k) {
@@ -53,14 +52,7 @@ Work plan_work(const SceneContact& contact, int threads, EvaluationScratch& scra
     }
     if (wanted) work.single_tasks = static_cast<int>(scratch.order.size());
   }
-  for (const int pair : near) {
-    time += typical_time(contact.pairs()[static_cast<std::size_t>(pair)].engine);
-  }
-  if (work.single_tasks < threads) {
-    time -= work.single_tasks * typical_time(Engine::kOctree);
-    work.own_sharing = std::exchange(work.single_tasks, 0);
-  }
-  work.threads = time < kWorthSharing ? 1 : threads;
+  if (work.single_tasks < threads) work.own_sharing = std::exchange(work.single_tasks, 0);
   return work;
 }
 
@@ -109,7 +101,11 @@ void evaluate_pairs(const SceneContact& contact, const mjModel* m, const mjData*
     scratch.invalid.resize(near.size());
   }
 
-  const EvaluationGuard guard(contact.options().threads);
+  EvaluationGuard guard(contact.options().threads);
+  const bool is_free = contact.options().threads == 0;
+  ThreadChoice& choice = scratch.choices.of(&contact);
+  if (is_free && !choice.shares(guard.threads(), near.size())) guard.take_one();
+  const auto begin = std::chrono::steady_clock::now();
   const Work work = plan_work(contact, guard.threads(), scratch);
   if (scratch.workspaces.size() < static_cast<std::size_t>(work.threads)) {
     scratch.workspaces.resize(static_cast<std::size_t>(work.threads));
@@ -124,9 +120,10 @@ void evaluate_pairs(const SceneContact& contact, const mjModel* m, const mjData*
   evaluate_some(0, work.own_sharing, 0);
   const int single = work.own_sharing + work.single_tasks;
   const int tasks = work.single_tasks + (work.pairs - single + kPairsPerTask - 1) / kPairsPerTask;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(work.threads) if (work.threads > 1)
+  const bool is_shared = work.threads > 1 && tasks > 1;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(work.threads) if (is_shared)
   for (int task = 0; task < tasks; ++task) {
-    const int thread = work.threads > 1 ? omp_get_thread_num() : 0;
+    const int thread = is_shared ? omp_get_thread_num() : 0;
     if (task < work.single_tasks) {
       evaluate_some(work.own_sharing + task, work.own_sharing + task + 1, thread);
     } else {
@@ -134,6 +131,8 @@ void evaluate_pairs(const SceneContact& contact, const mjModel* m, const mjData*
       evaluate_some(first, std::min(first + kPairsPerTask, work.pairs), thread);
     }
   }
+  if (!is_free) return;
+  choice.took(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
 }
 
 }  // namespace volcontact::adaptor

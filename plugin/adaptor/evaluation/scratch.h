@@ -5,6 +5,7 @@
 
 #include "adaptor/evaluation/body_forces.h"
 #include "adaptor/evaluation/mocap_motion.h"
+#include "adaptor/evaluation/thread_choice.h"
 #include "adaptor/geoms/pair_list.h"
 #include "adaptor/memory/work_limit.h"
 #include "adaptor/step/implicit_step.h"
@@ -21,6 +22,7 @@ struct EvaluationScratch {
   std::vector<char> held;  ///< of the pairs in `near`, whether other forces than its laws say act
   std::vector<int> order;  ///< of `near`, as worked off: the long pairs first
   std::vector<ContactModel::Workspace> workspaces;  ///< one per OpenMP thread
+  ThreadChoices choices;
   BodyForces forces;
   ImplicitStep implicit;
   double dissipated = 0.0;           ///< by the contacts up to the evaluation before [J]

@@ -26,6 +26,12 @@ EvaluationGuard::EvaluationGuard(int wanted) noexcept : restored_threads_(omp_ge
   if (threads_ != restored_threads_) omp_set_num_threads(threads_);
 }
 
+void EvaluationGuard::take_one() noexcept {
+  if (threads_ == 1) return;
+  threads_ = 1;
+  omp_set_num_threads(1);
+}
+
 EvaluationGuard::~EvaluationGuard() {
   if (threads_ != restored_threads_) omp_set_num_threads(restored_threads_);
   evaluations_in_flight.fetch_sub(1);

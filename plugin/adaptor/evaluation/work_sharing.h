@@ -15,6 +15,8 @@ class EvaluationGuard {
   EvaluationGuard& operator=(const EvaluationGuard&) = delete;
 
   int threads() const noexcept { return threads_; }
+  /// One thread for what follows.
+  void take_one() noexcept;
 
  private:
   int restored_threads_;

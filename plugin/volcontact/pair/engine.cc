@@ -29,20 +29,6 @@ const char* to_string(Engine engine) {
   return "unknown";
 }
 
-double typical_time(Engine engine) {
-  switch (engine) {
-    case Engine::kOctree:
-      return 2e-3;
-    case Engine::kSurfaceSweep:
-      return 300e-6;
-    case Engine::kClosedForm:
-    case Engine::kClip:
-      return 1e-6;
-    default:
-      return 5e-6;
-  }
-}
-
 Engine engine_from(std::string_view name) {
   std::vector<std::string> names;
   std::string listed;

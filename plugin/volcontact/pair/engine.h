@@ -20,9 +20,6 @@ inline constexpr Engine kEngines[] = {Engine::kAuto,  Engine::kClosedForm,   Eng
                                       Engine::kLines, Engine::kSurfaceSweep, Engine::kColumns,
                                       Engine::kOctree};
 
-/// Usual time of one overlap by this engine, on one core of 2020 [s]; to plan work, not to report.
-double typical_time(Engine engine);
-
 const char* to_string(Engine engine);
 
 /// Throws std::invalid_argument naming the valid words and the nearest of them.
