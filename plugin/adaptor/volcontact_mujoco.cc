@@ -132,8 +132,7 @@ FoundSite find_site(const SceneContact& contact, const EvaluationScratch& scratc
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const auto& sites = scratch.reports[k].sites;
     if (left < sites.size()) {
-      const auto index = static_cast<std::size_t>(scratch.cull.near[k]);
-      return {&contact.pairs()[index], &sites[left].metrics};
+      return {&contact.pair(scratch.cull.near[k]), &sites[left].metrics};
     }
     left -= sites.size();
   }
@@ -261,7 +260,7 @@ int volcontact_sites(const mjModel* m, const mjData* d, volcontact_site* sites, 
     int count = 0;
     for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
       const int index = scratch.cull.near[k];
-      const PairContact& pair = contact->pairs()[static_cast<std::size_t>(index)];
+      const PairContact& pair = contact->pair(index);
       for (const auto& report : scratch.reports[k].sites) {
         if (count < capacity) sites[count] = record_of(pair, index, report);
         ++count;
@@ -370,8 +369,7 @@ int volcontact_pair_text(const mjModel* m, int pair, char* text, int capacity, c
     volcontact::require(pair >= 0 && pair < count, "pair " + std::to_string(pair) +
                                                        " is none of the " + std::to_string(count) +
                                                        " of the scene");
-    return copy_text(volcontact::text_of(contact->pairs()[static_cast<std::size_t>(pair)].model),
-                     text, capacity);
+    return copy_text(volcontact::text_of(contact->pair(pair).model), text, capacity);
   });
 }
 

@@ -89,7 +89,7 @@ class Feeling {
 
 void feel_sites(const SceneContact& contact, const EvaluationScratch& scratch, Feeling& feeling) {
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    const auto& geoms = contact.pairs()[static_cast<std::size_t>(scratch.cull.near[k])].geoms;
+    const auto& geoms = contact.pair(scratch.cull.near[k]).geoms;
     for (const SiteReport& site : scratch.reports[k].sites) {
       feeling.add(geoms.a, geoms.b, site.force_on_A.norm(), site.torque_on_A.norm());
     }

@@ -40,7 +40,7 @@ void solve_implicit(const SceneContact& contact, const mjModel* m, mjData* d,
   const double fall = fall_of(m);
   std::size_t site = 0;
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    const PairContact& pair = contact.pairs()[static_cast<std::size_t>(scratch.cull.near[k])];
+    const PairContact& pair = contact.pair(scratch.cull.near[k]);
     ContactReport& report = scratch.reports[k];
     const double along = inverse_mass(m, pair.geoms).along;
     const PairEnergy::Now now(report);
@@ -137,7 +137,7 @@ bool keep_sites(const SceneContact& contact, double* states,
   if (contact.sites().rows == 0) return true;
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const int pair = scratch.cull.near[k];
-    const int size = contact.pairs()[static_cast<std::size_t>(pair)].model.row_size();
+    const int size = contact.pair(pair).model.row_size();
     const std::vector<double>& memory = scratch.reports[k].memory;
     for (std::size_t start = 0; start < memory.size(); start += static_cast<std::size_t>(size)) {
       if (!pool.push(pair, &memory[start], size)) return false;
@@ -162,7 +162,7 @@ void write_forces(const SceneContact& contact, const mjModel* m, mjData* d, bool
     forces.reset(m);
   }
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    const GeomPair& geoms = contact.pairs()[static_cast<std::size_t>(scratch.cull.near[k])].geoms;
+    const GeomPair& geoms = contact.pair(scratch.cull.near[k]).geoms;
     const int a = m->geom_bodyid[geoms.a], b = m->geom_bodyid[geoms.b];
     for (const SiteReport& site : scratch.reports[k].sites) {
       const Vec3& c = site.metrics.centroid;

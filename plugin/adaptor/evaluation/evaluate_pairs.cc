@@ -39,8 +39,7 @@ struct Work {
 Work plan_work(const SceneContact& contact, int threads, EvaluationScratch& scratch) {
   const std::vector<int>& near = scratch.cull.near;
   const auto is_long = [&](int k) {
-    return shares_its_own_work(
-        contact.pairs()[static_cast<std::size_t>(near[static_cast<std::size_t>(k)])].engine);
+    return shares_its_own_work(contact.pair(near[static_cast<std::size_t>(k)]).engine);
   };
   Work work;
   work.threads = threads;
@@ -61,7 +60,7 @@ void evaluate_one(const SceneContact& contact, const mjModel* m, const mjData* d
                   EvaluationScratch& scratch) noexcept {
   const std::size_t index = static_cast<std::size_t>(k);
   const int pair_index = scratch.cull.near[index];
-  const PairContact& pair = contact.pairs()[static_cast<std::size_t>(pair_index)];
+  const PairContact& pair = contact.pair(pair_index);
   const auto twist_of = [&](int geom) {
     const Twist own = twist_of_geom(m, d, geom);
     const Twist driven = scratch.mocaps.at(m, d, m->geom_bodyid[geom], vec3_at(d->geom_xpos, geom));

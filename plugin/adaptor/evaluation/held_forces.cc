@@ -91,7 +91,7 @@ void hold_solved(const SceneContact& contact, const mjModel* m, mjData* d, const
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     ContactReport& report = scratch.reports[k];
     scratch.held[k] = kept.take(scratch.cull.near[k], report) ? 1 : 0;
-    const PairContact& pair = contact.pairs()[static_cast<std::size_t>(scratch.cull.near[k])];
+    const PairContact& pair = contact.pair(scratch.cull.near[k]);
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
       const bool stiff =
           scratch.held[k] || is_stiff(m, d, pair, report, i, ExplicitBounds::of_stage(), scratch);
@@ -116,7 +116,7 @@ void add_held(const SceneContact& contact, const mjModel* m, const mjData* d,
               const UserdataBlock& our, BodyForces& forces) noexcept {
   for (int i = 0; i < our.solved(); ++i) {
     const HeldSite site = our.solved_site(i);
-    const GeomPair& geoms = contact.pairs()[static_cast<std::size_t>(site.pair())].geoms;
+    const GeomPair& geoms = contact.pair(site.pair()).geoms;
     forces.add(m, d, m->geom_bodyid[geoms.a], site.centroid(), site.force(), site.torque());
     forces.add(m, d, m->geom_bodyid[geoms.b], site.centroid(), -site.force(), -site.torque());
   }

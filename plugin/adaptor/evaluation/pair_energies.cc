@@ -20,7 +20,7 @@ ExplicitShare share_of(const SceneContact& contact, const mjModel* m, std::size_
                        const PairEnergy::Now& now, const EvaluationScratch& scratch) noexcept {
   const double h = m->opt.timestep;
   const double fall = fall_of(m);
-  const PairContact& pair = contact.pairs()[static_cast<std::size_t>(scratch.cull.near[k])];
+  const PairContact& pair = contact.pair(scratch.cull.near[k]);
   const double along = inverse_mass(m, pair.geoms).along;
   WorkLimit limit = WorkLimit::of(scratch.energies[k], scratch.dissipated,
                                   contact.options().exit_speed, now.moving(along));

@@ -50,7 +50,7 @@ bool is_stiff(const mjModel* m, mjData* d, const PairContact& pair, const Contac
               std::size_t site, ExplicitBounds most, EvaluationScratch& scratch) noexcept {
   const double h = m->opt.timestep;
   const InverseMass inverse = inverse_mass(m, pair.geoms);
-  const Friction* friction = pair.laws.laws.friction.get();
+  const Friction* friction = pair.model.laws().friction.get();
   if (friction && !most.friction_is_explicit) {
     if (shakes_at_rest(pair, h)) return true;
     if (friction->states().empty() && reverses_slip(report.sites[site], inverse, h)) return true;
@@ -81,7 +81,7 @@ bool find_stiff_sites(const SceneContact& contact, const mjModel* m, mjData* d,
   const auto most = ExplicitBounds::of(m->opt.integrator == mjINT_RK4);
   scratch.stiff.clear();
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    const PairContact& pair = contact.pairs()[static_cast<std::size_t>(scratch.cull.near[k])];
+    const PairContact& pair = contact.pair(scratch.cull.near[k]);
     const ContactReport& report = scratch.reports[k];
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
       scratch.stiff.push_back(all || is_stiff(m, d, pair, report, i, most, scratch) ? 1 : 0);

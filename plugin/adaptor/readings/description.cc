@@ -63,7 +63,7 @@ void write_default_material(JsonText& json) {
 void write_materials(const mjModel* m, const SceneContact& contact, JsonText& json) {
   const SceneKeys& keys = contact.keys();
   std::set<int> touching;
-  for (const PairContact& pair : contact.pairs()) touching.insert({pair.geoms.a, pair.geoms.b});
+  for (const GeomPair& pair : contact.pairs()) touching.insert({pair.a, pair.b});
   const auto write_geoms = [&](int material, bool all) {
     json.name("geoms").begin_array();
     for (int geom = 0; geom < m->ngeom; ++geom) {
@@ -109,7 +109,7 @@ void write_parts(const mjModel* m, const ComposedGeoms& solid, JsonText& json) {
 
 void write_solids(const mjModel* m, const SceneContact& contact, JsonText& json) {
   std::set<int> touching;
-  for (const PairContact& pair : contact.pairs()) touching.insert({pair.geoms.a, pair.geoms.b});
+  for (const GeomPair& pair : contact.pairs()) touching.insert({pair.a, pair.b});
   json.name("solids").begin_array();
   for (const int geom : touching) {
     const Shape& solid = contact.solids()[static_cast<std::size_t>(geom)];
@@ -132,7 +132,7 @@ std::string implicit_text(const mjModel* m, const SceneContact& contact, const P
   if (contact.options().implicit == Implicit::kAlways) return "on";
   const ImplicitUse use = implicit_use(m, pair);
   if (use.by_friction) return "always, for its friction";
-  const Friction* friction = pair.laws.laws.friction.get();
+  const Friction* friction = pair.model.laws().friction.get();
   const bool by_friction = friction && friction->states().empty();
   if (!use.is_possible) return by_friction ? "where friction would reverse the slip" : "not needed";
   char text[64];
@@ -140,8 +140,9 @@ std::string implicit_text(const mjModel* m, const SceneContact& contact, const P
   return text;
 }
 
-void write_pair(const mjModel* m, const SceneContact& contact, const PairContact& pair, int index,
-                JsonText& json) {
+void write_pair(const mjModel* m, const SceneContact& contact, int index, JsonText& json) {
+  const PairContact& pair = contact.pair(index);
+  const PairLaws laws = contact.laws_of(m, index);
   json.begin_object();
   json.member("pair", index);
   json.member("geom_a", label(m, mjOBJ_GEOM, pair.geoms.a));
@@ -152,13 +153,13 @@ void write_pair(const mjModel* m, const SceneContact& contact, const PairContact
   json.member("engine", to_string(pair.engine));
   json.member("implicit", implicit_text(m, contact, pair));
   json.member("explicit_step", implicit_use(m, pair).explicit_step);
-  json.member("normal_law", pair.laws.normal_law);
-  json.member("friction_law", pair.laws.friction_law);
-  json.member("rolling", pair.laws.laws.rolling ? "on" : kOff);
-  for (const auto& [choice, word] : pair.laws.choices) json.member(choice, word);
-  for (const PairField& field : pair.laws.fields) json.member(field.name, field.value);
+  json.member("normal_law", laws.normal_law);
+  json.member("friction_law", laws.friction_law);
+  json.member("rolling", laws.laws.rolling ? "on" : kOff);
+  for (const auto& [choice, word] : laws.choices) json.member(choice, word);
+  for (const PairField& field : laws.fields) json.member(field.name, field.value);
   json.name("sources").begin_object();
-  for (const PairField& field : pair.laws.fields) json.member(field.name, field.source);
+  for (const PairField& field : laws.fields) json.member(field.name, field.source);
   json.end_object().end_object();
 }
 
@@ -180,7 +181,7 @@ std::string describe(const mjModel* m, const SceneContact& contact) {
   write_solids(m, contact, json);
   json.name("pairs").begin_array();
   for (std::size_t i = 0; i < contact.pairs().size(); ++i) {
-    write_pair(m, contact, contact.pairs()[i], static_cast<int>(i), json);
+    write_pair(m, contact, static_cast<int>(i), json);
   }
   json.end_array();
   json.name("warnings").begin_array();

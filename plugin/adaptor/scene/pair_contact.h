@@ -2,7 +2,6 @@
 #pragma once
 
 #include "adaptor/geoms/pair_list.h"
-#include "adaptor/keys/materials.h"
 #include "volcontact/model/contact_model.h"
 
 namespace volcontact::adaptor {
@@ -11,8 +10,8 @@ namespace volcontact::adaptor {
 struct PairContact {
   GeomPair geoms;
   Engine engine;  ///< the one that will serve
-  PairLaws laws;
   ContactModel model;
+  double stiffness = 0.0;  ///< PairLaws::stiffness [N/m^3]
   /// k/m of a patch as large as the smaller solid's box against a displacement [1/s^2].
   double largest_rate = 0.0;
   /// The same of friction with a memory against sliding, 0 without one [1/s^2].

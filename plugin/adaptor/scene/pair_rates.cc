@@ -25,8 +25,7 @@ bool is_jointed(const mjModel* m, int geom) {
 }
 
 // Force with which the pair lies still, one upon the other [N].
-double resting_force(const mjModel* m, double inverse_mass) {
-  const double gravity = Eigen::Map<const Vec3>(m->opt.gravity).norm();
+double resting_force(double gravity, double inverse_mass) {
   return inverse_mass > 0.0 ? gravity / inverse_mass : 0.0;
 }
 
@@ -63,10 +62,8 @@ double inverse_sliding_mass(const mjModel* m, int geom, const Shape& solid) {
 }
 
 // The longest explicit step under which friction lets the pair lie still, one upon the other [s].
-double longest_friction_step(const mjModel* m, const PairContact& pair, double inverse_mass,
+double longest_friction_step(bool is_rk4, const Friction& friction, double inverse_mass,
                              double weight) {
-  const bool is_rk4 = m->opt.integrator == mjINT_RK4;
-  const Friction& friction = *pair.laws.laws.friction;
   const FrictionSlope slope = slope_at_rest(friction, weight);
   const double spring = slope.stiffness * inverse_mass, damper = slope.damping * inverse_mass;
   if (friction.states().empty()) return (is_rk4 ? kRungeKuttaDamper : kEulerDamper) / damper;
@@ -82,15 +79,18 @@ InverseMass inverse_mass(const mjModel* m, const GeomPair& geoms) {
           m->body_invweight0[2 * a + 1] + m->body_invweight0[2 * b + 1]};
 }
 
-void set_rates(const mjModel* m, const std::vector<Shape>& solids, PairContact& pair) {
-  const double face = std::min(largest_face(solids[static_cast<std::size_t>(pair.geoms.a)]),
-                               largest_face(solids[static_cast<std::size_t>(pair.geoms.b)]));
-  const double along = inverse_mass(m, pair.geoms).along, sliding = kBall * along;
-  pair.is_jointed = is_jointed(m, pair.geoms.a) || is_jointed(m, pair.geoms.b);
-  pair.largest_rate = pair.laws.stiffness * face * along;
-  const Friction* friction = pair.laws.laws.friction.get();
+GeomFacts facts_of(const mjModel* m, int geom, const Shape& solid) {
+  return {m->body_invweight0[2 * m->geom_bodyid[geom]], largest_face(solid), is_jointed(m, geom)};
+}
+
+void set_rates(const GeomFacts& a, const GeomFacts& b, double gravity, PairContact& pair) {
+  const double face = std::min(a.largest_face, b.largest_face);
+  const double along = a.inverse_along + b.inverse_along, sliding = kBall * along;
+  pair.is_jointed = a.is_jointed || b.is_jointed;
+  pair.largest_rate = pair.stiffness * face * along;
+  const Friction* friction = pair.model.laws().friction.get();
   if (!friction || friction->states().empty()) return;
-  const double weight = resting_force(m, along);
+  const double weight = resting_force(gravity, along);
   const FrictionSlope slope = slope_at_rest(*friction, weight > 0.0 ? weight : 1.0);
   pair.friction_rate = slope.stiffness * sliding;
   pair.friction_damping_rate = slope.damping * sliding;
@@ -99,7 +99,7 @@ void set_rates(const mjModel* m, const std::vector<Shape>& solids, PairContact& 
 ImplicitUse implicit_use(const mjModel* m, const PairContact& pair) {
   const double square = m->opt.timestep * m->opt.timestep;
   const double number = square * pair.largest_rate;
-  const double per_area = square * pair.laws.stiffness * inverse_mass(m, pair.geoms).along;
+  const double per_area = square * pair.stiffness * inverse_mass(m, pair.geoms).along;
   const bool is_rk4 = m->opt.integrator == mjINT_RK4;
   const ExplicitBounds bounds = ExplicitBounds::of(is_rk4);
   return {number >= std::max(kPossibleNumber, bounds.spring),
@@ -108,13 +108,15 @@ ImplicitUse implicit_use(const mjModel* m, const PairContact& pair) {
 }
 
 double longest_step_at_rest(const mjModel* m, const std::vector<Shape>& solids,
-                            const PairContact& pair) {
-  const int a = pair.geoms.a, b = pair.geoms.b;
-  const double along = inverse_mass(m, pair.geoms).along;
-  if (!pair.laws.laws.friction || along == 0.0) return HUGE_VAL;
-  const double inverse = inverse_sliding_mass(m, a, solids[static_cast<std::size_t>(a)]) +
-                         inverse_sliding_mass(m, b, solids[static_cast<std::size_t>(b)]);
-  return longest_friction_step(m, pair, inverse, resting_force(m, along));
+                            const GeomPair& geoms, const Friction* friction) {
+  const double along = inverse_mass(m, geoms).along;
+  if (!friction || along == 0.0) return HUGE_VAL;
+  const double inverse =
+      inverse_sliding_mass(m, geoms.a, solids[static_cast<std::size_t>(geoms.a)]) +
+      inverse_sliding_mass(m, geoms.b, solids[static_cast<std::size_t>(geoms.b)]);
+  const double gravity = Eigen::Map<const Vec3>(m->opt.gravity).norm();
+  return longest_friction_step(m->opt.integrator == mjINT_RK4, *friction, inverse,
+                               resting_force(gravity, along));
 }
 
 }  // namespace volcontact::adaptor

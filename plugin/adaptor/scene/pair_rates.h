@@ -26,8 +26,16 @@ struct InverseMass {
 };
 InverseMass inverse_mass(const mjModel* m, const GeomPair& geoms);
 
-/// Sets the rates of a pair. `solids`: by geom.
-void set_rates(const mjModel* m, const std::vector<Shape>& solids, PairContact& pair);
+/// What a geom brings to the rates of its pairs.
+struct GeomFacts {
+  double inverse_along = 0.0;  ///< of the mass of its body [1/kg]
+  double largest_face = 0.0;   ///< of the solid's box [m^2]
+  bool is_jointed = false;     ///< whether its body moves, and not as a free body alone
+};
+GeomFacts facts_of(const mjModel* m, int geom, const Shape& solid);
+
+/// Sets the rates of a pair under gravity [m/s^2].
+void set_rates(const GeomFacts& a, const GeomFacts& b, double gravity, PairContact& pair);
 
 /// Whether friction with a memory is too stiff for an explicit step of h [s]: docs/theory.md, "Time
 /// step".
@@ -48,6 +56,6 @@ ImplicitUse implicit_use(const mjModel* m, const PairContact& pair);
 /// The longest explicit step under which friction lets the pair lie still, one upon the other [s];
 /// infinite where nothing moves or rubs.
 double longest_step_at_rest(const mjModel* m, const std::vector<Shape>& solids,
-                            const PairContact& pair);
+                            const GeomPair& geoms, const Friction* friction);
 
 }  // namespace volcontact::adaptor

@@ -2,7 +2,9 @@
 #include "adaptor/scene/scene_contact.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "adaptor/geoms/native_pairs.h"
@@ -88,6 +90,7 @@ SceneContact::SceneContact(const mjModel* m, const std::vector<GivenKey>& given,
                   ? before->meshes_
                   : std::map<int, Shape>()),
       solids_(solids_of(m, keys_, geom_pairs_, meshes_)),
+      made_(geom_pairs_.size()),
       cull_(geom_pairs_, solids_) {
   warn_about_model(m);
   if (!no_contact_.empty()) {
@@ -99,8 +102,7 @@ SceneContact::SceneContact(const mjModel* m, const std::vector<GivenKey>& given,
     warn_once("no two geoms can touch: check contype, conaffinity and volcontact/option/pairs");
   }
   warn_about_meshes(m);
-  pairs_.reserve(geom_pairs_.size());
-  for (const GeomPair& pair : geom_pairs_) add_pair(m, pair);
+  read_laws(m);
   warn_about_friction(m);
   if (sites_.row_size > 0) sites_.rows = rows_of(geom_pairs_);
   if (options().implicit != Implicit::kNever) solved_rows_ = rows_of(geom_pairs_);
@@ -166,7 +168,7 @@ void SceneContact::alert(const std::string& warning) {
   alerts_.push_back(warning);
 }
 
-void SceneContact::add_pair(const mjModel* m, const GeomPair& geoms) {
+PairLaws SceneContact::laws_of(const mjModel* m, const GeomPair& geoms) const {
   const int native = geoms.native;
   const auto side = [&](int geom) {
     const int material = keys_.material_of_geom[static_cast<std::size_t>(geom)];
@@ -175,25 +177,69 @@ void SceneContact::add_pair(const mjModel* m, const GeomPair& geoms) {
                 material < 0 ? nullptr : &keys_.materials[static_cast<std::size_t>(material)],
                 native < 0 ? "" : native_pair_label(m, native)};
   };
-  const std::vector<std::string> unused =
-      native < 0 ? std::vector<std::string>() : native_pair_fields_unused(m, native);
-  if (!unused.empty()) {
-    warn_once(native_pair_label(m, native) + ": " + joined(unused) +
-              (unused.size() == 1 ? " has" : " have") +
-              " no meaning under volumetric contact; of a <pair> its sliding friction counts");
-  }
   const KeyedValues* listed =
       geoms.listed < 0 ? nullptr : &keys_.pairs[static_cast<std::size_t>(geoms.listed)].keyed;
   PairLaws laws = combine(side(geoms.a), side(geoms.b), listed);
-  for (const std::string& warning : laws.warnings) warn_once(warning);
   laws.laws.formulation = keys_.options.formulation;
+  return laws;
+}
 
+PairLaws SceneContact::laws_of(const mjModel* m, int index) const {
+  return laws_of(m, geom_pairs_[static_cast<std::size_t>(index)]);
+}
+
+// Laws are made once for all pairs of the same materials and frictions.
+void SceneContact::read_laws(const mjModel* m) {
+  gravity_ = Eigen::Map<const Vec3>(m->opt.gravity).norm();
+  facts_.resize(static_cast<std::size_t>(m->ngeom));
+  std::vector<char> has_facts(facts_.size(), 0);
+  using Key = std::tuple<int, double, int, double, int>;
+  std::map<Key, int> classes;
+  class_of_pair_.reserve(geom_pairs_.size());
+  for (const GeomPair& geoms : geom_pairs_) {
+    for (const int geom : {geoms.a, geoms.b}) {
+      const auto i = static_cast<std::size_t>(geom);
+      if (!std::exchange(has_facts[i], 1)) facts_[i] = facts_of(m, geom, solids_[i]);
+    }
+    if (geoms.native >= 0) warn_about_native_pair(m, geoms.native);
+    const auto friction = [&](int geom) {
+      return geoms.native < 0 ? m->geom_friction[3 * geom] : m->pair_friction[5 * geoms.native];
+    };
+    const auto material = [&](int geom) {
+      return keys_.material_of_geom[static_cast<std::size_t>(geom)];
+    };
+    const Key key{material(geoms.a), friction(geoms.a), material(geoms.b), friction(geoms.b),
+                  geoms.listed};
+    const auto [found, is_new] = classes.emplace(key, static_cast<int>(law_classes_.size()));
+    if (is_new) {
+      const PairLaws laws = laws_of(m, geoms);
+      for (const std::string& warning : laws.warnings) warn_once(warning);
+      law_classes_.push_back({laws.laws, laws.stiffness});
+    }
+    class_of_pair_.push_back(found->second);
+    check_engine(m, geoms);
+    if (is_new) {
+      const auto index = static_cast<int>(class_of_pair_.size()) - 1;
+      sites_.row_size = std::max(sites_.row_size, pair(index).model.row_size());
+    }
+  }
+}
+
+void SceneContact::warn_about_native_pair(const mjModel* m, int native) {
+  const std::vector<std::string> unused = native_pair_fields_unused(m, native);
+  if (unused.empty()) return;
+  warn_once(native_pair_label(m, native) + ": " + joined(unused) +
+            (unused.size() == 1 ? " has" : " have") +
+            " no meaning under volumetric contact; of a <pair> its sliding friction counts");
+}
+
+void SceneContact::check_engine(const mjModel* m, const GeomPair& geoms) {
+  const SceneOptions& options = keys_.options;
+  const bool has_field = options.formulation == Formulation::kPotential;
+  if (options.engine == Engine::kAuto && !has_field) return;
   const Shape& a = solids_[static_cast<std::size_t>(geoms.a)];
   const Shape& b = solids_[static_cast<std::size_t>(geoms.b)];
-  const SceneOptions& options = keys_.options;
-  Engine engine = options.engine == Engine::kAuto ? engine_for(a, b) : options.engine;
-  const int most_cells = options.engine == Engine::kOctree ? kMostCells : kMostCellsInStep;
-  if (options.formulation == Formulation::kPotential) {
+  if (has_field) {
     const std::string reason = why_no_pressure_field(a, b, options.engine);
     require(reason.empty(), "volcontact/option/formulation/potential does not serve geoms '" +
                                 label(m, mjOBJ_GEOM, geoms.a) + "' and '" +
@@ -201,16 +247,27 @@ void SceneContact::add_pair(const mjModel* m, const GeomPair& geoms) {
                                 name_of(b) + ": " + reason +
                                 "; or use formulation/gonthier, or exclude them");
   }
-  if (!serves(engine, a, b)) {
-    warn_once(std::string("engine ") + to_string(engine) + " does not serve " + name_of(a) +
-              " with " + name_of(b) + "; auto serves them");
-    engine = engine_for(a, b);
-  }
-  ContactModel model({{a, b, Pose{}, Pose{}}}, laws.laws,
-                     {options.tolerance, engine, kInnerThreads, most_cells});
-  sites_.row_size = std::max(sites_.row_size, model.row_size());
-  pairs_.push_back({geoms, engine, std::move(laws), std::move(model)});
-  set_rates(m, solids_, pairs_.back());
+  if (options.engine == Engine::kAuto || serves(options.engine, a, b)) return;
+  warn_once(std::string("engine ") + to_string(options.engine) + " does not serve " + name_of(a) +
+            " with " + name_of(b) + "; auto serves them");
+}
+
+PairContact SceneContact::make_pair(int index) const {
+  const auto i = static_cast<std::size_t>(index);
+  const GeomPair& geoms = geom_pairs_[i];
+  const LawClass& law_class = law_classes_[static_cast<std::size_t>(class_of_pair_[i])];
+  const auto a = static_cast<std::size_t>(geoms.a), b = static_cast<std::size_t>(geoms.b);
+  const SceneOptions& options = keys_.options;
+  const bool is_asked =
+      options.engine != Engine::kAuto && serves(options.engine, solids_[a], solids_[b]);
+  const Engine engine = is_asked ? options.engine : engine_for(solids_[a], solids_[b]);
+  const int most_cells = options.engine == Engine::kOctree ? kMostCells : kMostCellsInStep;
+  PairContact pair{geoms, engine,
+                   ContactModel({{solids_[a], solids_[b], Pose{}, Pose{}}}, law_class.laws,
+                                {options.tolerance, engine, kInnerThreads, most_cells}),
+                   law_class.stiffness};
+  set_rates(facts_[a], facts_[b], gravity_, pair);
+  return pair;
 }
 
 void SceneContact::warn_about_model(const mjModel* m) {
@@ -240,11 +297,13 @@ void SceneContact::warn_about_friction(const mjModel* m) {
   if (is_implicit() && !(m->opt.integrator == mjINT_RK4 && options().implicit == Implicit::kAuto)) {
     return;
   }
-  for (const PairContact& pair : pairs_) {
-    const double longest = longest_step_at_rest(m, solids_, pair);
+  for (std::size_t i = 0; i < geom_pairs_.size(); ++i) {
+    const GeomPair& geoms = geom_pairs_[i];
+    const LawClass& law_class = law_classes_[static_cast<std::size_t>(class_of_pair_[i])];
+    const double longest = longest_step_at_rest(m, solids_, geoms, law_class.laws.friction.get());
     if (m->opt.timestep <= longest) continue;
-    warn_once("friction of geoms '" + label(m, mjOBJ_GEOM, pair.geoms.a) + "' and '" +
-              label(m, mjOBJ_GEOM, pair.geoms.b) +
+    warn_once("friction of geoms '" + label(m, mjOBJ_GEOM, geoms.a) + "' and '" +
+              label(m, mjOBJ_GEOM, geoms.b) +
               "' shakes them at rest: explicit steps (integrator=\"RK4\" or "
               "volcontact/option/implicit/off) hold it up to " +
               number_text(longest) +

@@ -6,12 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "adaptor/keys/materials.h"
 #include "adaptor/keys/scene_keys.h"
 #include "adaptor/memory/side_states.h"
 #include "adaptor/memory/site_pool.h"
 #include "adaptor/memory/userdata_layout.h"
 #include "adaptor/mujoco/plugin_room.h"
 #include "adaptor/scene/pair_contact.h"
+#include "adaptor/scene/pair_rates.h"
+#include "adaptor/scene/pair_store.h"
 
 namespace volcontact::adaptor {
 
@@ -40,7 +43,13 @@ class SceneContact {
   const SceneKeys& keys() const { return keys_; }
   const SceneOptions& options() const { return keys_.options; }
   const std::vector<Shape>& solids() const { return solids_; }
-  const std::vector<PairContact>& pairs() const { return pairs_; }
+  /// The pairs that can touch, and their contact models: each is made when it is first asked for.
+  const std::vector<GeomPair>& pairs() const { return geom_pairs_; }
+  const PairContact& pair(int index) const noexcept {
+    return made_.get(static_cast<std::size_t>(index), [&] { return make_pair(index); });
+  }
+  /// The laws of a pair in words, with where each number comes from.
+  PairLaws laws_of(const mjModel* m, int index) const;
   const std::vector<std::string>& warnings() const { return warnings_; }
   /// Those of the warnings that say the simulation will not be what its author expects.
   const std::vector<std::string>& alerts() const { return alerts_; }
@@ -67,7 +76,16 @@ class SceneContact {
   bool is_implicit() const { return options().implicit != Implicit::kNever; }
 
  private:
-  void add_pair(const mjModel* m, const GeomPair& geoms);
+  // The laws of the pairs of some materials, frictions and a volcontact/pair.
+  struct LawClass {
+    ContactLaws laws;
+    double stiffness;
+  };
+  PairLaws laws_of(const mjModel* m, const GeomPair& geoms) const;
+  void read_laws(const mjModel* m);
+  void warn_about_native_pair(const mjModel* m, int native);
+  void check_engine(const mjModel* m, const GeomPair& geoms);
+  PairContact make_pair(int index) const;
   void warn_about_model(const mjModel* m);
   void warn_about_meshes(const mjModel* m);
   void warn_about_friction(const mjModel* m);
@@ -79,7 +97,11 @@ class SceneContact {
   std::vector<GeomPair> geom_pairs_;
   std::map<int, Shape> meshes_;  // by number
   std::vector<Shape> solids_;    // by geom; of geoms without a pair a placeholder
-  std::vector<PairContact> pairs_;
+  std::vector<LawClass> law_classes_;
+  std::vector<int> class_of_pair_;
+  std::vector<GeomFacts> facts_;  // by geom
+  double gravity_ = 0.0;
+  PairStore made_;
   Cull cull_;
   SitePoolLayout sites_;
   int solved_rows_ = 0;

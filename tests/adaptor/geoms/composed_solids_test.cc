@@ -111,9 +111,9 @@ TEST(ComposedSolids, PartsTouchNothingByThemselves) {
   const ModelPointer m = testing::compile(scene(bored(), ball()));
   const SceneContact contact(m.get());
   const int hole = mj_name2id(m.get(), mjOBJ_GEOM, "hole");
-  for (const PairContact& pair : contact.pairs()) {
-    EXPECT_NE(pair.geoms.a, hole);
-    EXPECT_NE(pair.geoms.b, hole);
+  for (const GeomPair& pair : contact.pairs()) {
+    EXPECT_NE(pair.a, hole);
+    EXPECT_NE(pair.b, hole);
   }
 }
 

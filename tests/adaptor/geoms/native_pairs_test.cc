@@ -52,7 +52,7 @@ TEST(NativePairs, TheDescriptionSaysWhoseFrictionItIs) {
       testing::compile(scene(pair("name=\"slippery\" friction=\".1 .1 .005 .0001 .0001\"")));
   const SceneContact contact(m.get());
   ASSERT_EQ(contact.pairs().size(), 1u);
-  for (const PairField& field : contact.pairs()[0].laws.fields) {
+  for (const PairField& field : contact.laws_of(m.get(), 0).fields) {
     if (field.name != "friction") continue;
     EXPECT_EQ(field.value, std::vector<double>{0.1});
     EXPECT_TRUE(testing::contains(field.source, "friction of <pair> 'slippery'"));
@@ -65,7 +65,7 @@ TEST(NativePairs, FrictionChangedInACompiledModelIsInForce) {
   m->pair_friction[0] = m->pair_friction[1] = 0.3;
   const SceneContact* contact = contact_of(m.get());
   ASSERT_NE(contact, nullptr);
-  for (const PairField& field : contact->pairs()[0].laws.fields) {
+  for (const PairField& field : contact->laws_of(m.get(), 0).fields) {
     if (field.name == "friction") {
       EXPECT_EQ(field.value, std::vector<double>{0.3});
     }
