@@ -29,6 +29,12 @@ class PairStore {
     return all_.back();
   }
 
+  /// How many were asked for.
+  std::size_t made() const {
+    const std::lock_guard lock(mutex_);
+    return all_.size();
+  }
+
  private:
   std::unique_ptr<std::atomic<const PairContact*>[]> made_;
   mutable std::mutex mutex_;

@@ -48,6 +48,7 @@ class SceneContact {
   const PairContact& pair(int index) const noexcept {
     return made_.get(static_cast<std::size_t>(index), [&] { return make_pair(index); });
   }
+  std::size_t made_pairs() const { return made_.made(); }
   /// The laws of a pair in words, with where each number comes from.
   PairLaws laws_of(const mjModel* m, int index) const;
   const std::vector<std::string>& warnings() const { return warnings_; }
