@@ -234,7 +234,9 @@ class _Dask:
 
     def wait(self, tickets: list[Any], seconds: float) -> tuple[list[BatchResult], list[Any]]:
         try:
-            state = self._distributed.wait(tickets, seconds, return_when="FIRST_COMPLETED")
+            # Else it waits by the client that the program may have made current, in its event loop.
+            with self._client.as_current():
+                state = self._distributed.wait(tickets, seconds, return_when="FIRST_COMPLETED")
         except self._distributed.TimeoutError:
             return [], tickets
         left, found = list(state.not_done), []

@@ -69,7 +69,7 @@ def test_two_processes_have_the_bits_of_one(study, expected, tmp_path):
     assert bits(study.rows(tmp_path / "out")) == expected
 
 
-def test_dask_whose_worker_is_killed_has_the_bits_of_one(study, expected, tmp_path):
+def test_dask_whose_worker_is_killed_has_the_bits_of_one(study, expected, tmp_path, monkeypatch):
     with (
         distributed.LocalCluster(
             n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
@@ -78,12 +78,15 @@ def test_dask_whose_worker_is_killed_has_the_bits_of_one(study, expected, tmp_pa
     ):
         pids = list(client.run(os.getpid).values())
         killer = Later(lambda: os.kill(pids[0], signal.SIGKILL))
+        # The study has a client of its own: another one's event loop would not hear of lost workers.
+        monkeypatch.setattr(client, "sync", lambda *_, **__: pytest.fail("of the program's client"))
         study.run(
             tmp_path / "out",
             engine="dask",
             address=cluster.scheduler_address,
             progress=killer.progress,
         )
+        monkeypatch.undo()
         killer.join()
         assert killer.done_at < TRIALS
         assert not Path(f"/proc/{pids[0]}").exists()
