@@ -78,7 +78,7 @@ def test_dask_whose_worker_is_killed_has_the_bits_of_one(study, expected, tmp_pa
     ):
         pids = list(client.run(os.getpid).values())
         killer = Later(lambda: os.kill(pids[0], signal.SIGKILL))
-        # The study has a client of its own: another one's event loop would not hear of lost workers.
+        # The study waits by its own client: no other event loop hears of lost workers.
         monkeypatch.setattr(client, "sync", lambda *_, **__: pytest.fail("of the program's client"))
         study.run(
             tmp_path / "out",
