@@ -9,6 +9,7 @@
 
 #include "adaptor/scene_registry.h"
 #include "adaptor/support/models.h"
+#include "volcontact/force/laws.h"
 
 namespace volcontact::adaptor::pair_store_test {
 namespace {
