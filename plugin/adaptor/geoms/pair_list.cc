@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <set>
+#include <utility>
 
 namespace volcontact::adaptor {
 namespace {
@@ -121,23 +123,108 @@ std::vector<GeomPair> pairs_that_can_touch(const mjModel* m, const SceneKeys& ke
   return pairs;
 }
 
-Cull::Cull(const std::vector<GeomPair>& pairs, const std::vector<Shape>& solids) {
-  std::map<int, int> index_of_geom;
+Cull::Cull(const std::vector<GeomPair>& pairs, const std::vector<Shape>& solids)
+    : pairs_(&pairs), row_(solids.size() + 1, 0), bounded_of_geom_(solids.size(), -1) {
   const auto is_plane = [&](int geom) {
     return std::holds_alternative<HalfSpace>(solids[static_cast<std::size_t>(geom)]);
   };
   const auto index_of = [&](int geom) {
-    const auto [entry, is_new] = index_of_geom.emplace(geom, static_cast<int>(bounded_.size()));
-    if (is_new) bounded_.push_back({geom, solids[static_cast<std::size_t>(geom)]});
-    return entry->second;
+    int& index = bounded_of_geom_[static_cast<std::size_t>(geom)];
+    if (index < 0) {
+      index = static_cast<int>(bounded_.size());
+      bounded_.push_back({geom, solids[static_cast<std::size_t>(geom)]});
+    }
+    return index;
   };
-  for (const GeomPair& pair : pairs) {
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const GeomPair& pair = pairs[i];
+    ++row_[static_cast<std::size_t>(pair.a) + 1];
+    const auto index = static_cast<int>(i);
     if (is_plane(pair.a)) {
-      candidates_.push_back({pair.a, index_of(pair.b), true});
+      with_plane_.push_back({index, pair.a, index_of(pair.b)});
     } else if (is_plane(pair.b)) {
-      candidates_.push_back({pair.b, index_of(pair.a), true});
+      with_plane_.push_back({index, pair.b, index_of(pair.a)});
     } else {
-      candidates_.push_back({index_of(pair.a), index_of(pair.b), false});
+      index_of(pair.a);
+      index_of(pair.b);
+    }
+  }
+  std::partial_sum(row_.begin(), row_.end(), row_.begin());
+  constexpr std::size_t kFew = 2000;  // comparisons that cost less than a sort
+  is_swept_ = pairs.size() - with_plane_.size() > kFew;
+}
+
+// The pair of two geoms, -1 where they cannot touch.
+int Cull::pair_of(int a, int b) const noexcept {
+  if (a > b) std::swap(a, b);
+  const auto begin = pairs_->begin() + row_[static_cast<std::size_t>(a)];
+  const auto end = pairs_->begin() + row_[static_cast<std::size_t>(a) + 1];
+  const auto found =
+      std::lower_bound(begin, end, b, [](const GeomPair& pair, int geom) { return pair.b < geom; });
+  return found != end && found->b == b ? static_cast<int>(found - pairs_->begin()) : -1;
+}
+
+void Cull::find_all(Scratch& scratch) const noexcept {
+  for (std::size_t i = 0; i < pairs_->size(); ++i) {
+    const GeomPair& pair = (*pairs_)[i];
+    const int a = bounded_of_geom_[static_cast<std::size_t>(pair.a)];
+    const int b = bounded_of_geom_[static_cast<std::size_t>(pair.b)];
+    if (a < 0 || b < 0) continue;
+    if (are_apart(scratch.boxes[static_cast<std::size_t>(a)],
+                  scratch.boxes[static_cast<std::size_t>(b)])) {
+      continue;
+    }
+    scratch.near.push_back(static_cast<int>(i));
+  }
+}
+
+// Along the axis on which the solids are spread most: each with those that begin before it ends.
+void Cull::sweep(Scratch& scratch) const noexcept {
+  const std::size_t count = bounded_.size();
+  int axis = 0;
+  double widest = -1.0;
+  for (int k = 0; k < 3; ++k) {
+    double low = kInfinity, high = -kInfinity;
+    for (const Box& box : scratch.boxes) {
+      const double end = box.ends[static_cast<std::size_t>(k)][0];
+      low = std::min(low, end);
+      high = std::max(high, end);
+    }
+    if (high - low > widest) widest = high - low, axis = k;
+  }
+  scratch.low.resize(count);
+  scratch.high.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Two ends = scratch.boxes[i].ends[static_cast<std::size_t>(axis)];
+    const bool is_number = ends[0] - ends[0] == 0.0 && ends[1] - ends[1] == 0.0;
+    scratch.low[i] = is_number ? ends[0] : -kInfinity;
+    scratch.high[i] = is_number ? -ends[1] : kInfinity;
+  }
+  std::vector<int>& sorted = scratch.sorted;
+  if (sorted.size() != count) {
+    sorted.resize(count);
+    std::iota(sorted.begin(), sorted.end(), 0);
+  }
+  const auto begins_before = [&](int i, int j) {
+    return scratch.low[static_cast<std::size_t>(i)] < scratch.low[static_cast<std::size_t>(j)];
+  };
+  // They are nearly in order as a rule: bodies move little in a step.
+  std::size_t moves = 0;
+  for (std::size_t i = 1; i < count && moves <= 4 * count; ++i) {
+    const int solid = sorted[i];
+    std::size_t k = i;
+    for (; k > 0 && begins_before(solid, sorted[k - 1]); --k, ++moves) sorted[k] = sorted[k - 1];
+    sorted[k] = solid;
+  }
+  if (moves > 4 * count) std::sort(sorted.begin(), sorted.end(), begins_before);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto one = static_cast<std::size_t>(sorted[i]);
+    for (std::size_t j = i + 1; j < count; ++j) {
+      const auto other = static_cast<std::size_t>(sorted[j]);
+      if (!(scratch.low[other] < scratch.high[one])) break;
+      if (are_apart(scratch.boxes[one], scratch.boxes[other])) continue;
+      const int pair = pair_of(bounded_[one].geom, bounded_[other].geom);
+      if (pair >= 0) scratch.near.push_back(pair);
     }
   }
 }
@@ -148,19 +235,14 @@ void Cull::run(const mjData* d, Scratch& scratch) const noexcept {
     scratch.boxes[i] = world_bounds(bounded_[i].solid, pose_of_geom(d, bounded_[i].geom));
   }
   scratch.near.clear();
-  for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    const Candidate& c = candidates_[i];
-    const auto second = static_cast<std::size_t>(c.second);
-    if (c.with_plane) {
-      const Bounded& other = bounded_[second];
-      if (reaches_plane(d, c.first, other.solid, pose_of_geom(d, other.geom))) {
-        scratch.near.push_back(static_cast<int>(i));
-      }
-      continue;
+  for (const WithPlane& pair : with_plane_) {
+    const Bounded& other = bounded_[static_cast<std::size_t>(pair.other)];
+    if (reaches_plane(d, pair.plane, other.solid, pose_of_geom(d, other.geom))) {
+      scratch.near.push_back(pair.pair);
     }
-    const Box& first = scratch.boxes[static_cast<std::size_t>(c.first)];
-    if (!are_apart(first, scratch.boxes[second])) scratch.near.push_back(static_cast<int>(i));
   }
+  is_swept_ ? sweep(scratch) : find_all(scratch);
+  std::sort(scratch.near.begin(), scratch.near.end());
 }
 
 }  // namespace volcontact::adaptor

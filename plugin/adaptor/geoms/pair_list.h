@@ -37,21 +37,24 @@ std::vector<GeomPair> pairs_that_can_touch(const mjModel* m, const SceneKeys& ke
 /// Leaves out, step by step, the pairs whose bounds are apart. Const once made.
 class Cull {
  public:
-  /// `solids` has one entry per geom of the model; those of no pair are not looked at.
+  /// `solids` has one entry per geom of the model; those of no pair are not looked at. Refers to
+  /// `pairs`, which are in ascending order.
   Cull(const std::vector<GeomPair>& pairs, const std::vector<Shape>& solids);
 
   /// Bounds along x, y and z, in both orders: two boxes are compared by adding one to the other's
-  /// reverse. Most of the work of a scene with hundreds of pairs is this comparison.
+  /// reverse.
   using Two [[gnu::vector_size(16)]] = double;
   struct Box {
     std::array<Two, 3> ends;     ///< min, -max
     std::array<Two, 3> reverse;  ///< -max, min
   };
 
-  /// Memory of one call, reused.
+  /// Memory of one call, reused. What it holds changes no result.
   struct Scratch {
-    std::vector<Box> boxes;  ///< world bounds
-    std::vector<int> near;   ///< result: indices of pairs, ascending
+    std::vector<Box> boxes;   ///< world bounds
+    std::vector<int> sorted;  ///< solids by their lower ends, as they were sorted last
+    std::vector<double> low, high;
+    std::vector<int> near;  ///< result: indices of pairs, ascending
   };
 
   void run(const mjData* d, Scratch& scratch) const noexcept;
@@ -61,14 +64,20 @@ class Cull {
     int geom;
     Shape solid;
   };
-  struct Candidate {
-    int first;   // index into bounded_, or the geom of a plane
-    int second;  // index into bounded_
-    bool with_plane;
+  struct WithPlane {
+    int pair, plane;
+    int other;  // index into bounded_
   };
+  int pair_of(int a, int b) const noexcept;
+  void find_all(Scratch& scratch) const noexcept;
+  void sweep(Scratch& scratch) const noexcept;
 
+  const std::vector<GeomPair>* pairs_;
+  std::vector<int> row_;  // by geom: its first pair as `a`; one more at the end
   std::vector<Bounded> bounded_;
-  std::vector<Candidate> candidates_;
+  std::vector<int> bounded_of_geom_;  // -1: a plane, or in no pair
+  std::vector<WithPlane> with_plane_;
+  bool is_swept_ = false;  // whether there are so many pairs that a sweep finds them sooner
 };
 
 }  // namespace volcontact::adaptor

@@ -187,5 +187,51 @@ TEST_F(CullTest, KeepsPosesThatAreNoNumbersForTheEngineToReport) {
   EXPECT_EQ(with_geom_1, 6);
 }
 
+// So many pairs that they are swept, against the same in heaps of few, which are compared one by
+// one.
+TEST(Cull, SweptPairsAreThoseOfAComparisonOfAll) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform;
+  std::string bodies = "<geom type=\"plane\" size=\"1 1 1\"/>";
+  const char* shapes[] = {"type=\"sphere\" size=\".1\"", "type=\"box\" size=\".2 .05 .1\"",
+                          "type=\"capsule\" size=\".05 .2\""};
+  for (int i = 0; i < 90; ++i) {
+    const std::string mask = i % 7 == 0 ? " contype=\"2\" conaffinity=\"2\"" : "";
+    bodies += "<body><freejoint/><geom " + std::string(shapes[i % 3]) + mask + "/></body>";
+  }
+  const testing::ModelPointer m =
+      testing::compile("<mujoco><worldbody>" + bodies + "</worldbody></mujoco>");
+  const testing::DataPointer d = testing::make_data(m);
+  const std::vector<GeomPair> pairs = pairs_that_can_touch(m.get(), read_scene_keys(m.get()));
+  ASSERT_GT(pairs.size(), 2500u);
+  std::vector<Shape> solids;
+  for (int geom = 0; geom < m->ngeom; ++geom) solids.push_back(solid_of_geom(m.get(), geom));
+  const Cull swept(pairs, solids);
+  Cull::Scratch scratch, other;
+  std::size_t found = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const double spread = trial % 2 == 0 ? 2.0 : 0.5;
+    for (int i = 0; i < m->nq; ++i) {
+      const double number = uniform(random) - 0.5;
+      d->qpos[i] = trial % 10 > 6 ? d->qpos[i] + 0.01 * number : spread * number;
+    }
+    mj_forward(m.get(), d.get());
+    if (trial % 50 == 49) d->geom_xpos[3 * 17 + 1] = std::numeric_limits<double>::quiet_NaN();
+    swept.run(d.get(), scratch);
+    std::vector<int> expected;
+    constexpr std::size_t kHeap = 1000;
+    for (std::size_t first = 0; first < pairs.size(); first += kHeap) {
+      const std::vector<GeomPair> heap(
+          pairs.begin() + static_cast<std::ptrdiff_t>(first),
+          pairs.begin() + static_cast<std::ptrdiff_t>(std::min(first + kHeap, pairs.size())));
+      Cull(heap, solids).run(d.get(), other);
+      for (const int i : other.near) expected.push_back(i + static_cast<int>(first));
+    }
+    ASSERT_EQ(scratch.near, expected) << trial;
+    found += expected.size();
+  }
+  EXPECT_GT(found, 1000u);
+}
+
 }  // namespace
 }  // namespace volcontact::adaptor::pair_list_test
