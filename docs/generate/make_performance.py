@@ -47,7 +47,9 @@ GIVES = """\
 
 def render() -> str:
     """The whole page as Markdown text."""
-    page = "\n".join([_introduction(), _pairs(), _threads(), _peers(), meshes(table), _steps()])
+    page = "\n".join(
+        [_introduction(), _pairs(), _threads(), _peers(), meshes(table), _steps(), _many()]
+    )
     parts = (_wrapped(part) for part in re.split(r"\n\n+", page.strip()))
     return "\n\n".join(parts) + "\n"
 
@@ -314,6 +316,27 @@ def _steps() -> str:
         + "\n"
         + table(("asked", "", "measured"), checks)
         + f"\n**Slower than native contact:** {'; '.join(slower) or 'none'}.\n"
+    )
+
+
+def _many() -> str:
+    rows = [
+        (
+            row["bodies"],
+            f"{digits(1e3 * float(row['attach_s']))} ms",
+            f"{digits(float(row['kilobytes_per_geom']))} kB",
+            span(float(row["native_us"])),
+            span(float(row["volumetric_us"])),
+            f"{float(row['volumetric_us']) / float(row['native_us']):.2g}",
+        )
+        for row in read("many_bodies")
+    ]
+    titles = ("boxes", "`attach`", "memory a geom", "native", "volumetric", "by native")
+    return (
+        "## Many bodies\n\n"
+        "Free boxes that lie side by side on a floor (`many_bodies.py`). Any two of them could "
+        "touch; a pair costs only once its bounds meet. Memory: what `attach` adds to the most that "
+        "the process had; of few geoms it is the library's own.\n\n" + table(titles, rows)
     )
 
 

@@ -69,6 +69,7 @@ def benchmark(environment: Environment, arguments: list[str]) -> None:
         table.write_text(text[text.index("name,") :])  # what is before names this machine
     for script, table_name in (("step", "steps"), ("peers", "peers"), ("mesh", "mesh_pairs")):
         _measure(environment, f"{script}_benchmark", table_name)
+    environment.script("tests/benchmarks/many_bodies.py")
     try:
         environment.script("tests/benchmarks/simbody.py")
     except Stopped:
