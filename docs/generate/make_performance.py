@@ -335,8 +335,8 @@ def _many() -> str:
     return (
         "## Many bodies\n\n"
         "Free boxes that lie side by side on a floor (`many_bodies.py`). Any two of them could "
-        "touch; a pair costs only once its bounds meet. Memory: what `attach` adds to the most that "
-        "the process had; of few geoms it is the library's own.\n\n" + table(titles, rows)
+        "touch; a pair costs only once its bounds meet. Memory: what `attach` adds to the most "
+        "that the process had; of few geoms it is the library's own.\n\n" + table(titles, rows)
     )
 
 
