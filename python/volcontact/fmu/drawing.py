@@ -140,7 +140,7 @@ def _points(words: list[str]) -> list[tuple[np.ndarray, np.ndarray | None]]:
         count = int(numbers[0])
         cloud = np.array([float(n) for n in numbers[1 : 1 + 3 * count]]).reshape(-1, 3)
         return [(np.eye(4), cloud)]
-    return [(np.eye(4), _cloud(shape, [float(n) for n in numbers[:3] if _is_number(n)]))]
+    return [(np.eye(4), _cloud(shape, [float(n) for n in numbers[:4] if _is_number(n)]))]
 
 
 def _is_number(word: str) -> bool:
@@ -158,6 +158,8 @@ def _cloud(shape: str, p: list[float]) -> np.ndarray:
     def rings(*levels: tuple[float, float]) -> np.ndarray:
         return np.vstack([np.column_stack([r * ring, np.full(len(u), z)]) for r, z in levels])
 
+    if shape == "rounded_box":
+        return np.asarray(np.copysign(np.array(p[:3]) - p[3], ball) + p[3] * ball)
     if shape == "box":
         signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
         return np.asarray(signs * np.array(p[:3]))

@@ -11,6 +11,7 @@ import pytest
 
 import volcontact as vc
 from volcontact.cli import main
+from volcontact.fmu import drawing
 from volcontact.fmu.units import exponents, limits
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy is missing: pip install fmpy")
@@ -113,6 +114,30 @@ def test_documentation_draws_the_solids_and_lists_every_variable(tmp_path):
     assert page.count("<polygon") == 3  # two spheres and the table
     for variable in fmpy.read_model_description(str(path)).modelVariables:
         assert re.sub(r"\[\d+\]$", "", variable.name).removeprefix("der(") in page
+
+
+@pytest.mark.parametrize(
+    "solid",
+    [
+        vc.Sphere(0.1),
+        vc.Ellipsoid((0.1, 0.2, 0.3)),
+        vc.Capsule(0.1, 0.2),
+        vc.Cylinder(0.1, 0.2),
+        vc.Frustum(0.1, 0.2, 0.3),
+        vc.Box((0.1, 0.2, 0.3)),
+        vc.RoundedBox((0.1, 0.2, 0.3), 0.05),
+        vc.Torus(0.2, 0.05),
+    ],
+    ids=lambda solid: type(solid).__name__,
+)
+def test_the_drawing_of_a_solid_fills_its_bounds(solid):
+    text = vc.ContactModel(pairs=[vc.Pair(solid, vc.HalfSpace())], normal=vc.VolumeSpring()).text
+    (_, words), _ = drawing._solids(text)
+    ((pose, points),) = drawing._points(words)
+    assert (pose == np.eye(4)).all()
+    low, high = solid.bounds
+    assert points.min(axis=0) == pytest.approx(low, rel=1e-9)
+    assert points.max(axis=0) == pytest.approx(high, rel=1e-9)
 
 
 @pytest.mark.parametrize(
