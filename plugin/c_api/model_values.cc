@@ -116,8 +116,8 @@ ModelValues::SideName ModelValues::side_name(std::string_view name) const {
   require(error == std::errc() && tail.size() > 3 &&
               (tail.substr(0, 3) == "/a/" || tail.substr(0, 3) == "/b/"),
           "'" + whole + "' is no name: write pair/<index>/a/<parameter> or pair/<index>/b/...");
-  require(out.pair < pairs_.size(), "'" + whole + "': the model has " +
-                                        std::to_string(pairs_.size()) + " pairs, counted from 0");
+  require(out.pair < pairs_.size(), "'" + whole + "': the last pair of the model is number " +
+                                        std::to_string(pairs_.size() - 1));
   out.is_b = tail[1] == 'b';
   out.field = tail.substr(3);
   return out;

@@ -59,8 +59,9 @@ const std::vector<double>& NamedSolid::get(std::string_view name) const {
       known += key;
       names.push_back(key);
     }
-    require(false, std::string(name_of(shape)) + " has no parameter '" + std::string(name) +
-                       "'; it has " + (known.empty() ? "none" : known) + did_you_mean(name, names));
+    require(false, std::string(name_of(shape)) + " has no parameter '" + std::string(name) + "'" +
+                       (known.empty() ? ", nor any other" : "; it has " + known) +
+                       did_you_mean(name, names));
   }
   return found->second;
 }

@@ -54,7 +54,7 @@ TEST(CModel, SolidsOfAPairStayNumbersOfTheModel) {
   EXPECT_TRUE(fails(vc_model_set(model.get(), "pair/0/b/pose", pose, 7), VC_ERROR_ARGUMENT,
                     {"takes 16 numbers, got 7"}));
   EXPECT_TRUE(fails(set(model, "pair/3/a/radius", 1.0), VC_ERROR_ARGUMENT,
-                    {"the model has 1 pairs, counted from 0"}));
+                    {"the last pair of the model is number 0"}));
   EXPECT_TRUE(
       fails(set(model, "pair/0/radius", 1.0), VC_ERROR_ARGUMENT, {"pair/<index>/a/<parameter>"}));
 }

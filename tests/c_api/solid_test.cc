@@ -57,8 +57,8 @@ TEST(CSolid, MeshesAndPolytopesAreMadeOfPoints) {
   ASSERT_EQ(vc_solid_create_polytope(corners, 4, &made), 0) << vc_error();
   const Solid hull(made);
   EXPECT_DOUBLE_EQ(volume_of(hull), 1.0 / 6.0);
-  EXPECT_TRUE(
-      fails(vc_solid_set(hull.get(), "radius", corners, 1), VC_ERROR_ARGUMENT, {"it has none"}));
+  EXPECT_TRUE(fails(vc_solid_set(hull.get(), "radius", corners, 1), VC_ERROR_ARGUMENT,
+                    {", nor any other"}));
   EXPECT_LT(vc_solid_create_mesh(corners, 4, triangles, 3, &made), 0);  // open
   EXPECT_TRUE(fails(vc_solid_create_mesh(corners, 4, triangles, 0, &made), VC_ERROR_ARGUMENT,
                     {"0 triangles, must be more than 0"}));

@@ -134,9 +134,10 @@ std::string implicit_text(const mjModel* m, const SceneContact& contact, const P
   if (use.by_friction) return "always, for its friction";
   const Friction* friction = pair.model.laws().friction.get();
   const bool by_friction = friction && friction->states().empty();
-  if (!use.is_possible) return by_friction ? "where friction would reverse the slip" : "not needed";
+  if (!use.is_possible)
+    return by_friction ? "where friction would reverse the sliding within a step" : "not needed";
   char text[64];
-  std::snprintf(text, sizeof text, "from a patch of %.2g m^2 on", use.least_area);
+  std::snprintf(text, sizeof text, "where a patch is larger than %.2g m^2", use.least_area);
   return text;
 }
 

@@ -168,7 +168,7 @@ def test_description_says_what_was_understood():
     assert (pair["geom_a"], pair["geom_b"]) == ("floor", "ball")
     assert pair["engine"] == "closed_form"
     assert pair["because"] == "contype/conaffinity"
-    assert pair["implicit"] == "from a patch of 0.0005 m^2 on"  # h^2 k A/m = 0.05
+    assert pair["implicit"] == "where a patch is larger than 0.0005 m^2"  # h^2 k A/m = 0.05
     assert pair["stiffness"] == 1e8
     assert pair["sources"]["stiffness"] == "in series: volcontact/material/rubber (both)"
     assert description["warnings"] == []
