@@ -98,13 +98,13 @@ def _step_advice(model: mujoco.MjModel, description: dict[str, Any]) -> str:
     names, longest, implicit = stiffest
     if step <= longest:
         return (
-            f"steps of {step:g} s suit all pairs: explicit ones may be as long as {longest:.2g} s for "
+            f"steps of {step:g} s suit all pairs: explicit ones may last {longest:.2g} s for "
             f"the stiffest, {names}"
         )
     if implicit:
         return (
-            f"steps of {step:g} s are implicit where contact is stiff; explicit ones would have to be "
-            f"shorter than {longest:.2g} s for {names}"
+            f"steps of {step:g} s are implicit where contact is stiff; explicit ones would have to "
+            f"be shorter than {longest:.2g} s for {names}"
         )
     return ""
 
