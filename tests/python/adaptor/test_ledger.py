@@ -54,7 +54,7 @@ def run(target, integrator, behaviour, stiffness=SOFT):
     with vc.attach(model) as contact:
         (pair,) = contact.description["pairs"]
         # A whole face makes it stiff, the corners that it lands on do not.
-        assert ("from a patch" in pair["implicit"]) == (stiffness == STIFF)
+        assert ("where a patch" in pair["implicit"]) == (stiffness == STIFF)
         touched = False
         for i in range(STEPS):
             data = behaviour(model, data, i) or data
