@@ -45,7 +45,7 @@ class SceneContact {
   const std::vector<Shape>& solids() const { return solids_; }
   /// The pairs that can touch, and their contact models: each is made when it is first asked for.
   const std::vector<GeomPair>& pairs() const { return geom_pairs_; }
-  const PairContact& pair(int index) const noexcept {
+  const PairContact& pair(int index) const {
     return made_.get(static_cast<std::size_t>(index), [&] { return make_pair(index); });
   }
   std::size_t made_pairs() const { return made_.made(); }
