@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs scenes of metaworld, robosuite and gymnasium-robotics, as they are, under both contacts.
+"""Runs scenes of dm_control, metaworld, robosuite and gymnasium-robotics under both contacts.
 
     ./run python tests/benchmarks/third_party.py build/third_party --install
 
-The wheels (40, 527 and 26 MB) go into the folder given, without what they depend on: their MJCF is
+The wheels (43, 40, 527 and 26 MB) go into the folder given, without what they depend on: their MJCF is
 all that is needed. Each scene is compiled by MuJoCo, gets its data, and is then attached without a
 key in it. Writes one row a scene to results/third_party.csv; docs/generate/make_third_party.py
 makes the page. Needs MuJoCo 3.3 or later, to put robosuite's parts together.
@@ -27,7 +27,12 @@ import volcontact as vc
 from volcontact.simulation import warnings_of
 
 RESULT = Path(__file__).parent / "results" / "third_party.csv"
-PACKAGES = {"metaworld": "3.1.1", "robosuite": "1.5.2", "gymnasium-robotics": "1.4.2"}
+PACKAGES = {
+    "dm-control": "1.0.50",
+    "metaworld": "3.1.1",
+    "robosuite": "1.5.2",
+    "gymnasium-robotics": "1.4.2",
+}
 STEPS = 2000
 MATERIAL = {"stiffness": 1e9}  # k_v [N/m^3]; friction stays that of the geoms
 OPTIONS = {"mesh": "exact_or_hull"}
@@ -76,9 +81,37 @@ def assembled(arena: str, part: str, position: tuple[float, float, float], *, fr
     return make
 
 
+def on_a_floor(name: str, height: float) -> Maker:
+    """A walker above a plane, as the arenas of dm_control have it."""
+
+    def make(folder: Path) -> mujoco.MjModel:
+        scene = mujoco.MjSpec.from_file(str(folder / name))
+        scene.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=(10.0, 10.0, 0.1))
+        body = scene.worldbody.first_body()
+        body.pos = (0.0, 0.0, height)
+        if not body.joints:
+            body.add_freejoint()
+        return scene.compile()
+
+    return make
+
+
+SUITE, WALKERS = "dm_control/suite", "dm_control/locomotion/walkers/assets"
 METAWORLD = "metaworld/assets/sawyer_xyz"
 GYMNASIUM = "gymnasium_robotics/envs/assets"
+SUITE_SCENES = (
+    *("ball_in_cup", "cheetah", "dog", "finger", "fish", "hopper", "humanoid", "humanoid_CMU"),
+    *("manipulator", "quadruped", "stacker", "walker"),
+)
 SCENES: dict[tuple[str, str], Maker] = {
+    **{("dm-control", name): file(f"{SUITE}/{name}.xml") for name in SUITE_SCENES},
+    ("dm-control", "dog v2"): file(f"{WALKERS}/dog_v2/dog.xml"),
+    ("dm-control", "fruitfly"): file(f"{WALKERS}/fruitfly_v2/floor.xml"),
+    ("dm-control", "rodent"): on_a_floor(f"{WALKERS}/rodent.xml", 0.08),
+    ("dm-control", "humanoid CMU 2020"): on_a_floor(f"{WALKERS}/humanoid_CMU_V2020.xml", 1.1),
+    ("dm-control", "jumping ball"): on_a_floor(
+        f"{WALKERS}/jumping_ball/jumping_ball_with_head.xml", 0.3
+    ),
     ("metaworld", "assembly peg"): file(f"{METAWORLD}/sawyer_assembly_peg.xml"),
     ("metaworld", "peg insertion side"): file(f"{METAWORLD}/sawyer_peg_insertion_side.xml"),
     ("metaworld", "hammer"): file(f"{METAWORLD}/sawyer_hammer.xml"),
@@ -106,6 +139,15 @@ SCENES: dict[tuple[str, str], Maker] = {
     ),
     ("gymnasium-robotics", "half cheetah, implicitfast for RK4"): with_implicitfast(
         "gymnasium_robotics/envs/mujoco/assets/half_cheetah.xml"
+    ),
+    ("gymnasium-robotics", "hopper, implicitfast for RK4"): with_implicitfast(
+        "gymnasium_robotics/envs/mujoco/assets/hopper.xml"
+    ),
+    ("gymnasium-robotics", "humanoid, implicitfast for RK4"): with_implicitfast(
+        "gymnasium_robotics/envs/mujoco/assets/humanoid.xml"
+    ),
+    ("gymnasium-robotics", "walker, implicitfast for RK4"): with_implicitfast(
+        "gymnasium_robotics/envs/mujoco/assets/walker2d.xml"
     ),
 }
 

@@ -2,6 +2,7 @@
 #include "adaptor/step/contact_equations.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "adaptor/mujoco/sizes.h"
 
@@ -9,7 +10,18 @@ namespace volcontact::adaptor {
 namespace {
 
 using Vector = Eigen::Map<Eigen::VectorXd>;
-using ConstVector = Eigen::Map<const Eigen::VectorXd>;
+
+// The lower triangular L of L L', of a matrix that may be semidefinite.
+Mat3 root_of(Mat3 rest) {
+  Mat3 out = Mat3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    if (!(rest(k, k) > 0.0)) continue;
+    out.col(k) = rest.col(k) / std::sqrt(rest(k, k));
+    out.col(k).head(k).setZero();
+    rest -= out.col(k) * out.col(k).transpose();
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -22,61 +34,85 @@ void ContactEquations::solve(const ContactSpace& space, double step, std::vector
   }
 }
 
+void ContactEquations::make_slopes(int places) noexcept {
+  slopes_.assign(size(places), ContactSpace::Square::Zero());
+  for (const Column& column : columns) {
+    const int at = column.first % kRows;
+    slopes_[size(column.first / kRows)].block<3, 3>(at, at).noalias() +=
+        column.numbers * column.numbers.transpose();
+  }
+}
+
+template <int K>
+void ContactEquations::solve_blocks(const ContactSpace& space, double step,
+                                    BlockMatrix<K>& matrix, std::vector<double>& force) noexcept {
+  using Block = typename BlockMatrix<K>::Block;
+  using Part = typename BlockMatrix<K>::Vector;
+  const bool is_symmetric = space.matrix().is_symmetric();
+  const int count = static_cast<int>(active_.size());
+  matrix.reset(count, is_symmetric);
+  right_.resize(size(K * count));
+  for (int i = 0; i < count; ++i) {
+    const int place = active_[size(i)];
+    const Block left = step * factors_[size(place)].topLeftCorner<K, K>();
+    for (int k = 0; k < (is_symmetric ? i + 1 : count); ++k) {
+      const int other = active_[size(k)];
+      const Block moved = space.delassus(place, other).template topLeftCorner<K, K>() *
+                          factors_[size(other)].topLeftCorner<K, K>();
+      matrix(i, k).noalias() = left.transpose() * moved;
+    }
+    matrix(i, i).diagonal().array() += 1.0;
+    const Eigen::Map<const Part> motion(&response_[size(kRows * place)]);
+    Eigen::Map<Part> right(&right_[size(K * i)]);
+    right.noalias() = factors_[size(place)].topLeftCorner<K, K>().transpose() * motion;
+  }
+  matrix.factor();
+  matrix.solve(right_.data());
+  for (int i = 0; i < count; ++i) {
+    const int place = active_[size(i)];
+    Eigen::Map<Part>(&force[size(kRows * place)]).noalias() -=
+        factors_[size(place)].topLeftCorner<K, K>() *
+        Eigen::Map<const Part>(&right_[size(K * i)]);
+  }
+}
+
 void ContactEquations::solve_for_forces(const ContactSpace& space, double step,
                                         std::vector<double>& force,
                                         std::vector<double>& velocity) noexcept {
-  const int rows = space.rows(), n = static_cast<int>(columns.size());
-  const auto delassus = space.delassus();
-  force.resize(size(rows));
+  const int rows = space.rows();
+  make_slopes(space.places());
+  factors_.resize(slopes_.size());
+  active_.clear();
+  bool is_normal = true;
+  for (int place = 0; place < space.places(); ++place) {
+    const ContactSpace::Square& slope = slopes_[size(place)];
+    if (slope.isZero(0.0)) continue;
+    active_.push_back(place);
+    ContactSpace::Square& factor = factors_[size(place)];
+    factor.setZero();
+    factor.topLeftCorner<3, 3>() = root_of(slope.topLeftCorner<3, 3>());
+    factor.bottomRightCorner<3, 3>() = root_of(slope.bottomRightCorner<3, 3>());
+    is_normal = is_normal && slope.bottomRightCorner<3, 3>().isZero(0.0);
+  }
+  force.assign(constant.begin(), constant.end());
   velocity.resize(size(rows));
-  full_.assign(size(n), 0);
-  matrix_.reset(full_);
-  right_.resize(size(n));
   response_.resize(size(rows));
-  Vector u(velocity.data(), rows), f(force.data(), rows), response(response_.data(), rows);
-  f = ConstVector(constant.data(), rows);
-  u.noalias() = delassus.lazyProduct(f);
-  u = space.free_velocity() + step * u;
-  for (int i = 0; i < n; ++i) {
-    const Column& column = columns[size(i)];
-    // Lambda is symmetric: its rows are its columns.
-    response.noalias() =
-        delassus.middleRows<3>(column.first).transpose().lazyProduct(column.numbers);
-    for (int k = 0; k <= i; ++k) {
-      const Column& other = columns[size(k)];
-      matrix_(i, k) = step * other.numbers.dot(response.segment<3>(other.first));
-    }
-    matrix_(i, i) += 1.0;
-    right_[size(i)] = column.numbers.dot(u.segment<3>(column.first));
+  space.move_by_delassus(force.data(), response_.data());
+  if (is_normal) {
+    solve_blocks(space, step, normal_, force);
+  } else {
+    solve_blocks(space, step, all_, force);
   }
-  matrix_.factor();
-  matrix_.solve(right_.data(), 0, n);
-  for (int i = 0; i < n; ++i) {
-    const Column& column = columns[size(i)];
-    f.segment<3>(column.first) -= right_[size(i)] * column.numbers;
-  }
-  u.noalias() = delassus.lazyProduct(f);
-  u = space.free_velocity() + step * u;
+  space.move_by_delassus(force.data(), velocity.data());
 }
 
 // Adds h J' C J of one place to the matrix.
 void ContactEquations::add_slope(const ContactSpace& space, int place, double step) noexcept {
-  const Slope slope = step * slopes_[size(place)];
-  for (const ContactSpace::Side& from : space.sides(place)) {
-    const ContactSpace::Rows jacobian = space.jacobian(from);
-    response_.resize(size(kRows * from.size()));
-    Eigen::Map<Eigen::Matrix<double, kRows, Eigen::Dynamic>> response(response_.data(), kRows,
-                                                                      from.size());
-    for (int k = 0; k < from.size(); ++k) response.col(k).noalias() = slope * jacobian.col(k);
-    for (const ContactSpace::Side& to : space.sides(place)) {
-      const ContactSpace::Rows other = space.jacobian(to);
-      for (int i = to.begin; i < to.end; ++i) {
-        const ContactSpace::Block column = other.col(i - to.begin);
-        const int begin = std::max(from.begin, matrix_.first(i)), end = std::min(from.end, i + 1);
-        for (int k = begin; k < end; ++k) {
-          matrix_.add_both(i, k, column.dot(response.col(k - from.begin)));
-        }
-      }
+  const ContactSpace::Square slope = step * slopes_[size(place)];
+  for (const ContactSpace::Move& from : space.moves(place)) {
+    const ContactSpace::Block response = slope * from.column;
+    for (const ContactSpace::Move& to : space.moves(place)) {
+      if (to.dof >= from.dof) matrix_.add_both(to.dof, from.dof, to.column.dot(response));
     }
   }
 }
@@ -85,12 +121,7 @@ void ContactEquations::solve_for_dofs(const ContactSpace& space, double step,
                                       std::vector<double>& force,
                                       std::vector<double>& velocity) noexcept {
   const int rows = space.rows(), n = space.dofs();
-  slopes_.assign(size(rows / kRows), Slope::Zero());
-  for (const Column& column : columns) {
-    const int at = column.first % kRows;
-    slopes_[size(column.first / kRows)].block<3, 3>(at, at).noalias() +=
-        column.numbers * column.numbers.transpose();
-  }
+  make_slopes(space.places());
   matrix_.reset(space.envelope(), space.matrix().is_symmetric());
   matrix_.add(space.matrix());
   // What the contacts would bear at the velocities of now.
@@ -103,6 +134,7 @@ void ContactEquations::solve_for_dofs(const ContactSpace& space, double step,
         slopes_[size(place)] * u.segment<kRows>(place * kRows);
   };
   for (int place = 0; place < rows / kRows; ++place) {
+    if (slopes_[size(place)].isZero(0.0)) continue;
     bear(place);
     add_slope(space, place, step);
   }

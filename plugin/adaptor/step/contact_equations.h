@@ -3,15 +3,15 @@
 
 #include <vector>
 
+#include "adaptor/step/block_matrix.h"
 #include "adaptor/step/contact_space.h"
 
 namespace volcontact::adaptor {
 
 /// The equations of a linearly implicit step: f = e - C u' at contact places, u' = u_free + h
-/// Lambda f, with C = L L' positive semidefinite and the columns of L within three coordinates of a
-/// place each. docs/theory.md, "Implicit step". Memory is reused from solution to solution.
+/// Lambda f, with C = L L' positive semidefinite, of blocks of three coordinates of a place. docs/theory.md, "Implicit step". Memory is reused from solution to solution.
 struct ContactEquations {
-  /// A column of L: its numbers and the first of the three coordinates they are for.
+  /// A part c c' of C: the numbers of c and the first of the three coordinates they are for.
   struct Column {
     Vec3 numbers;
     int first;
@@ -19,10 +19,9 @@ struct ContactEquations {
   std::vector<Column> columns;
   std::vector<double> constant;  ///< e
 
-  /// Writes f and u'. In the form that is the smaller one: for the forces,
+  /// Writes f and u'. In the form of less work: for the forces,
   /// (1 + h L' Lambda L) y = L' (u_free + h Lambda e), f = e - L y, or for the velocities,
-  /// (H + h J' C J) dv = h (t + J' (e - C u)), the only one where H is not symmetric or joins
-  /// trees.
+  /// (H + h J' C J) dv = h (t + J' (e - C u)).
   void solve(const ContactSpace& space, double step, std::vector<double>& force,
              std::vector<double>& velocity) noexcept;
 
@@ -33,14 +32,20 @@ struct ContactEquations {
                       std::vector<double>& velocity) noexcept;
 
  private:
-  using Slope = Eigen::Matrix<double, kRows, kRows>;
-
+  void make_slopes(int places) noexcept;
   void add_slope(const ContactSpace& space, int place, double step) noexcept;
+  // Forces by the first K coordinates of each place alone: the others have no columns.
+  template <int K>
+  void solve_blocks(const ContactSpace& space, double step, BlockMatrix<K>& matrix,
+                    std::vector<double>& force) noexcept;
 
   EnvelopeMatrix matrix_;
-  std::vector<Slope> slopes_;  // C by places
+  BlockMatrix<3> normal_;
+  BlockMatrix<kRows> all_;
+  std::vector<ContactSpace::Square> slopes_;   // C by places
+  std::vector<ContactSpace::Square> factors_;  // L of C = L L'
+  std::vector<int> active_;                    // the places with columns
   std::vector<double> right_, response_;
-  std::vector<int> full_;
 };
 
 }  // namespace volcontact::adaptor

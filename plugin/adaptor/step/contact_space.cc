@@ -10,27 +10,19 @@ namespace volcontact::adaptor {
 
 // Adds the motion that each degree of freedom beyond the world gives the body at the place.
 void ContactSpace::add_body(const mjModel* m, const mjData* d, const ContactPlace& place, int body,
-                            double sign, const Side& side) noexcept {
+                            double sign) noexcept {
   while (body > 0 && m->body_dofnum[body] == 0) body = m->body_parentid[body];
   const Vec3 offset = place.point - vec3_at(d->subtree_com, m->body_rootid[body]);
   const Mat3 to_site = sign * place.axes.transpose();
-  double* columns = &jacobian_[at(side)];
   int dof = m->body_dofadr[body] + m->body_dofnum[body] - 1;
   for (; dof >= 0; dof = m->dof_parentid[dof]) {
     const Vec3 angular = vec3_at(d->cdof, 2 * dof);
     const Vec3 turn = to_site * angular;
     const Vec3 way = to_site * (vec3_at(d->cdof, 2 * dof + 1) + angular.cross(offset));
     const double column[kRows] = {way[2], turn[0], turn[1], way[0], way[1], turn[2]};
-    double* to = columns + kRows * (matrix_.number(dof) - side.begin);
+    double* to = &dense_[size(kRows * matrix_.number(dof))];
     for (int i = 0; i < kRows; ++i) to[i] += column[i];
   }
-}
-
-ContactSpace::Side ContactSpace::add_side(int tree) noexcept {
-  const DofRange& range = matrix_.tree(tree);
-  const std::size_t start = jacobian_.size();
-  jacobian_.resize(start + size(kRows * range.size()), 0.0);
-  return {range.begin, range.end, static_cast<std::ptrdiff_t>(start)};
 }
 
 void ContactSpace::add_place(const mjModel* m, const mjData* d, const ContactPlace& place,
@@ -38,15 +30,26 @@ void ContactSpace::add_place(const mjModel* m, const mjData* d, const ContactPla
   const auto [tree_a, tree_b] = trees;
   std::array<Side, 2> sides;
   int count = 0;
+  const auto add_side = [&](int tree) {
+    sides[size(count++)] = {matrix_.tree(tree).begin, matrix_.tree(tree).end, 0};
+  };
   if (tree_a >= 0) {
-    sides[0] = add_side(tree_a);
-    add_body(m, d, place, place.body_a, 1.0, sides[0]);
-    count = 1;
+    add_side(tree_a);
+    add_body(m, d, place, place.body_a, 1.0);
   }
   if (tree_b >= 0) {
-    if (tree_b != tree_a) sides[size(count++)] = add_side(tree_b);
-    add_body(m, d, place, place.body_b, -1.0, sides[size(count - 1)]);
+    if (tree_b != tree_a) add_side(tree_b);
+    add_body(m, d, place, place.body_b, -1.0);
   }
+  for (int side = 0; side < count; ++side) {
+    for (int dof = sides[size(side)].begin; dof < sides[size(side)].end; ++dof) {
+      Eigen::Map<Block> column(&dense_[size(kRows * dof)]);
+      if (column.isZero(0.0)) continue;
+      moves_.push_back({column, dof});
+      column.setZero();
+    }
+  }
+  move_begin_.push_back(moves_.size());
   sides_.push_back(sides);
   side_count_.push_back(count);
 }
@@ -59,106 +62,115 @@ void ContactSpace::add_driven(const ContactPlace& place) noexcept {
 }
 
 // All that a place moves has to do with each other.
-void ContactSpace::widen_envelope(std::size_t place) noexcept {
+void ContactSpace::widen_envelope(int place) noexcept {
   int least = dofs();
-  for (const bool finds : {true, false}) {
-    for (const Side& side : sides(static_cast<int>(place))) {
-      const Rows rows = jacobian(side);
-      for (int i = 0; i < side.size(); ++i) {
-        if (rows.col(i).isZero(0.0)) continue;
-        int& first = envelope_[size(side.begin + i)];
-        if (finds) {
-          least = std::min(least, side.begin + i);
-        } else {
-          first = std::min(first, least);
-        }
-      }
-    }
+  for (const Move& move : moves(place)) least = std::min(least, move.dof);
+  for (const Move& move : moves(place)) {
+    int& first = envelope_[size(move.dof)];
+    first = std::min(first, least);
   }
 }
 
 void ContactSpace::build_mobility() noexcept {
-  mobility_.resize(sides_.size());
-  if (!matrix_.is_by_trees()) {
-    prefers_dofs_ = true;
-    for (int place = 0; place < static_cast<int>(sides_.size()); ++place) respond(place);
-    return;
+  mobility_.resize(size(places()));
+  response_.clear();
+  for (int place = 0; place < places(); ++place) {
+    respond(place);
+    mobility_[size(place)] = moved_by(place, place);
   }
-  response_ = jacobian_;
-  for (std::size_t place = 0; place < sides_.size(); ++place) {
-    mobility_[place].setZero();
-    for (const Side& side : sides(static_cast<int>(place))) {
-      matrix_.factor().solve<kRows>(&response_[at(side)], side.begin, side.end);
-      const Rows moves = jacobian(side), responds = response(side);
-      for (int i = 0; i < side.size(); ++i) {
-        mobility_[place].noalias() += moves.col(i) * responds.col(i).transpose();
-      }
-    }
-  }
-  double work = 0.0;
-  for (std::size_t i = 0; i < envelope_.size(); ++i) {
-    const double width = static_cast<double>(i) + 1.0 - envelope_[i];
-    work += 0.5 * width * width;
-  }
-  const double all = rows();
-  prefers_dofs_ = work <= all * all * all / 2.0;  // as measured
+  choose_form();
   if (!prefers_dofs_) build_delassus();
 }
 
-// The mobility of one place, where what it moves moves other trees.
-void ContactSpace::respond(int place) noexcept {
-  response_.assign(size(kRows * dofs()), 0.0);
-  for (const Side& side : sides(place)) {
-    std::copy_n(&jacobian_[at(side)], kRows * side.size(), &response_[size(kRows * side.begin)]);
+// The form of less work, counted in multiplications and weighed as measured.
+void ContactSpace::choose_form() noexcept {
+  constexpr double kBlocks = 20.0, kPairs = 120.0;
+  double by_dofs = 0.0;
+  for (std::size_t i = 0; i < envelope_.size(); ++i) {
+    const double width = static_cast<double>(i) + 1.0 - envelope_[i];
+    by_dofs += 0.5 * width * width;
   }
-  matrix_.factor().solve<kRows>(response_.data(), 0, dofs());
-  const Rows responds(response_.data(), kRows, dofs());
-  mobility_[size(place)].setZero();
-  for (const Side& side : sides(place)) {
-    const Rows moves = jacobian(side);
-    for (int i = 0; i < side.size(); ++i) {
-      mobility_[size(place)].noalias() += moves.col(i) * responds.col(side.begin + i).transpose();
+  for (int place = 0; place < places(); ++place) {
+    const double count = static_cast<double>(moves(place).size());
+    by_dofs += kRows * count * count;
+  }
+  const double count = places();
+  prefers_dofs_ = by_dofs <= (kBlocks * count + kPairs) * count * count;
+}
+
+// H^-1 J' of one place: of its trees, where H has no entries between trees, else of all.
+void ContactSpace::respond(int place) noexcept {
+  std::array<Side, 2>& sides = sides_[size(place)];
+  if (!matrix_.is_by_trees()) {
+    sides[0] = {0, dofs(), 0};
+    side_count_[size(place)] = 1;
+  }
+  for (int i = 0; i < side_count_[size(place)]; ++i) {
+    Side& side = sides[size(i)];
+    side.start = response_.size();
+    response_.resize(side.start + size(kRows * (side.end - side.begin)), 0.0);
+    double* const at = &response_[side.start];
+    for (const Move& move : moves(place)) {
+      if (move.dof < side.begin || move.dof >= side.end) continue;
+      std::copy_n(move.column.data(), kRows, at + kRows * (move.dof - side.begin));
+    }
+    matrix_.factor().solve<kRows>(at, side.begin, side.end);
+  }
+}
+
+// The block of Lambda by which forces at `other` move `place`.
+ContactSpace::Square ContactSpace::moved_by(int place, int other) const noexcept {
+  Square out = Square::Zero();
+  for (const Side& side : sides(other)) {
+    for (const Move& move : moves(place)) {
+      if (move.dof < side.begin || move.dof >= side.end) continue;
+      const Eigen::Map<const Block> response(
+          &response_[side.start + size(kRows * (move.dof - side.begin))]);
+      out.noalias() += move.column * response.transpose();
     }
   }
+  return out;
 }
 
 void ContactSpace::build_delassus() noexcept {
-  delassus_.assign(size(rows()) * size(rows()), 0.0);
-  Eigen::Map<RowMajor> delassus(delassus_.data(), rows(), rows());
-  const int places = static_cast<int>(sides_.size());
-  for (int i = 0; i < places; ++i) {
-    for (int k = 0; k <= i; ++k) {
-      for (const Side& side : sides(i)) {
-        for (const Side& other : sides(k)) {
-          if (side.begin != other.begin) continue;
-          delassus.block<kRows, kRows>(kRows * i, kRows * k).noalias() +=
-              jacobian(side).lazyProduct(response(other).transpose());
-        }
-      }
-      if (k == i) continue;
-      delassus.block<kRows, kRows>(kRows * k, kRows * i) =
-          delassus.block<kRows, kRows>(kRows * i, kRows * k).transpose();
+  const int count = places();
+  delassus_.resize(size(count) * size(count));
+  for (int i = 0; i < count; ++i) {
+    const int end = matrix_.matrix().is_symmetric() ? i + 1 : count;
+    for (int k = 0; k < end; ++k) {
+      delassus_[size(i) * size(count) + size(k)] = i == k ? mobility_[size(i)] : moved_by(i, k);
     }
   }
 }
 
-void ContactSpace::add_load(const double* f, double* load) const noexcept {
-  for (std::size_t place = 0; place < sides_.size(); ++place) {
-    const Eigen::Map<const Block> force(f + place * size(kRows));
-    for (const Side& side : sides(static_cast<int>(place))) {
-      const Rows moves = jacobian(side);
-      for (int i = 0; i < side.size(); ++i) load[side.begin + i] += moves.col(i).dot(force);
+void ContactSpace::move_by_delassus(const double* f, double* u) const noexcept {
+  const int count = places();
+  const bool is_symmetric = matrix_.matrix().is_symmetric();
+  std::fill(u, u + rows(), 0.0);
+  for (int i = 0; i < count; ++i) {
+    Eigen::Map<Block> motion(u + kRows * i);
+    const Eigen::Map<const Block> force(f + kRows * i);
+    for (int k = 0; k < (is_symmetric ? i + 1 : count); ++k) {
+      const Square& block = delassus(i, k);
+      motion.noalias() += block * Eigen::Map<const Block>(f + kRows * k);
+      if (!is_symmetric || k == i) continue;
+      Eigen::Map<Block>(u + kRows * k).noalias() += block.transpose() * force;
     }
+  }
+  for (std::size_t i = 0; i < free_.size(); ++i) u[i] = free_[i] + step_ * u[i];
+}
+
+void ContactSpace::add_load(const double* f, double* load) const noexcept {
+  for (int place = 0; place < places(); ++place) {
+    const Eigen::Map<const Block> force(f + kRows * place);
+    for (const Move& move : moves(place)) load[move.dof] += move.column.dot(force);
   }
 }
 
 void ContactSpace::add_motion(const double* x, double* u) const noexcept {
-  for (std::size_t place = 0; place < sides_.size(); ++place) {
-    Eigen::Map<Block> motion(u + place * size(kRows));
-    for (const Side& side : sides(static_cast<int>(place))) {
-      const Rows moves = jacobian(side);
-      for (int i = 0; i < side.size(); ++i) motion += x[side.begin + i] * moves.col(i);
-    }
+  for (int place = 0; place < places(); ++place) {
+    Eigen::Map<Block> motion(u + kRows * place);
+    for (const Move& move : moves(place)) motion += x[move.dof] * move.column;
   }
 }
 
@@ -189,11 +201,13 @@ void ContactSpace::build(const mjModel* m, mjData* d, Damping damping,
   envelope_.assign(matrix_.envelope().begin(), matrix_.envelope().end());
   sides_.clear();
   side_count_.clear();
-  jacobian_.clear();
+  moves_.clear();
+  move_begin_.assign(1, 0);
   known_.resize(size(matrix_.size()));
+  dense_.assign(size(kRows * dofs()), 0.0);
   for (const int place : islands.places(island)) {
     add_place(m, d, places[size(place)], islands.trees_of(place));
-    widen_envelope(sides_.size() - 1);
+    widen_envelope(this->places() - 1);
   }
   generalized_.resize(known_.size());
   for (std::size_t i = 0; i < known_.size(); ++i) {

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/step/block_matrix.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "core/support/random.h"
+
+namespace volcontact::adaptor::block_matrix_test {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// The unit matrix and one that is semidefinite, of half the rank and up to 1e6 as large; with a
+// part that is not symmetric where it is asked for.
+template <int K>
+void expect_solves(int count, bool is_symmetric) {
+  test::Random random(7);
+  BlockMatrix<K> matrix;
+  const int n = K * count;
+  const auto fill = [&](Eigen::Index rows, Eigen::Index columns) {
+    MatrixXd out(rows, columns);
+    for (double& x : out.reshaped()) x = random.uniform(-1.0, 1.0);
+    return out;
+  };
+  const MatrixXd root = 1e3 * fill(n, (n + 1) / 2), turn = fill(n, n);
+  MatrixXd dense = MatrixXd::Identity(n, n) + root * root.transpose();
+  if (!is_symmetric) dense += 10.0 * (turn - turn.transpose());
+  matrix.reset(count, is_symmetric);
+  for (int i = 0; i < count; ++i) {
+    for (int k = 0; k < (is_symmetric ? i + 1 : count); ++k) {
+      matrix(i, k) = dense.block<K, K>(K * i, K * k);
+    }
+  }
+  const VectorXd right = fill(n, 1);
+  VectorXd x = right;
+  matrix.factor();
+  matrix.solve(x.data());
+  // As far from the right side as rounding of the largest entries takes it.
+  EXPECT_LT((dense * x - right).norm(), 1e-13 * dense.norm() * x.norm() + 1e-12);
+  EXPECT_LT((x - dense.partialPivLu().solve(right)).norm(), 1e-7 * x.norm());
+}
+
+TEST(BlockMatrix, SolvesAsTheWholeMatrix) {
+  for (const bool is_symmetric : {true, false}) {
+    for (const int count : {1, 2, 5, 13}) {
+      expect_solves<3>(count, is_symmetric);
+      expect_solves<6>(count, is_symmetric);
+    }
+  }
+}
+
+TEST(BlockMatrix, SolvesForNothing) {
+  BlockMatrix<3> matrix;
+  matrix.reset(0, true);
+  matrix.factor();
+  matrix.solve(nullptr);
+}
+
+}  // namespace
+}  // namespace volcontact::adaptor::block_matrix_test
