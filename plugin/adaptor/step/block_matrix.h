@@ -2,15 +2,16 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
 namespace volcontact::adaptor {
 
-/// A square matrix of full blocks of K x K numbers, factored into L D U by blocks, without exchange
-/// of rows: for the unit matrix plus one whose symmetric part is positive semidefinite. Memory is
-/// reused from matrix to matrix.
+/// A square matrix of full blocks of K x K numbers, and its Cholesky factor, or L and U without
+/// exchange of rows where it is not symmetric: for matrices whose symmetric part is positive
+/// definite. Memory is reused from matrix to matrix.
 template <int K>
 class BlockMatrix {
  public:
@@ -21,34 +22,26 @@ class BlockMatrix {
   void reset(int count, bool is_symmetric) {
     count_ = count;
     is_symmetric_ = is_symmetric;
-    const std::size_t size = static_cast<std::size_t>(count) * static_cast<std::size_t>(count);
-    blocks_.resize(size);
-    scaled_.resize(size);
+    const std::size_t rows = static_cast<std::size_t>(count);
+    blocks_.resize(rows * rows);
+    inverse_.resize(rows);
   }
 
   /// Block (i, k); of a symmetric matrix with k <= i.
   Block& operator()(int i, int k) { return blocks_[index(i, k)]; }
 
-  /// In place. Below the diagonal L D, on it the inverse of D, above it U'; L apart.
+  /// In place: blocks of L below the diagonal, and of U, transposed, above it.
   void factor() {
     for (int k = 0; k < count_; ++k) {
-      for (int before = 0; before < k; ++before) {
-        at(k, k).noalias() -= at(k, before) * upper(before, k).transpose();
-      }
-      const Block inverse = at(k, k).inverse();
-      at(k, k) = inverse;
+      subtract_before(k, k);
+      factor_block(k);
       for (int i = k + 1; i < count_; ++i) {
-        Block& below = at(i, k);
-        for (int before = 0; before < k; ++before) {
-          below.noalias() -= at(i, before) * upper(before, k).transpose();
-        }
-        scaled_[index(i, k)].noalias() = below * inverse;
+        subtract_before(i, k);
+        divide(k, (*this)(i, k), true);
         if (is_symmetric_) continue;
-        Block beside = at(k, i);
-        for (int before = 0; before < k; ++before) {
-          beside.noalias() -= at(k, before) * upper(before, i).transpose();
-        }
-        at(k, i).noalias() = (inverse * beside).transpose();
+        subtract_before(k, i);
+        (*this)(k, i).transposeInPlace();
+        divide(k, (*this)(k, i), false);
       }
     }
   }
@@ -56,21 +49,68 @@ class BlockMatrix {
   /// After `factor`: solves for one right side, K numbers a block, in place.
   void solve(double* x) const {
     for (int i = 0; i < count_; ++i) {
-      for (int k = 0; k < i; ++k) of(x, i).noalias() -= scaled_[index(i, k)] * of(x, k);
+      Eigen::Map<Vector> out = of(x, i);
+      for (int k = 0; k < i; ++k) out.noalias() -= at(i, k) * of(x, k);
+      const Block& block = at(i, i);
+      for (int r = 0; r < K; ++r) {
+        for (int c = 0; c < r; ++c) out[r] -= block(r, c) * out[c];
+        if (is_symmetric_) out[r] *= inverse(i)[r];
+      }
     }
-    for (int i = 0; i < count_; ++i) of(x, i) = (blocks_[index(i, i)] * of(x, i)).eval();
-    for (int i = count_ - 1; i > 0; --i) {
-      for (int k = 0; k < i; ++k) of(x, k).noalias() -= upper(k, i).transpose() * of(x, i);
+    for (int i = count_ - 1; i >= 0; --i) {
+      Eigen::Map<Vector> out = of(x, i);
+      const Block& block = at(i, i);
+      for (int r = K - 1; r >= 0; --r) {
+        for (int c = r + 1; c < K; ++c) {
+          out[r] -= (is_symmetric_ ? block(c, r) : block(r, c)) * out[c];
+        }
+        out[r] *= inverse(i)[r];
+      }
+      for (int k = 0; k < i; ++k) of(x, k).noalias() -= upper(k, i).transpose() * out;
     }
   }
 
  private:
   static Eigen::Map<Vector> of(double* x, int i) { return Eigen::Map<Vector>(x + K * i); }
-  Block& at(int i, int k) { return blocks_[index(i, k)]; }
+  const Block& at(int i, int k) const { return blocks_[index(i, k)]; }
   // The transpose of block (k, i) of U, k < i.
-  const Block& upper(int k, int i) const {
-    return is_symmetric_ ? scaled_[index(i, k)] : blocks_[index(k, i)];
+  const Block& upper(int k, int i) const { return is_symmetric_ ? at(i, k) : at(k, i); }
+  const Vector& inverse(int i) const { return inverse_[static_cast<std::size_t>(i)]; }
+
+  // What the columns factored so far make of block (i, k).
+  void subtract_before(int i, int k) {
+    Block sum = (*this)(i, k);
+    for (int before = 0; before < std::min(i, k); ++before) {
+      sum.noalias() -= at(i, before) * upper(before, k).transpose();
+    }
+    (*this)(i, k) = sum;
   }
+
+  // L and U of a block of the diagonal, L with ones on its diagonal where it is not symmetric.
+  void factor_block(int k) {
+    Block& block = (*this)(k, k);
+    Vector& inverse = inverse_[static_cast<std::size_t>(k)];
+    for (int c = 0; c < K; ++c) {
+      inverse[c] = 1.0 / (is_symmetric_ ? std::sqrt(block(c, c)) : block(c, c));
+      for (int r = c + 1; r < K; ++r) block(r, c) *= inverse[c];
+      for (int j = c + 1; j < K; ++j) {
+        const double by = is_symmetric_ ? block(j, c) : block(c, j);
+        for (int r = is_symmetric_ ? j : c + 1; r < K; ++r) block(r, j) -= block(r, c) * by;
+      }
+    }
+  }
+
+  // x U^-1, or x L'^-1, of the block k of the diagonal.
+  void divide(int k, Block& x, bool by_upper) const {
+    const Block& block = at(k, k);
+    for (int c = 0; c < K; ++c) {
+      for (int b = 0; b < c; ++b) {
+        x.col(c) -= (by_upper && !is_symmetric_ ? block(b, c) : block(c, b)) * x.col(b);
+      }
+      if (by_upper || is_symmetric_) x.col(c) *= inverse(k)[c];
+    }
+  }
+
   std::size_t index(int i, int k) const {
     return static_cast<std::size_t>(i) * static_cast<std::size_t>(count_) +
            static_cast<std::size_t>(k);
@@ -78,7 +118,8 @@ class BlockMatrix {
 
   int count_ = 0;
   bool is_symmetric_ = true;
-  std::vector<Block> blocks_, scaled_;
+  std::vector<Block> blocks_;
+  std::vector<Vector> inverse_;  // of U's diagonal
 };
 
 }  // namespace volcontact::adaptor

@@ -25,7 +25,7 @@ Mat3 root_of(Mat3 rest) {
 
 }  // namespace
 
-void ContactEquations::solve(const ContactSpace& space, double step, std::vector<double>& force,
+void ContactEquations::solve(ContactSpace& space, double step, std::vector<double>& force,
                              std::vector<double>& velocity) noexcept {
   if (space.prefers_dofs()) {
     solve_for_dofs(space, step, force, velocity);
@@ -48,7 +48,7 @@ void ContactEquations::solve_blocks(const ContactSpace& space, double step,
                                     BlockMatrix<K>& matrix, std::vector<double>& force) noexcept {
   using Block = typename BlockMatrix<K>::Block;
   using Part = typename BlockMatrix<K>::Vector;
-  const bool is_symmetric = space.matrix().is_symmetric();
+  const bool is_symmetric = space.is_symmetric();
   const int count = static_cast<int>(active_.size());
   matrix.reset(count, is_symmetric);
   right_.resize(size(K * count));
@@ -117,13 +117,13 @@ void ContactEquations::add_slope(const ContactSpace& space, int place, double st
   }
 }
 
-void ContactEquations::solve_for_dofs(const ContactSpace& space, double step,
+void ContactEquations::solve_for_dofs(ContactSpace& space, double step,
                                       std::vector<double>& force,
                                       std::vector<double>& velocity) noexcept {
   const int rows = space.rows(), n = space.dofs();
   make_slopes(space.places());
-  matrix_.reset(space.envelope(), space.matrix().is_symmetric());
-  matrix_.add(space.matrix());
+  matrix_.reset(space.envelope(), space.is_symmetric());
+  space.matrix().add_to(matrix_);
   // What the contacts would bear at the velocities of now.
   force.assign(constant.begin(), constant.end());
   velocity.resize(size(rows));

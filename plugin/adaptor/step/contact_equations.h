@@ -22,13 +22,13 @@ struct ContactEquations {
   /// Writes f and u'. In the form of less work: for the forces,
   /// (1 + h L' Lambda L) y = L' (u_free + h Lambda e), f = e - L y, or for the velocities,
   /// (H + h J' C J) dv = h (t + J' (e - C u)).
-  void solve(const ContactSpace& space, double step, std::vector<double>& force,
+  void solve(ContactSpace& space, double step, std::vector<double>& force,
              std::vector<double>& velocity) noexcept;
 
   // The two forms, of which a test wants both.
   void solve_for_forces(const ContactSpace& space, double step, std::vector<double>& force,
                         std::vector<double>& velocity) noexcept;
-  void solve_for_dofs(const ContactSpace& space, double step, std::vector<double>& force,
+  void solve_for_dofs(ContactSpace& space, double step, std::vector<double>& force,
                       std::vector<double>& velocity) noexcept;
 
  private:

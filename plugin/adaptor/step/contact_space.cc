@@ -28,30 +28,19 @@ void ContactSpace::add_body(const mjModel* m, const mjData* d, const ContactPlac
 void ContactSpace::add_place(const mjModel* m, const mjData* d, const ContactPlace& place,
                              std::pair<int, int> trees) noexcept {
   const auto [tree_a, tree_b] = trees;
-  std::array<Side, 2> sides;
-  int count = 0;
-  const auto add_side = [&](int tree) {
-    sides[size(count++)] = {matrix_.tree(tree).begin, matrix_.tree(tree).end, 0};
-  };
-  if (tree_a >= 0) {
-    add_side(tree_a);
-    add_body(m, d, place, place.body_a, 1.0);
-  }
-  if (tree_b >= 0) {
-    if (tree_b != tree_a) add_side(tree_b);
-    add_body(m, d, place, place.body_b, -1.0);
-  }
-  for (int side = 0; side < count; ++side) {
-    for (int dof = sides[size(side)].begin; dof < sides[size(side)].end; ++dof) {
+  if (tree_a >= 0) add_body(m, d, place, place.body_a, 1.0);
+  if (tree_b >= 0) add_body(m, d, place, place.body_b, -1.0);
+  const auto take = [&](int tree) {
+    for (int dof = matrix_.tree(tree).begin; dof < matrix_.tree(tree).end; ++dof) {
       Eigen::Map<Block> column(&dense_[size(kRows * dof)]);
       if (column.isZero(0.0)) continue;
       moves_.push_back({column, dof});
       column.setZero();
     }
-  }
+  };
+  if (tree_a >= 0) take(tree_a);
+  if (tree_b >= 0 && tree_b != tree_a) take(tree_b);
   move_begin_.push_back(moves_.size());
-  sides_.push_back(sides);
-  side_count_.push_back(count);
 }
 
 // What moves at the place without any degree of freedom.
@@ -71,15 +60,128 @@ void ContactSpace::widen_envelope(int place) noexcept {
   }
 }
 
-void ContactSpace::build_mobility() noexcept {
-  mobility_.resize(size(places()));
-  response_.clear();
+// J through the factors of Mh, which fill in nothing but what carries.
+void ContactSpace::respond() noexcept {
+  const TreeMatrix& factor = matrix_.free_factor();
+  carried_.clear();
+  carried_begin_.assign(1, 0);
+  is_massed_ = false;
   for (int place = 0; place < places(); ++place) {
-    respond(place);
-    mobility_[size(place)] = moved_by(place, place);
+    support_.clear();
+    for (const Move& move : moves(place)) support_.push_back(move.dof);
+    matrix_.close(support_);
+    const auto put = [&] {
+      for (const Move& move : moves(place)) {
+        std::copy_n(move.column.data(), kRows, &dense_[size(kRows * move.dof)]);
+      }
+    };
+    const std::size_t first = carried_.size();
+    put();
+    factor.carry_lower<kRows>(support_, dense_.data());
+    for (const int dof : support_) {
+      Eigen::Map<Block> numbers(&dense_[size(kRows * dof)]);
+      carried_.push_back({numbers, factor.inverse_pivot(dof) * numbers, numbers, dof});
+      numbers.setZero();
+    }
+    if (!factor.is_symmetric()) {
+      put();
+      factor.carry_upper<kRows>(support_, dense_.data());
+      for (std::size_t i = first; i < carried_.size(); ++i) {
+        Eigen::Map<Block> numbers(&dense_[size(kRows * carried_[i].dof)]);
+        carried_[i].forced = factor.inverse_pivot(carried_[i].dof) * numbers;
+        numbers.setZero();
+      }
+    }
+    carried_begin_.push_back(carried_.size());
   }
+}
+
+// J Mh^-1 J' of one place and those before it, or all.
+void ContactSpace::make_free_row(int place, int end) noexcept {
+  for (const Carried& one : carried(place)) {
+    std::copy_n(one.moved.data(), kRows, &dense_[size(kRows * one.dof)]);
+  }
+  for (int other = 0; other < end; ++other) {
+    Square& out = free_block(place, other);
+    out.setZero();
+    for (const Carried& one : carried(other)) {
+      const Eigen::Map<const Block> moved(&dense_[size(kRows * one.dof)]);
+      out.noalias() += moved * one.forced.transpose();
+    }
+  }
+  for (const Carried& one : carried(place)) {
+    Eigen::Map<Block>(&dense_[size(kRows * one.dof)]).setZero();
+  }
+}
+
+void ContactSpace::constrain_places() noexcept {
+  const std::span<const StepMatrix::Column> columns = matrix_.columns();
+  if (matrix_.converts() && !columns.empty() && !is_massed_) {
+    is_massed_ = true;
+    for (int place = 0; place < places(); ++place) {
+      support_.clear();
+      for (const Carried& one : carried(place)) support_.push_back(one.dof);
+      for (const Move& move : moves(place)) {
+        std::copy_n(move.column.data(), kRows, &dense_[size(kRows * move.dof)]);
+      }
+      matrix_.mass_factor().carry_lower<kRows>(support_, dense_.data());
+      for (std::size_t i = carried_begin_[size(place)]; i < carried_begin_[size(place) + 1]; ++i) {
+        Eigen::Map<Block> numbers(&dense_[size(kRows * carried_[i].dof)]);
+        carried_[i].massed = numbers;
+        numbers.setZero();
+      }
+    }
+  }
+  opened_.assign(size(places()) * columns.size(), Block::Zero());
+  closed_.assign(opened_.size(), Block::Zero());
+  const bool converts = matrix_.converts();
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const StepMatrix::Column& column = columns[c];
+    // Both in turn.
+    const auto sum_up = [&](const std::vector<double>& values, Block Carried::*part,
+                            std::vector<Block>& out) {
+      for (std::size_t k = 0; k < column.support.size(); ++k) {
+        scalars_[size(column.support[k])] = values[k];
+      }
+      for (int place = 0; place < places(); ++place) {
+        Block& sum = out[size(place) * columns.size() + c];
+        for (const Carried& one : carried(place)) {
+          const double value = scalars_[size(one.dof)];
+          if (value != 0.0) sum += value * (one.*part);
+        }
+      }
+      for (const int dof : column.support) scalars_[size(dof)] = 0.0;
+    };
+    sum_up(column.forced, &Carried::moved, opened_);
+    sum_up(column.constrained, converts ? &Carried::massed : &Carried::forced, closed_);
+  }
+  if (columns.empty()) return;
+  const int count = static_cast<int>(columns.size());
+  for (int place = 0; place < places(); ++place) {
+    matrix_.coupling().solve<kRows>(closed_[size(place) * columns.size()].data(), 0, count);
+  }
+}
+
+ContactSpace::Square ContactSpace::constrained(const Square& free, int place,
+                                               int other) const noexcept {
+  Square out = free;
+  const std::size_t count = matrix_.columns().size();
+  for (std::size_t c = 0; c < count; ++c) {
+    out.noalias() -=
+        opened_[size(place) * count + c] * closed_[size(other) * count + c].transpose();
+  }
+  return out;
+}
+
+void ContactSpace::build_mobility() noexcept {
   choose_form();
+  mobility_.resize(size(places()));
   if (!prefers_dofs_) build_delassus();
+  for (int place = 0; place < places(); ++place) {
+    mobility_[size(place)] = prefers_dofs_
+                                 ? constrained(free_mobility_[size(place)], place, place)
+                                 : delassus(place, place);
+  }
 }
 
 // The form of less work, counted in multiplications and weighed as measured.
@@ -98,54 +200,29 @@ void ContactSpace::choose_form() noexcept {
   prefers_dofs_ = by_dofs <= (kBlocks * count + kPairs) * count * count;
 }
 
-// H^-1 J' of one place: of its trees, where H has no entries between trees, else of all.
-void ContactSpace::respond(int place) noexcept {
-  std::array<Side, 2>& sides = sides_[size(place)];
-  if (!matrix_.is_by_trees()) {
-    sides[0] = {0, dofs(), 0};
-    side_count_[size(place)] = 1;
-  }
-  for (int i = 0; i < side_count_[size(place)]; ++i) {
-    Side& side = sides[size(i)];
-    side.start = response_.size();
-    response_.resize(side.start + size(kRows * (side.end - side.begin)), 0.0);
-    double* const at = &response_[side.start];
-    for (const Move& move : moves(place)) {
-      if (move.dof < side.begin || move.dof >= side.end) continue;
-      std::copy_n(move.column.data(), kRows, at + kRows * (move.dof - side.begin));
-    }
-    matrix_.factor().solve<kRows>(at, side.begin, side.end);
-  }
-}
-
-// The block of Lambda by which forces at `other` move `place`.
-ContactSpace::Square ContactSpace::moved_by(int place, int other) const noexcept {
-  Square out = Square::Zero();
-  for (const Side& side : sides(other)) {
-    for (const Move& move : moves(place)) {
-      if (move.dof < side.begin || move.dof >= side.end) continue;
-      const Eigen::Map<const Block> response(
-          &response_[side.start + size(kRows * (move.dof - side.begin))]);
-      out.noalias() += move.column * response.transpose();
-    }
-  }
-  return out;
-}
-
 void ContactSpace::build_delassus() noexcept {
   const int count = places();
-  delassus_.resize(size(count) * size(count));
+  const bool is_symmetric = this->is_symmetric();
+  if (!has_free_delassus_) {
+    has_free_delassus_ = true;
+    free_delassus_.resize(size(count) * size(count));
+    const bool is_free_symmetric = matrix_.free_factor().is_symmetric();
+    for (int i = 0; i < count; ++i) make_free_row(i, is_free_symmetric ? i + 1 : count);
+    for (int i = 0; is_free_symmetric && i < count; ++i) {
+      for (int k = 0; k < i; ++k) free_block(k, i) = free_block(i, k).transpose();
+    }
+  }
+  delassus_.resize(free_delassus_.size());
   for (int i = 0; i < count; ++i) {
-    const int end = matrix_.matrix().is_symmetric() ? i + 1 : count;
-    for (int k = 0; k < end; ++k) {
-      delassus_[size(i) * size(count) + size(k)] = i == k ? mobility_[size(i)] : moved_by(i, k);
+    for (int k = 0; k < (is_symmetric ? i + 1 : count); ++k) {
+      delassus_[index(i, k)] = constrained(free_block(i, k), i, k);
     }
   }
 }
 
 void ContactSpace::move_by_delassus(const double* f, double* u) const noexcept {
   const int count = places();
-  const bool is_symmetric = matrix_.matrix().is_symmetric();
+  const bool is_symmetric = this->is_symmetric();
   std::fill(u, u + rows(), 0.0);
   for (int i = 0; i < count; ++i) {
     Eigen::Map<Block> motion(u + kRows * i);
@@ -178,7 +255,7 @@ void ContactSpace::move(const std::vector<double>& f, std::vector<double>& u) no
   generalized_.assign(size(dofs()), 0.0);
   add_load(f.data(), generalized_.data());
   for (double& load : generalized_) load *= step_;
-  matrix_.factor().solve(generalized_.data(), 0, dofs());
+  matrix_.solve(generalized_);
   std::copy(free_.begin(), free_.end(), u.begin());
   add_motion(generalized_.data(), u.data());
 }
@@ -186,40 +263,53 @@ void ContactSpace::move(const std::vector<double>& f, std::vector<double>& u) no
 void ContactSpace::accelerate(const std::vector<double>& f, std::vector<double>& a) noexcept {
   generalized_ = known_;
   add_load(f.data(), generalized_.data());
-  for (double& load : generalized_) load *= step_;
-  matrix_.factor().solve(generalized_.data(), 0, dofs());
-  matrix_.to_acceleration(generalized_, step_);
+  matrix_.accelerate(generalized_);
   for (int i = 0; i < dofs(); ++i) a[size(matrix_.dofs()[size(i)])] = generalized_[size(i)];
 }
 
 void ContactSpace::build(const mjModel* m, mjData* d, Damping damping,
                          std::span<const ContactPlace> places, const ContactIslands& islands,
-                         int island, const NativeConstraints& constraints,
-                         const double* known) noexcept {
+                         int island, const double* known) noexcept {
   step_ = m->opt.timestep;
-  matrix_.build(m, d, damping, islands.trees(island), constraints);
-  envelope_.assign(matrix_.envelope().begin(), matrix_.envelope().end());
-  sides_.clear();
-  side_count_.clear();
+  matrix_.build(m, d, damping, islands.trees(island));
+  const std::size_t count = matrix_.dofs().size();
   moves_.clear();
   move_begin_.assign(1, 0);
-  known_.resize(size(matrix_.size()));
-  dense_.assign(size(kRows * dofs()), 0.0);
-  for (const int place : islands.places(island)) {
-    add_place(m, d, places[size(place)], islands.trees_of(place));
-    widen_envelope(this->places() - 1);
-  }
-  generalized_.resize(known_.size());
-  for (std::size_t i = 0; i < known_.size(); ++i) {
-    const int dof = matrix_.dofs()[i];
-    known_[i] = known[dof] + matrix_.load()[i];
-    generalized_[i] = d->qvel[dof];
+  free_known_.resize(count);
+  generalized_.resize(count);
+  known_.resize(count);
+  dense_.assign(kRows * count, 0.0);
+  scalars_.assign(count, 0.0);
+  for (std::size_t i = 0; i < count; ++i) {
+    free_known_[i] = known[matrix_.dofs()[i]];
+    generalized_[i] = d->qvel[matrix_.dofs()[i]];
   }
   velocity_.clear();
-  for (const int place : islands.places(island)) add_driven(places[size(place)]);
+  for (const int place : islands.places(island)) {
+    add_place(m, d, places[size(place)], islands.trees_of(place));
+    add_driven(places[size(place)]);
+  }
   add_motion(generalized_.data(), velocity_.data());
-  for (std::size_t i = 0; i < known_.size(); ++i) generalized_[i] = step_ * known_[i];
-  matrix_.factor().solve(generalized_.data(), 0, dofs());
+  respond();
+  has_free_delassus_ = false;
+  free_mobility_.assign(size(this->places()), Square::Zero());
+  for (int place = 0; place < this->places(); ++place) {
+    for (const Carried& one : carried(place)) {
+      free_mobility_[size(place)].noalias() += one.moved * one.forced.transpose();
+    }
+  }
+}
+
+void ContactSpace::constrain(const NativeConstraints& constraints) noexcept {
+  matrix_.constrain(constraints);
+  constrain_places();
+  envelope_.assign(matrix_.envelope().begin(), matrix_.envelope().end());
+  for (int place = 0; place < places(); ++place) widen_envelope(place);
+  for (std::size_t i = 0; i < known_.size(); ++i) {
+    known_[i] = free_known_[i] + matrix_.load()[i];
+    generalized_[i] = step_ * known_[i];
+  }
+  matrix_.solve(generalized_);
   free_ = velocity_;
   add_motion(generalized_.data(), free_.data());
 }

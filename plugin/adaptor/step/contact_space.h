@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <span>
 #include <vector>
 
@@ -15,7 +14,8 @@ inline constexpr int kRows = 6;  ///< of a contact place: along and about its th
 
 /// What one step of MuJoCo makes of forces at the contact places of an island: u' = u_free + h
 /// Lambda f, with u = J v + w, Lambda = J H^-1 J' and u_free = u + h J H^-1 t; w is the motion of
-/// mocap bodies. H is the matrix of the step: step_matrix.h. Memory is reused from step to step.
+/// mocap bodies. H is the matrix of the step: step_matrix.h. What does not change with MuJoCo's
+/// constraints is made once. Memory is reused from step to step.
 class ContactSpace {
  public:
   using Block = Eigen::Matrix<double, kRows, 1>;
@@ -30,8 +30,9 @@ class ContactSpace {
   /// `known`: t, all generalized forces but those at the places and of constraints, nv numbers.
   /// Uses the mass matrix and the positions that are current in `d`, and what make_damping() left.
   void build(const mjModel* m, mjData* d, Damping damping, std::span<const ContactPlace> places,
-             const ContactIslands& islands, int island, const NativeConstraints& constraints,
-             const double* known) noexcept;
+             const ContactIslands& islands, int island, const double* known) noexcept;
+  /// Takes MuJoCo's constraints as they are now in place of those before.
+  void constrain(const NativeConstraints& constraints) noexcept;
 
   int places() const { return static_cast<int>(move_begin_.size()) - 1; }
   int rows() const { return places() * kRows; }
@@ -42,18 +43,18 @@ class ContactSpace {
     return {moves_.data() + move_begin_[i], move_begin_[i + 1] - move_begin_[i]};
   }
   /// H.
-  const EnvelopeMatrix& matrix() const { return matrix_.matrix(); }
+  StepMatrix& matrix() { return matrix_; }
+  bool is_symmetric() const { return matrix_.is_symmetric(); }
   /// The first column of each row of H + J' C J, whatever C is.
   std::span<const int> envelope() const { return envelope_; }
   /// Whether it is cheaper to solve for the velocities of the degrees of freedom than for forces.
   bool prefers_dofs() const { return prefers_dofs_; }
-  /// Makes H^-1 J' and what is made of it: `mobility`, and `delassus` where it is of use.
+  /// Makes `mobility`, and `delassus` where it is of use.
   void build_mobility() noexcept;
   void build_delassus() noexcept;
   /// The block of Lambda of two places, after build_delassus(); of a symmetric H with k <= i.
   const Square& delassus(int i, int k) const {
-    return delassus_[static_cast<std::size_t>(i) * static_cast<std::size_t>(places()) +
-                     static_cast<std::size_t>(k)];
+    return delassus_[index(i, k)];
   }
   /// The block of Lambda of one place.
   const Square& mobility(std::size_t place) const { return mobility_[place]; }
@@ -71,16 +72,6 @@ class ContactSpace {
   void add_motion(const double* x, double* u) const noexcept;
 
  private:
-  // The degrees of freedom of one tree, or all of an island, and where their rows of H^-1 J' are.
-  struct Side {
-    int begin = 0;
-    int end = 0;
-    std::size_t start = 0;
-  };
-  std::span<const Side> sides(int place) const {
-    const std::size_t i = static_cast<std::size_t>(place);
-    return {sides_[i].data(), static_cast<std::size_t>(side_count_[i])};
-  }
   void add_place(const mjModel* m, const mjData* d, const ContactPlace& place,
                  std::pair<int, int> trees) noexcept;
   void add_body(const mjModel* m, const mjData* d, const ContactPlace& place, int body,
@@ -88,19 +79,42 @@ class ContactSpace {
   void add_driven(const ContactPlace& place) noexcept;
   void widen_envelope(int place) noexcept;
   void choose_form() noexcept;
-  void respond(int place) noexcept;
-  Square moved_by(int place, int other) const noexcept;
+  void respond() noexcept;
+  void constrain_places() noexcept;
+  Square& free_block(int i, int k) { return free_delassus_[index(i, k)]; }
+  std::size_t index(int i, int k) const {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(places()) +
+           static_cast<std::size_t>(k);
+  }
+  void make_free_row(int place, int end) noexcept;
+  Square constrained(const Square& free, int place, int other) const noexcept;
 
   StepMatrix matrix_;
   std::vector<Move> moves_;
   std::vector<std::size_t> move_begin_ = {0};
-  std::vector<std::array<Side, 2>> sides_;  // of each place
-  std::vector<int> side_count_;
-  std::vector<double> response_;
-  std::vector<double> dense_;  // kRows numbers a degree of freedom, zeros but within add_place()
+  // What a place moves and what carries that; J carried through the factors U D L of Mh.
+  struct Carried {
+    Block moved;   // L'^-1 J'
+    Block forced;  // D^-1 U^-1 J'
+    Block massed;  // L'^-1 J', of the factors of M, where H converts
+    int dof;
+  };
+  std::span<const Carried> carried(int place) const {
+    const std::size_t i = static_cast<std::size_t>(place);
+    return {carried_.data() + carried_begin_[i], carried_begin_[i + 1] - carried_begin_[i]};
+  }
+  std::vector<Carried> carried_;
+  std::vector<std::size_t> carried_begin_;
+  bool is_massed_ = false;
+  std::vector<int> support_;
+  // For each place and each column of G: J Mh^-1 G, and (1 + P' Mh^-1 G)^-1 P' Mh^-1 J'.
+  std::vector<Block> opened_, closed_;
+  std::vector<double> dense_;  // kRows numbers a degree of freedom, zeros between uses
+  std::vector<double> scalars_;  // one a degree of freedom, likewise
   std::vector<int> envelope_;
-  std::vector<Square> mobility_, delassus_;
-  std::vector<double> known_, velocity_, free_, generalized_;
+  std::vector<Square> mobility_, delassus_, free_mobility_, free_delassus_;
+  bool has_free_delassus_ = false;
+  std::vector<double> free_known_, known_, velocity_, free_, generalized_;
   bool prefers_dofs_ = true;
   double step_ = 0.0;
 };

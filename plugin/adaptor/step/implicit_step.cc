@@ -407,8 +407,9 @@ void ImplicitStep::solve_with_constraints(const mjModel* m, mjData* d, ImplicitP
     limit.share = 1.0;
     limit.is_solved = is_stiff;
   });
+  space_.build(m, d, damping_, places_, islands_, island, known);
   for (int round = 0; round < kRounds; ++round) {
-    space_.build(m, d, damping_, places_, islands_, island, constraints_, known);
+    space_.constrain(constraints_);
     force_.resize(size(space_.rows()));
     velocity_.resize(size(space_.rows()));
     if (is_stiff) {

@@ -14,6 +14,7 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 // inertia in common with those it carries and with those that carry it.
 void StepMatrix::number_dofs(const mjModel* m, std::span<const DofRange> trees) noexcept {
   trees_.clear();
+  tree_of_.clear();
   dofs_.clear();
   numbers_.resize(index(static_cast<int>(m->nv)));
   limits_.resize(numbers_.size());
@@ -22,6 +23,7 @@ void StepMatrix::number_dofs(const mjModel* m, std::span<const DofRange> trees) 
     for (int dof = tree.end - 1; dof >= tree.begin; --dof) {
       numbers_[index(dof)] = static_cast<int>(dofs_.size());
       dofs_.push_back(dof);
+      tree_of_.push_back(begin);
     }
     trees_.push_back({begin, static_cast<int>(dofs_.size())});
     for (int dof = tree.begin; dof < tree.end; ++dof) limits_[index(dof)] = dof;
@@ -31,30 +33,36 @@ void StepMatrix::number_dofs(const mjModel* m, std::span<const DofRange> trees) 
       limits_[index(parent)] = std::max(limits_[index(parent)], limits_[index(dof)]);
     }
   }
-  envelope_.resize(dofs_.size());
-  for (std::size_t i = 0; i < dofs_.size(); ++i) envelope_[i] = number(limits_[index(dofs_[i])]);
+  free_envelope_.resize(dofs_.size());
+  parents_.resize(dofs_.size());
+  for (std::size_t i = 0; i < dofs_.size(); ++i) {
+    free_envelope_[i] = number(limits_[index(dofs_[i])]);
+    const int parent = m->dof_parentid[dofs_[i]];
+    parents_[i] = parent < 0 ? -1 : number(parent);
+  }
+  carriers_.set(parents_);
+  marked_.assign(dofs_.size(), 0);
 }
 
 void StepMatrix::make_mass(const mjModel* m, const mjData* d) noexcept {
-  mass_.reset(envelope_);
+  mass_.reset(carriers_, true);
   for (std::size_t i = 0; i < dofs_.size(); ++i) {
-    for_row_of_mass(m, d, dofs_[i], [&](int other, double mass) {
-      mass_(number(other), static_cast<int>(i)) = mass;  // those that carry it come after it
-    });
+    for_row_of_mass(m, d, dofs_[i],
+                    [&](int other, double mass) { mass_(static_cast<int>(i), number(other)) = mass; });
   }
 }
 
-void StepMatrix::make_extra(const mjModel* m, const mjData* d, Damping damping) noexcept {
-  extra_.reset(envelope_, false);
+void StepMatrix::add_extra(const mjModel* m, const mjData* d, Damping damping) noexcept {
+  free_.reset(carriers_, false);
   const double h = m->opt.timestep;
-  const auto set = [&](int row, int column, double x) {
+  const auto at = [&](int row, int column) -> double& {
     const int i = number(row), k = number(column);
-    (k <= i ? extra_(i, k) : extra_.mirrored(k, i)) = x;
+    return i <= k ? free_(i, k) : free_.mirrored(k, i);
   };
   for (const int dof : dofs_) {
     for_row_of_damping(m, d, damping, dof, [&](int other, double b) {
-      set(dof, other, h * b);
-      if (damping == Damping::kAllSymmetric) set(other, dof, h * b);
+      at(dof, other) = h * b;
+      if (damping == Damping::kAllSymmetric) at(other, dof) = h * b;
     });
   }
   for (const DofRange& tree : trees_) {
@@ -63,101 +71,237 @@ void StepMatrix::make_extra(const mjModel* m, const mjData* d, Damping damping) 
     if (!matrix_of_free_body(m, d, damping, joint, matrix)) continue;
     const int first = m->jnt_dofadr[joint];
     for (int i = 0; i < 36; ++i) {
-      const int low = std::min(number(first + i / 6), number(first + i % 6));
-      const int high = std::max(number(first + i / 6), number(first + i % 6));
-      set(first + i / 6, first + i % 6, matrix[i] - mass_(high, low));
+      const int one = number(first + i / 6), other = number(first + i % 6);
+      at(first + i / 6, first + i % 6) =
+          matrix[i] - mass_(std::min(one, other), std::max(one, other));
     }
   }
   has_extra_ = false;
-  extra_is_symmetric_ = true;
-  for (int i = 0; i < extra_.size(); ++i) {
-    has_extra_ = has_extra_ || extra_(i, i) != 0.0;
-    for (int k = extra_.first(i); k < i; ++k) {
-      has_extra_ = has_extra_ || extra_(i, k) != 0.0 || extra_.mirrored(i, k) != 0.0;
-      extra_is_symmetric_ = extra_is_symmetric_ && extra_(i, k) == extra_.mirrored(i, k);
+  bool is_symmetric = true;
+  for (int i = 0; i < size(); ++i) {
+    has_extra_ = has_extra_ || free_(i, i) != 0.0;
+    free_(i, i) += mass_(i, i);
+    for (int k = carriers_.parent(i); k >= 0; k = carriers_.parent(k)) {
+      double &below = free_(i, k), &above = free_.mirrored(i, k);
+      has_extra_ = has_extra_ || below != 0.0 || above != 0.0;
+      is_symmetric = is_symmetric && below == above;
+      below += mass_(i, k);
+      above += mass_(i, k);
     }
   }
+  if (is_symmetric) free_.mirror();
 }
 
-void StepMatrix::take_constraints(const NativeConstraints& constraints) noexcept {
-  load_.assign(dofs_.size(), 0.0);
-  for (const NativeConstraints::Entry& entry : constraints.load()) {
-    load_[index(number(entry.dof))] += entry.value;
+void StepMatrix::build(const mjModel* m, const mjData* d, Damping damping,
+                       std::span<const DofRange> trees) noexcept {
+  number_dofs(m, trees);
+  make_mass(m, d);
+  has_extra_ = false;
+  if (damping == Damping::kNone) {
+    free_ = mass_;
+  } else {
+    add_extra(m, d, damping);
   }
+  free_factor_ = free_;
+  free_factor_.factor();
+  converts_ = has_extra_ && !solves_with_step_matrix(m);
+  makes_mass_factor_ = converts_;
+  column_count_ = 0;
+  load_.assign(dofs_.size(), 0.0);
+  envelope_ = free_envelope_;
+}
+
+void StepMatrix::close(std::vector<int>& numbers) noexcept {
+  const std::size_t count = numbers.size();
+  for (const int i : numbers) marked_[index(i)] = 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (int k = carriers_.parent(numbers[i]); k >= 0 && !marked_[index(k)];
+         k = carriers_.parent(k)) {
+      marked_[index(k)] = 1;
+      numbers.push_back(k);
+    }
+  }
+  std::sort(numbers.begin(), numbers.end());
+  for (const int i : numbers) marked_[index(i)] = 0;
+}
+
+void StepMatrix::take_columns(const NativeConstraints& constraints) noexcept {
   column_count_ = index(constraints.columns());
   if (columns_.size() < column_count_) columns_.resize(column_count_);
-  product_.assign(dofs_.size(), 0.0);
+  dense_.assign(dofs_.size(), 0.0);
   for (std::size_t c = 0; c < column_count_; ++c) {
-    dense_.assign(dofs_.size(), 0.0);
-    for (const NativeConstraints::Entry& entry : constraints.column(static_cast<int>(c))) {
-      dense_[index(number(entry.dof))] += entry.value;
-    }
-    if (converts_) {
-      solved_ = dense_;
-      mass_factor_.solve(solved_.data(), 0, size());
-      extra_.multiply_transposed(solved_.data(), product_.data());
-    }
     Column& column = columns_[c];
-    column.numbers.clear();
-    column.left.clear();
-    column.right.clear();
-    for (std::size_t i = 0; i < dofs_.size(); ++i) {
-      if (dense_[i] == 0.0 && product_[i] == 0.0) continue;
-      column.numbers.push_back(static_cast<int>(i));
-      column.left.push_back(dense_[i]);
-      column.right.push_back(dense_[i] + product_[i]);
+    const auto entries = constraints.column(static_cast<int>(c));
+    column.support.clear();
+    for (const NativeConstraints::Entry& entry : entries) {
+      const int i = number(entry.dof);
+      if (!marked_[index(i)]) column.support.push_back(i);
+      marked_[index(i)] = 1;
+    }
+    close(column.support);
+    const auto put = [&] {
+      for (const NativeConstraints::Entry& entry : entries) {
+        dense_[index(number(entry.dof))] += entry.value;
+      }
+    };
+    const auto take = [&](std::vector<double>& out, const TreeMatrix* divided) {
+      out.clear();
+      for (const int i : column.support) {
+        out.push_back(dense_[index(i)] * (divided ? divided->inverse_pivot(i) : 1.0));
+        dense_[index(i)] = 0.0;
+      }
+    };
+    put();
+    take(column.values, nullptr);
+    put();
+    free_factor_.carry_upper<1>(column.support, dense_.data());
+    take(column.forced, &free_factor_);
+    put();
+    if (converts_) {
+      mass_factor_.carry_lower<1>(column.support, dense_.data());
+      take(column.constrained, &mass_factor_);
+    } else {
+      free_factor_.carry_lower<1>(column.support, dense_.data());
+      take(column.constrained, nullptr);
     }
   }
 }
 
-void StepMatrix::add_constraints() noexcept {
-  for (std::size_t c = 0; c < column_count_; ++c) {
-    const Column& column = columns_[c];
-    for (std::size_t i = 0; i < column.numbers.size(); ++i) {
-      for (std::size_t k = 0; k <= i; ++k) {
-        matrix_(column.numbers[i], column.numbers[k]) += column.left[i] * column.right[k];
-        if (k == i || matrix_.is_symmetric()) continue;
-        matrix_.mirrored(column.numbers[i], column.numbers[k]) += column.left[k] * column.right[i];
+// P has entries where G has, or where it converts in all of their trees.
+void StepMatrix::widen_envelope() noexcept {
+  envelope_ = free_envelope_;
+  for (const Column& column : columns()) {
+    int first = size();
+    for (std::size_t k = 0; k < column.support.size(); ++k) {
+      const int i = column.support[k];
+      if (column.values[k] != 0.0) first = std::min(first, converts_ ? tree_of_[index(i)] : i);
+    }
+    for (const int i : column.support) {
+      if (!converts_) {
+        envelope_[index(i)] = std::min(envelope_[index(i)], first);
+        continue;
+      }
+      for (std::size_t k = index(tree_of_[index(i)]);
+           k < dofs_.size() && tree_of_[k] == tree_of_[index(i)]; ++k) {
+        envelope_[k] = std::min(envelope_[k], first);
       }
     }
   }
 }
 
-void StepMatrix::build(const mjModel* m, const mjData* d, Damping damping,
-                       std::span<const DofRange> trees,
-                       const NativeConstraints& constraints) noexcept {
-  number_dofs(m, trees);
-  make_mass(m, d);
-  has_extra_ = false;
-  extra_is_symmetric_ = true;
-  if (damping != Damping::kNone) make_extra(m, d, damping);
-  converts_ = has_extra_ && !constraints.empty() && !solves_with_step_matrix(m);
-  if (converts_) {
-    mass_factor_ = mass_;
-    mass_factor_.factor();
+// 1 + P' Mh^-1 G: where it converts that is 1 + G' M^-1 G.
+void StepMatrix::couple() noexcept {
+  full_.assign(column_count_, 0);
+  coupling_.reset(full_, converts_ || free_factor_.is_symmetric());
+  const int count = static_cast<int>(column_count_);
+  for (int c = 0; c < count; ++c) {
+    const Column& column = columns_[index(c)];
+    for (std::size_t k = 0; k < column.support.size(); ++k) {
+      const int i = column.support[k];
+      const double pivot = converts_ ? mass_factor_.inverse_pivot(i) : 1.0;
+      dense_[index(i)] = column.constrained[k] / pivot;
+    }
+    for (int other = 0; other < (coupling_.is_symmetric() ? c + 1 : count); ++other) {
+      const Column& to = columns_[index(other)];
+      const std::vector<double>& values = converts_ ? to.constrained : to.forced;
+      double sum = c == other ? 1.0 : 0.0;
+      for (std::size_t k = 0; k < to.support.size(); ++k) {
+        sum += dense_[index(to.support[k])] * values[k];
+      }
+      (other <= c ? coupling_(c, other) : coupling_.mirrored(other, c)) = sum;
+    }
+    for (const int i : column.support) dense_[index(i)] = 0.0;
   }
-  take_constraints(constraints);
-  for (std::size_t c = 0; c < column_count_; ++c) {
-    const std::vector<int>& numbers = columns_[c].numbers;
-    for (const int i : numbers)
-      envelope_[index(i)] = std::min(envelope_[index(i)], numbers.front());
-  }
-  matrix_.reset(envelope_, extra_is_symmetric_ && (!converts_ || column_count_ == 0));
-  matrix_.add(mass_);
-  if (has_extra_) matrix_.add(extra_);
-  add_constraints();
-  factor_ = matrix_;
-  factor_.factor();
+  coupling_.factor();
 }
 
-void StepMatrix::to_acceleration(std::vector<double>& change, double step) noexcept {
-  if (converts_) {
-    product_.assign(change.size(), 0.0);
-    extra_.multiply(change.data(), product_.data());
-    mass_factor_.solve(product_.data(), 0, size());
-    for (std::size_t i = 0; i < change.size(); ++i) change[i] += product_[i];
+void StepMatrix::constrain(const NativeConstraints& constraints) noexcept {
+  load_.assign(dofs_.size(), 0.0);
+  for (const NativeConstraints::Entry& entry : constraints.load()) {
+    load_[index(number(entry.dof))] += entry.value;
   }
-  for (double& x : change) x /= step;
+  if (makes_mass_factor_ && constraints.columns() > 0) {
+    mass_factor_ = mass_;
+    mass_factor_.factor();
+    makes_mass_factor_ = false;
+  }
+  take_columns(constraints);
+  widen_envelope();
+  couple();
+}
+
+void StepMatrix::add_to(EnvelopeMatrix& out) noexcept {
+  for (int i = 0; i < size(); ++i) {
+    out(i, i) += free_(i, i);
+    for (int k = carriers_.parent(i); k >= 0; k = carriers_.parent(k)) {
+      out(k, i) += free_.mirrored(i, k);
+      if (!out.is_symmetric()) out.mirrored(k, i) += free_(i, k);
+    }
+  }
+  for (const Column& column : columns()) {
+    dense_.assign(dofs_.size(), 0.0);
+    for (std::size_t k = 0; k < column.support.size(); ++k) {
+      dense_[index(column.support[k])] = column.values[k];
+    }
+    product_ = dense_;
+    if (converts_) {
+      std::vector<double>& solved = shares_;
+      solved = dense_;
+      mass_factor_.solve(solved.data());
+      free_.multiply_transposed(solved.data(), product_.data());
+    }
+    for (std::size_t i = 0; i < column.support.size(); ++i) {
+      const int row = column.support[i];
+      if (column.values[i] == 0.0) continue;
+      for (int k = 0; k < size(); ++k) {
+        const double x = product_[index(k)];
+        if (x == 0.0) continue;
+        if (k <= row) {
+          out(row, k) += column.values[i] * x;
+        } else if (!out.is_symmetric()) {
+          out.mirrored(k, row) += column.values[i] * x;
+        }
+      }
+    }
+  }
+  dense_.assign(dofs_.size(), 0.0);
+}
+
+// Takes off the forces x what the constraints bear of them: x - G (1 + P' Mh^-1 G)^-1 P' Mh^-1 x.
+void StepMatrix::release(std::vector<double>& x) noexcept {
+  if (column_count_ == 0) return;
+  product_ = x;
+  (converts_ ? mass_factor_ : free_factor_).solve(product_.data());
+  shares_.assign(column_count_, 0.0);
+  for (std::size_t c = 0; c < column_count_; ++c) {
+    const Column& column = columns_[c];
+    for (std::size_t k = 0; k < column.support.size(); ++k) {
+      shares_[c] += column.values[k] * product_[index(column.support[k])];
+    }
+  }
+  coupling_.solve(shares_.data(), 0, coupling_.size());
+  for (std::size_t c = 0; c < column_count_; ++c) {
+    const Column& column = columns_[c];
+    for (std::size_t k = 0; k < column.support.size(); ++k) {
+      x[index(column.support[k])] -= column.values[k] * shares_[c];
+    }
+  }
+}
+
+void StepMatrix::solve(std::vector<double>& x) noexcept {
+  release(x);
+  free_factor_.solve(x.data());
+}
+
+void StepMatrix::accelerate(std::vector<double>& x) noexcept {
+  release(x);
+  // Without columns nothing has made the factor of M: the solver solves with M all the same.
+  if (converts_ && makes_mass_factor_) {
+    mass_factor_ = mass_;
+    mass_factor_.factor();
+    makes_mass_factor_ = false;
+  }
+  (converts_ ? mass_factor_ : free_factor_).solve(x.data());
 }
 
 }  // namespace volcontact::adaptor

@@ -6,20 +6,26 @@
 
 #include "adaptor/step/envelope_matrix.h"
 #include "adaptor/step/native_constraints.h"
+#include "adaptor/step/tree_matrix.h"
 
 namespace volcontact::adaptor {
 
 /// The matrix H of one step of an island, H dv = h t: what the integrator divides by, Mh = M + N,
-/// and what MuJoCo's constraints add, linear around a guess, G G' M^-1 Mh. N is what the integrator
-/// takes implicitly of the forces by velocities. Memory is reused from step to step.
+/// and what MuJoCo's constraints add, linear around a guess, G P' with P' = G' M^-1 Mh. N is what
+/// the integrator takes implicitly of the forces by velocities. Mh is factored along the trees,
+/// once a step; what the constraints add has the few columns of G, so that
+/// H^-1 = Mh^-1 - Mh^-1 G (1 + P' Mh^-1 G)^-1 P' Mh^-1. Memory is reused from step to step.
 ///
 /// The degrees of freedom have numbers of their own, tree by tree, in each the last one first: then
 /// the limbs of a tree are apart in the matrices.
 class StepMatrix {
  public:
-  /// Uses the mass matrix that is current in `d`, and what make_damping() left there.
-  void build(const mjModel* m, const mjData* d, Damping damping, std::span<const DofRange> trees,
-             const NativeConstraints& constraints) noexcept;
+  /// Uses the mass matrix that is current in `d`, and what make_damping() left there. Without
+  /// constraints.
+  void build(const mjModel* m, const mjData* d, Damping damping,
+             std::span<const DofRange> trees) noexcept;
+  /// Takes the constraints as they are now in place of those before.
+  void constrain(const NativeConstraints& constraints) noexcept;
 
   int size() const { return static_cast<int>(dofs_.size()); }
   /// The degrees of freedom of the model, by the numbers here, and the other way.
@@ -27,44 +33,66 @@ class StepMatrix {
   int number(int dof) const { return numbers_[static_cast<std::size_t>(dof)]; }
   /// The trees, by the numbers here.
   const DofRange& tree(int i) const { return trees_[static_cast<std::size_t>(i)]; }
+  const DofTrees& carriers() const { return carriers_; }
 
-  /// H, its factor, and the first column of each row.
-  const EnvelopeMatrix& matrix() const { return matrix_; }
-  const EnvelopeMatrix& factor() const { return factor_; }
+  bool is_symmetric() const {
+    return free_factor_.is_symmetric() && (!converts_ || column_count_ == 0);
+  }
+  /// The first column of each row of H.
   std::span<const int> envelope() const { return envelope_; }
-  /// Whether it is symmetric, without entries between trees.
-  bool is_by_trees() const { return column_count_ == 0 && matrix_.is_symmetric(); }
+  /// Writes H into the lower part of its envelope and what lies above, and adds it to `out`.
+  void add_to(EnvelopeMatrix& out) noexcept;
   /// What the constraints add to the forces t, by the numbers here.
   std::span<const double> load() const { return load_; }
 
-  /// Turns the change of the velocities over a step, by the numbers here, into the acceleration
-  /// that MuJoCo's solver finds.
-  void to_acceleration(std::vector<double>& change, double step) noexcept;
+  /// H^-1 x, by the numbers here, in place; and the acceleration that MuJoCo's solver finds under
+  /// the forces x.
+  void solve(std::vector<double>& x) noexcept;
+  void accelerate(std::vector<double>& x) noexcept;
+
+  /// A constraint's column of G, and what carries it: numbers, ascending.
+  struct Column {
+    std::vector<int> support;
+    std::vector<double> values;       // G
+    std::vector<double> forced;       // D^-1 U^-1 G, of the factors of Mh = U D L
+    std::vector<double> constrained;  // L'^-1 G; that of M, divided by its D, where it converts
+  };
+  std::span<const Column> columns() const { return {columns_.data(), column_count_}; }
+  /// Whether the solver's acceleration is not that of the step.
+  bool converts() const { return converts_; }
+  const TreeMatrix& free_factor() const { return free_factor_; }
+  const TreeMatrix& mass_factor() const { return mass_factor_; }
+  /// (1 + P' Mh^-1 G)^-1, factored.
+  const EnvelopeMatrix& coupling() const { return coupling_; }
+
+  /// With the numbers, those of all that carries them, ascending.
+  void close(std::vector<int>& numbers) noexcept;
 
  private:
-  // G G' M^-1 Mh = G P', by columns.
-  struct Column {
-    std::vector<int> numbers;  // where one of the two is not zero, ascending
-    std::vector<double> left, right;
-  };
   void number_dofs(const mjModel* m, std::span<const DofRange> trees) noexcept;
   void make_mass(const mjModel* m, const mjData* d) noexcept;
-  void make_extra(const mjModel* m, const mjData* d, Damping damping) noexcept;
-  void take_constraints(const NativeConstraints& constraints) noexcept;
-  void add_constraints() noexcept;
+  void add_extra(const mjModel* m, const mjData* d, Damping damping) noexcept;
+  void take_columns(const NativeConstraints& constraints) noexcept;
+  void widen_envelope() noexcept;
+  void couple() noexcept;
+  void release(std::vector<double>& x) noexcept;
 
   std::vector<DofRange> trees_;
-  std::vector<int> dofs_, numbers_;
+  std::vector<int> dofs_, numbers_, parents_, tree_of_;
+  DofTrees carriers_;
   std::vector<int> limits_;  // the last degree of freedom of each subtree
-  std::vector<int> envelope_;
-  EnvelopeMatrix mass_, mass_factor_;  // M
-  EnvelopeMatrix extra_;               // N
-  EnvelopeMatrix matrix_, factor_;     // H
-  bool has_extra_ = false, extra_is_symmetric_ = true;
-  bool converts_ = false;  // whether the solver's acceleration is not that of the step
+  std::vector<int> free_envelope_, envelope_;
+  TreeMatrix mass_, mass_factor_;  // M
+  TreeMatrix free_, free_factor_;  // Mh
+  bool has_extra_ = false;
+  bool makes_mass_factor_ = false;
+  bool converts_ = false;
   std::vector<Column> columns_;
   std::size_t column_count_ = 0;
-  std::vector<double> load_, dense_, solved_, product_;
+  EnvelopeMatrix coupling_;
+  std::vector<int> full_;
+  std::vector<double> load_, dense_, product_, shares_;
+  std::vector<char> marked_;
 };
 
 }  // namespace volcontact::adaptor
