@@ -123,7 +123,7 @@ void ContactEquations::solve_for_dofs(ContactSpace& space, double step,
   const int rows = space.rows(), n = space.dofs();
   make_slopes(space.places());
   matrix_.reset(space.envelope(), space.is_symmetric());
-  space.matrix().add_to(matrix_);
+  matrix_.add(space.matrix().matrix());
   // What the contacts would bear at the velocities of now.
   force.assign(constant.begin(), constant.end());
   velocity.resize(size(rows));

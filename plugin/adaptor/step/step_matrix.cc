@@ -109,6 +109,7 @@ void StepMatrix::build(const mjModel* m, const mjData* d, Damping damping,
   column_count_ = 0;
   load_.assign(dofs_.size(), 0.0);
   envelope_ = free_envelope_;
+  has_matrix_ = false;
 }
 
 void StepMatrix::close(std::vector<int>& numbers) noexcept {
@@ -228,43 +229,41 @@ void StepMatrix::constrain(const NativeConstraints& constraints) noexcept {
   take_columns(constraints);
   widen_envelope();
   couple();
+  has_matrix_ = false;
 }
 
-void StepMatrix::add_to(EnvelopeMatrix& out) noexcept {
+const EnvelopeMatrix& StepMatrix::matrix() noexcept {
+  if (has_matrix_) return matrix_;
+  has_matrix_ = true;
+  matrix_.reset(envelope_, is_symmetric());
   for (int i = 0; i < size(); ++i) {
-    out(i, i) += free_(i, i);
+    matrix_(i, i) = free_(i, i);
     for (int k = carriers_.parent(i); k >= 0; k = carriers_.parent(k)) {
-      out(k, i) += free_.mirrored(i, k);
-      if (!out.is_symmetric()) out.mirrored(k, i) += free_(i, k);
+      matrix_(k, i) = free_.mirrored(i, k);
+      if (!matrix_.is_symmetric()) matrix_.mirrored(k, i) = free_(i, k);
     }
   }
   for (const Column& column : columns()) {
-    dense_.assign(dofs_.size(), 0.0);
     for (std::size_t k = 0; k < column.support.size(); ++k) {
       dense_[index(column.support[k])] = column.values[k];
     }
     product_ = dense_;
     if (converts_) {
-      std::vector<double>& solved = shares_;
-      solved = dense_;
-      mass_factor_.solve(solved.data());
-      free_.multiply_transposed(solved.data(), product_.data());
+      shares_ = dense_;
+      mass_factor_.solve(shares_.data());
+      free_.multiply_transposed(shares_.data(), product_.data());
     }
-    for (std::size_t i = 0; i < column.support.size(); ++i) {
-      const int row = column.support[i];
-      if (column.values[i] == 0.0) continue;
-      for (int k = 0; k < size(); ++k) {
-        const double x = product_[index(k)];
-        if (x == 0.0) continue;
-        if (k <= row) {
-          out(row, k) += column.values[i] * x;
-        } else if (!out.is_symmetric()) {
-          out.mirrored(k, row) += column.values[i] * x;
-        }
+    for (const int row : column.support) {
+      const double left = dense_[index(row)];
+      for (int k = 0; left != 0.0 && k < size(); ++k) {
+        const double right = product_[index(k)];
+        if (right == 0.0 || (k > row && matrix_.is_symmetric())) continue;
+        (k <= row ? matrix_(row, k) : matrix_.mirrored(k, row)) += left * right;
       }
+      dense_[index(row)] = 0.0;
     }
   }
-  dense_.assign(dofs_.size(), 0.0);
+  return matrix_;
 }
 
 // Takes off the forces x what the constraints bear of them: x - G (1 + P' Mh^-1 G)^-1 P' Mh^-1 x.

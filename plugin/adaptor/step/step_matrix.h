@@ -40,8 +40,8 @@ class StepMatrix {
   }
   /// The first column of each row of H.
   std::span<const int> envelope() const { return envelope_; }
-  /// Writes H into the lower part of its envelope and what lies above, and adds it to `out`.
-  void add_to(EnvelopeMatrix& out) noexcept;
+  /// H, made when it is first asked for.
+  const EnvelopeMatrix& matrix() noexcept;
   /// What the constraints add to the forces t, by the numbers here.
   std::span<const double> load() const { return load_; }
 
@@ -89,7 +89,8 @@ class StepMatrix {
   bool converts_ = false;
   std::vector<Column> columns_;
   std::size_t column_count_ = 0;
-  EnvelopeMatrix coupling_;
+  EnvelopeMatrix coupling_, matrix_;
+  bool has_matrix_ = false;
   std::vector<int> full_;
   std::vector<double> load_, dense_, product_, shares_;
   std::vector<char> marked_;

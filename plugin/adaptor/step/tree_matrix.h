@@ -66,9 +66,9 @@ class TreeMatrix {
   /// Entry (i, k), k = i or what carries i; and its mirror image, k not i.
   double& operator()(int i, int k) { return lower_[index(i, k)]; }
   double operator()(int i, int k) const { return lower_[index(i, k)]; }
-  double& mirrored(int i, int k) { return upper_[index(i, k)]; }
+  double& mirrored(int i, int k) { return (is_symmetric() ? lower_ : upper_)[index(i, k)]; }
   double mirrored(int i, int k) const {
-    return is_symmetric() ? lower_[index(i, k)] : upper_[index(i, k)];
+    return (is_symmetric() ? lower_ : upper_)[index(i, k)];
   }
 
   /// In place; the diagonal as inverses.

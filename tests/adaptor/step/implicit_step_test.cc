@@ -43,8 +43,11 @@ TEST(ImplicitStep, TakesStiffnessAndDampingOfTheSite) {
   EXPECT_NEAR(step.constant(0)[0] / (k * area * depth), 1.0, 1e-9);  // without the damping
 }
 
-TEST(ImplicitStep, FormsForForcesAndForVelocitiesAgree) {
-  const ModelPointer m = testing::load(bodies("", 2.0, keys("on", "regularized_coulomb", "2e9")));
+class BothForms : public ::testing::TestWithParam<double> {};
+
+TEST_P(BothForms, ForForcesAndForVelocitiesAgree) {
+  const ModelPointer m =
+      testing::load(bodies("", GetParam(), keys("on", "regularized_coulomb", "2e9")));
   const Attached attached(m);
   const DataPointer d = testing::make_data(m);
   scatter(m, d, 5);
@@ -83,6 +86,8 @@ TEST(ImplicitStep, FormsForForcesAndForVelocitiesAgree) {
     EXPECT_NEAR(velocity[i], moved[i], 1e-8);
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(JointDamping, BothForms, ::testing::Values(0.0, 2.0));
 
 std::string soft_ball(const std::string& mode) {
   return testing::ball_scene(
