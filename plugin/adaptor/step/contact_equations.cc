@@ -44,8 +44,8 @@ void ContactEquations::make_slopes(int places) noexcept {
 }
 
 template <int K>
-void ContactEquations::solve_blocks(const ContactSpace& space, double step,
-                                    BlockMatrix<K>& matrix, std::vector<double>& force) noexcept {
+void ContactEquations::solve_blocks(const ContactSpace& space, double step, BlockMatrix<K>& matrix,
+                                    std::vector<double>& force) noexcept {
   using Block = typename BlockMatrix<K>::Block;
   using Part = typename BlockMatrix<K>::Vector;
   const bool is_symmetric = space.is_symmetric();
@@ -71,8 +71,7 @@ void ContactEquations::solve_blocks(const ContactSpace& space, double step,
   for (int i = 0; i < count; ++i) {
     const int place = active_[size(i)];
     Eigen::Map<Part>(&force[size(kRows * place)]).noalias() -=
-        factors_[size(place)].topLeftCorner<K, K>() *
-        Eigen::Map<const Part>(&right_[size(K * i)]);
+        factors_[size(place)].topLeftCorner<K, K>() * Eigen::Map<const Part>(&right_[size(K * i)]);
   }
 }
 
@@ -117,8 +116,7 @@ void ContactEquations::add_slope(const ContactSpace& space, int place, double st
   }
 }
 
-void ContactEquations::solve_for_dofs(ContactSpace& space, double step,
-                                      std::vector<double>& force,
+void ContactEquations::solve_for_dofs(ContactSpace& space, double step, std::vector<double>& force,
                                       std::vector<double>& velocity) noexcept {
   const int rows = space.rows(), n = space.dofs();
   make_slopes(space.places());

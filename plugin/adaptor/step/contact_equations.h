@@ -9,7 +9,8 @@
 namespace volcontact::adaptor {
 
 /// The equations of a linearly implicit step: f = e - C u' at contact places, u' = u_free + h
-/// Lambda f, with C = L L' positive semidefinite, of blocks of three coordinates of a place. docs/theory.md, "Implicit step". Memory is reused from solution to solution.
+/// Lambda f, with C = L L' positive semidefinite, of blocks of three coordinates of a place.
+/// docs/theory.md, "Implicit step". Memory is reused from solution to solution.
 struct ContactEquations {
   /// A part c c' of C: the numbers of c and the first of the three coordinates they are for.
   struct Column {

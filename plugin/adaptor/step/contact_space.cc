@@ -138,7 +138,7 @@ void ContactSpace::constrain_places() noexcept {
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const StepMatrix::Column& column = columns[c];
     // Both in turn.
-    const auto sum_up = [&](const std::vector<double>& values, Block Carried::*part,
+    const auto sum_up = [&](const std::vector<double>& values, Block Carried::* part,
                             std::vector<Block>& out) {
       for (std::size_t k = 0; k < column.support.size(); ++k) {
         scalars_[size(column.support[k])] = values[k];
@@ -178,15 +178,14 @@ void ContactSpace::build_mobility() noexcept {
   mobility_.resize(size(places()));
   if (!prefers_dofs_) build_delassus();
   for (int place = 0; place < places(); ++place) {
-    mobility_[size(place)] = prefers_dofs_
-                                 ? constrained(free_mobility_[size(place)], place, place)
-                                 : delassus(place, place);
+    mobility_[size(place)] = prefers_dofs_ ? constrained(free_mobility_[size(place)], place, place)
+                                           : delassus(place, place);
   }
 }
 
 // The form of less work, counted in multiplications and weighed as measured.
 void ContactSpace::choose_form() noexcept {
-  constexpr double kBlocks = 20.0, kPairs = 120.0, kOther = 2.0;
+  constexpr double kBlocks = 32.0, kPairs = 200.0, kOther = 2.0;
   double by_dofs = 0.0;
   for (std::size_t i = 0; i < envelope_.size(); ++i) {
     const double width = static_cast<double>(i) + 1.0 - envelope_[i];

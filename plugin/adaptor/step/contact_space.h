@@ -53,9 +53,7 @@ class ContactSpace {
   void build_mobility() noexcept;
   void build_delassus() noexcept;
   /// The block of Lambda of two places, after build_delassus(); of a symmetric H with k <= i.
-  const Square& delassus(int i, int k) const {
-    return delassus_[index(i, k)];
-  }
+  const Square& delassus(int i, int k) const { return delassus_[index(i, k)]; }
   /// The block of Lambda of one place.
   const Square& mobility(std::size_t place) const { return mobility_[place]; }
   Eigen::Map<const Eigen::VectorXd> known() const { return {known_.data(), dofs()}; }
@@ -109,7 +107,7 @@ class ContactSpace {
   std::vector<int> support_;
   // For each place and each column of G: J Mh^-1 G, and (1 + P' Mh^-1 G)^-1 P' Mh^-1 J'.
   std::vector<Block> opened_, closed_;
-  std::vector<double> dense_;  // kRows numbers a degree of freedom, zeros between uses
+  std::vector<double> dense_;    // kRows numbers a degree of freedom, zeros between uses
   std::vector<double> scalars_;  // one a degree of freedom, likewise
   std::vector<int> envelope_;
   std::vector<Square> mobility_, delassus_, free_mobility_, free_delassus_;

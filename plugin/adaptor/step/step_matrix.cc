@@ -47,8 +47,9 @@ void StepMatrix::number_dofs(const mjModel* m, std::span<const DofRange> trees) 
 void StepMatrix::make_mass(const mjModel* m, const mjData* d) noexcept {
   mass_.reset(carriers_, true);
   for (std::size_t i = 0; i < dofs_.size(); ++i) {
-    for_row_of_mass(m, d, dofs_[i],
-                    [&](int other, double mass) { mass_(static_cast<int>(i), number(other)) = mass; });
+    for_row_of_mass(m, d, dofs_[i], [&](int other, double mass) {
+      mass_(static_cast<int>(i), number(other)) = mass;
+    });
   }
 }
 

@@ -47,8 +47,8 @@ class DofTrees {
 };
 
 /// A matrix with entries only between degrees of freedom one of which carries the other, as masses
-/// have, and as its factors U D L have: nothing fills in. L has ones on its diagonal and the pattern
-/// of the rows here, U that of its mirror image. Memory is reused from matrix to matrix.
+/// have, and as its factors U D L have: nothing fills in. L has ones on its diagonal and the
+/// pattern of the rows here, U that of its mirror image. Memory is reused from matrix to matrix.
 class TreeMatrix {
  public:
   /// Sets all to zero. `trees` must stay.
@@ -67,9 +67,7 @@ class TreeMatrix {
   double& operator()(int i, int k) { return lower_[index(i, k)]; }
   double operator()(int i, int k) const { return lower_[index(i, k)]; }
   double& mirrored(int i, int k) { return (is_symmetric() ? lower_ : upper_)[index(i, k)]; }
-  double mirrored(int i, int k) const {
-    return (is_symmetric() ? lower_ : upper_)[index(i, k)];
-  }
+  double mirrored(int i, int k) const { return (is_symmetric() ? lower_ : upper_)[index(i, k)]; }
 
   /// In place; the diagonal as inverses.
   void factor() {
