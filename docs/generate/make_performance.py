@@ -48,7 +48,16 @@ GIVES = """\
 def render() -> str:
     """The whole page as Markdown text."""
     page = "\n".join(
-        [_introduction(), _pairs(), _threads(), _peers(), meshes(table), _steps(), _many()]
+        [
+            _introduction(),
+            _pairs(),
+            _threads(),
+            _peers(),
+            meshes(table),
+            _steps(),
+            _many(),
+            LONG_LIMBS,
+        ]
     )
     parts = (_wrapped(part) for part in re.split(r"\n\n+", page.strip()))
     return "\n\n".join(parts) + "\n"
@@ -338,6 +347,21 @@ def _many() -> str:
         "touch; a pair costs only once its bounds meet. Memory: what `attach` adds to the most "
         "that the process had; of few geoms it is the library's own.\n\n" + table(titles, rows)
     )
+
+
+LONG_LIMBS = """\
+## Many degrees of freedom
+
+What an implicit step costs goes with its contacts, not with its degrees of freedom
+([third_party.md](third_party.md)). Of the fruitfly, 108 degrees of freedom, five active limits and
+eight sites, the profile of a step said before: 42 % factoring the matrix of the island, about six
+times a step, 20 % adding the contacts to it, 12 % masses, limits and mobilities, made anew at each
+guess of the limits; 1.37 ms, 9.7 times native contact. Now Mh = U D L is factored along the trees
+once a step, the Jacobian of a site has the degrees of freedom that carry its bodies, limits are a
+few columns, and some six solutions a step have six rows a site: 0.31 ms, 2.1 times native contact.
+Of the plugin's time 37 % is the interference of the solids, 31 % the solutions by blocks, 22 % the
+matrices.
+"""
 
 
 def table(header: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:

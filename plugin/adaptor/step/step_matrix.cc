@@ -127,13 +127,27 @@ void StepMatrix::close(std::vector<int>& numbers) noexcept {
   for (const int i : numbers) marked_[index(i)] = 0;
 }
 
-void StepMatrix::take_columns(const NativeConstraints& constraints) noexcept {
+// In the order of their degrees of freedom, so that those of one tree are near each other.
+void StepMatrix::sort_columns(const NativeConstraints& constraints) noexcept {
   column_count_ = index(constraints.columns());
+  order_.clear();
+  for (int c = 0; c < constraints.columns(); ++c) {
+    int least = size();
+    for (const NativeConstraints::Entry& entry : constraints.column(c)) {
+      least = std::min(least, number(entry.dof));
+    }
+    order_.emplace_back(least, c);
+  }
+  std::sort(order_.begin(), order_.end());
   if (columns_.size() < column_count_) columns_.resize(column_count_);
+}
+
+void StepMatrix::take_columns(const NativeConstraints& constraints) noexcept {
+  sort_columns(constraints);
   dense_.assign(dofs_.size(), 0.0);
   for (std::size_t c = 0; c < column_count_; ++c) {
     Column& column = columns_[c];
-    const auto entries = constraints.column(static_cast<int>(c));
+    const auto entries = constraints.column(order_[c].second);
     column.support.clear();
     for (const NativeConstraints::Entry& entry : entries) {
       const int i = number(entry.dof);
@@ -191,11 +205,20 @@ void StepMatrix::widen_envelope() noexcept {
   }
 }
 
-// 1 + P' Mh^-1 G: where it converts that is 1 + G' M^-1 G.
+// 1 + P' Mh^-1 G: where it converts that is 1 + G' M^-1 G. Columns without a tree in common know
+// nothing of each other.
 void StepMatrix::couple() noexcept {
-  full_.assign(column_count_, 0);
-  coupling_.reset(full_, converts_ || free_factor_.is_symmetric());
   const int count = static_cast<int>(column_count_);
+  first_of_tree_.assign(dofs_.size(), count);
+  first_.resize(column_count_);
+  for (int c = 0; c < count; ++c) {
+    int& first = first_[index(c)] = c;
+    for (const int i : columns_[index(c)].support) {
+      int& of_tree = first_of_tree_[index(tree_of_[index(i)])];
+      first = std::min(first, of_tree = std::min(of_tree, c));
+    }
+  }
+  coupling_.reset(first_, converts_ || free_factor_.is_symmetric());
   for (int c = 0; c < count; ++c) {
     const Column& column = columns_[index(c)];
     for (std::size_t k = 0; k < column.support.size(); ++k) {
@@ -204,6 +227,7 @@ void StepMatrix::couple() noexcept {
       dense_[index(i)] = column.constrained[k] / pivot;
     }
     for (int other = 0; other < (coupling_.is_symmetric() ? c + 1 : count); ++other) {
+      if (std::min(c, other) < coupling_.first(std::max(c, other))) continue;
       const Column& to = columns_[index(other)];
       const std::vector<double>& values = converts_ ? to.constrained : to.forced;
       double sum = c == other ? 1.0 : 0.0;
@@ -217,16 +241,20 @@ void StepMatrix::couple() noexcept {
   coupling_.factor();
 }
 
+// The solver's acceleration is that of M, where it converts.
+void StepMatrix::factor_mass() noexcept {
+  if (!makes_mass_factor_) return;
+  makes_mass_factor_ = false;
+  mass_factor_ = mass_;
+  mass_factor_.factor();
+}
+
 void StepMatrix::constrain(const NativeConstraints& constraints) noexcept {
   load_.assign(dofs_.size(), 0.0);
   for (const NativeConstraints::Entry& entry : constraints.load()) {
     load_[index(number(entry.dof))] += entry.value;
   }
-  if (makes_mass_factor_ && constraints.columns() > 0) {
-    mass_factor_ = mass_;
-    mass_factor_.factor();
-    makes_mass_factor_ = false;
-  }
+  if (constraints.columns() > 0) factor_mass();
   take_columns(constraints);
   widen_envelope();
   couple();
@@ -294,13 +322,8 @@ void StepMatrix::solve(std::vector<double>& x) noexcept {
 }
 
 void StepMatrix::accelerate(std::vector<double>& x) noexcept {
+  factor_mass();
   release(x);
-  // Without columns nothing has made the factor of M: the solver solves with M all the same.
-  if (converts_ && makes_mass_factor_) {
-    mass_factor_ = mass_;
-    mass_factor_.factor();
-    makes_mass_factor_ = false;
-  }
   (converts_ ? mass_factor_ : free_factor_).solve(x.data());
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "adaptor/step/envelope_matrix.h"
@@ -72,6 +73,8 @@ class StepMatrix {
   void number_dofs(const mjModel* m, std::span<const DofRange> trees) noexcept;
   void make_mass(const mjModel* m, const mjData* d) noexcept;
   void add_extra(const mjModel* m, const mjData* d, Damping damping) noexcept;
+  void factor_mass() noexcept;
+  void sort_columns(const NativeConstraints& constraints) noexcept;
   void take_columns(const NativeConstraints& constraints) noexcept;
   void widen_envelope() noexcept;
   void couple() noexcept;
@@ -91,7 +94,8 @@ class StepMatrix {
   std::size_t column_count_ = 0;
   EnvelopeMatrix coupling_, matrix_;
   bool has_matrix_ = false;
-  std::vector<int> full_;
+  std::vector<std::pair<int, int>> order_;  // of columns: least number, number of the constraint's
+  std::vector<int> first_, first_of_tree_;
   std::vector<double> load_, dense_, product_, shares_;
   std::vector<char> marked_;
 };
