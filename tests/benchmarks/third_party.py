@@ -6,8 +6,8 @@
 The wheels (43, 40, 527 and 26 MB) go into the folder given, without what they depend on: their
 MJCF is all that is needed. Each scene is compiled by MuJoCo, gets its data, and is then attached
 without a key in it. Writes one row a scene to results/third_party.csv, of which
-docs/generate/make_third_party.py makes the page. Needs MuJoCo 3.3 or later, to put robosuite's parts
-together.
+docs/generate/make_third_party.py makes the page. Needs MuJoCo 3.3 or later, to put the parts of
+robosuite together.
 """
 
 from __future__ import annotations
