@@ -77,10 +77,6 @@ class EnvelopeMatrix {
     }
   }
 
-  /// Before `factor`: A x, and A' x.
-  void multiply(const double* x, double* out) const { multiply(x, out, false); }
-  void multiply_transposed(const double* x, double* out) const { multiply(x, out, true); }
-
   /// After `factor`: solves for the unknowns begin ... end - 1, which no other row has entries
   /// with, under `kSides` right sides. `x` has as many numbers for each of these unknowns, the
   /// right sides at first.
@@ -103,18 +99,6 @@ class EnvelopeMatrix {
   }
 
  private:
-  void multiply(const double* x, double* out, bool is_transposed) const {
-    std::fill(out, out + size(), 0.0);
-    for (int i = 0; i < size(); ++i) {
-      out[i] += (*this)(i, i) * x[i];
-      for (int k = first(i); k < i; ++k) {
-        const double low = (*this)(i, k), up = mirrored(i, k);
-        out[i] += (is_transposed ? up : low) * x[k];
-        out[k] += (is_transposed ? low : up) * x[i];
-      }
-    }
-  }
-
   // Column by column, whose entries do not wait for each other.
   void factor_symmetric() {
     for (int k = 0; k < size(); ++k) {

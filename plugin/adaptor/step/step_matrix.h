@@ -34,7 +34,6 @@ class StepMatrix {
   int number(int dof) const { return numbers_[static_cast<std::size_t>(dof)]; }
   /// The trees, by the numbers here.
   const DofRange& tree(int i) const { return trees_[static_cast<std::size_t>(i)]; }
-  const DofTrees& carriers() const { return carriers_; }
 
   bool is_symmetric() const {
     return free_factor_.is_symmetric() && (!converts_ || column_count_ == 0);

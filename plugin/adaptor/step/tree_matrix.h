@@ -12,12 +12,6 @@ namespace volcontact::adaptor {
 /// The degrees of freedom of kinematic trees, each before the one that carries it.
 class DofTrees {
  public:
-  void clear() {
-    parents_.clear();
-    depths_.clear();
-    starts_.clear();
-    count_ = 0;
-  }
   /// `parents` by number, negative for none.
   void set(std::span<const int> parents) {
     parents_.assign(parents.begin(), parents.end());

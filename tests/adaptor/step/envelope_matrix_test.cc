@@ -48,7 +48,7 @@ TEST(EnvelopeMatrix, SolvesAsTheWholeMatrix) {
   }
 }
 
-TEST(EnvelopeMatrix, SolvesAndMultipliesWhereItIsNotSymmetric) {
+TEST(EnvelopeMatrix, SolvesWhereItIsNotSymmetric) {
   test::Random random(4);
   const std::vector<int> first = {0, 0, 0, 2, 2, 1, 0, 7, 7, 3, 9};
   const int n = static_cast<int>(first.size());
@@ -65,11 +65,7 @@ TEST(EnvelopeMatrix, SolvesAndMultipliesWhereItIsNotSymmetric) {
       dense(k, i) += above;
     }
   }
-  Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(n, -1.0, 2.0), product(n);
-  matrix.multiply(x.data(), product.data());
-  EXPECT_LT((product - dense * x).norm(), 1e-14 * product.norm());
-  matrix.multiply_transposed(x.data(), product.data());
-  EXPECT_LT((product - dense.transpose() * x).norm(), 1e-14 * product.norm());
+  Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(n, -1.0, 2.0);
   const Eigen::VectorXd truth = dense.partialPivLu().solve(x);
   matrix.factor();
   matrix.solve(x.data(), 0, n);
