@@ -137,6 +137,10 @@ void ContactSpace::constrain_places() noexcept {
   const bool converts = matrix_.converts();
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const StepMatrix::Column& column = columns[c];
+    for (const int dof : column.support) is_in_tree_[size(matrix_.tree_begin(dof))] = 1;
+    const auto is_near = [&](const Carried& one) {
+      return is_in_tree_[size(matrix_.tree_begin(one.dof))] != 0;
+    };
     // Both in turn.
     const auto sum_up = [&](const std::vector<double>& values, Block Carried::* part,
                             std::vector<Block>& out) {
@@ -144,8 +148,10 @@ void ContactSpace::constrain_places() noexcept {
         scalars_[size(column.support[k])] = values[k];
       }
       for (int place = 0; place < places(); ++place) {
+        const std::span<const Carried> all = carried(place);
+        if (all.empty() || !(is_near(all.front()) || is_near(all.back()))) continue;
         Block& sum = out[size(place) * columns.size() + c];
-        for (const Carried& one : carried(place)) {
+        for (const Carried& one : all) {
           const double value = scalars_[size(one.dof)];
           if (value != 0.0) sum += value * (one.*part);
         }
@@ -154,6 +160,7 @@ void ContactSpace::constrain_places() noexcept {
     };
     sum_up(column.forced, &Carried::moved, opened_);
     sum_up(column.constrained, converts ? &Carried::massed : &Carried::forced, closed_);
+    for (const int dof : column.support) is_in_tree_[size(matrix_.tree_begin(dof))] = 0;
   }
   if (columns.empty()) return;
   const int count = static_cast<int>(columns.size());
@@ -280,6 +287,7 @@ void ContactSpace::build(const mjModel* m, mjData* d, Damping damping,
   known_.resize(count);
   dense_.assign(kRows * count, 0.0);
   scalars_.assign(count, 0.0);
+  is_in_tree_.assign(count, 0);
   for (std::size_t i = 0; i < count; ++i) {
     free_known_[i] = known[matrix_.dofs()[i]];
     generalized_[i] = d->qvel[matrix_.dofs()[i]];

@@ -107,8 +107,9 @@ class ContactSpace {
   std::vector<int> support_;
   // For each place and each column of G: J Mh^-1 G, and (1 + P' Mh^-1 G)^-1 P' Mh^-1 J'.
   std::vector<Block> opened_, closed_;
-  std::vector<double> dense_;    // kRows numbers a degree of freedom, zeros between uses
-  std::vector<double> scalars_;  // one a degree of freedom, likewise
+  std::vector<double> dense_;     // kRows numbers a degree of freedom, zeros between uses
+  std::vector<double> scalars_;   // one a degree of freedom, likewise
+  std::vector<char> is_in_tree_;  // of a column, by the tree's first degree of freedom; likewise
   std::vector<int> envelope_;
   std::vector<Square> mobility_, delassus_, free_mobility_, free_delassus_;
   bool has_free_delassus_ = false;

@@ -34,6 +34,8 @@ class StepMatrix {
   int number(int dof) const { return numbers_[static_cast<std::size_t>(dof)]; }
   /// The trees, by the numbers here.
   const DofRange& tree(int i) const { return trees_[static_cast<std::size_t>(i)]; }
+  /// Where the tree of a degree of freedom begins.
+  int tree_begin(int i) const { return tree_of_[static_cast<std::size_t>(i)]; }
 
   bool is_symmetric() const {
     return free_factor_.is_symmetric() && (!converts_ || column_count_ == 0);
