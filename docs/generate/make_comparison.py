@@ -157,7 +157,7 @@ def scenes_of_others() -> str:
     less_deep = sum(float(r["volumetric_depth"]) < float(r["native_depth"]) for r in rows)
     return (
         "## Scenes written for native contact\n\n"
-        f"{len(rows)} scenes of dm_control, metaworld, robosuite and gymnasium-robotics run as they are ([third_party.md](third_party.md)).\n"  # noqa: E501
+        f"{len(rows)} scenes of dm_control, metaworld, robosuite and gymnasium-robotics run without a key in them ([third_party.md](third_party.md)).\n"  # noqa: E501
         f"A step takes {min(times):.1f} to {max(times):.1f} times that of native contact, {statistics.median(times):.1f} in the median:\n"  # noqa: E501
         "many of their parts are meshes, which native contact takes as hulls. "
         f"In {less_deep} the deepest penetration is smaller than natively.\n"

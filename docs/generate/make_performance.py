@@ -356,9 +356,9 @@ What an implicit step costs goes with its contacts, not with its degrees of free
 ([third_party.md](third_party.md)). Of the fruitfly, 108 degrees of freedom, five active limits and
 eight sites, the profile of a step said before: 42 % factoring the matrix of the island, about six
 times a step, 20 % adding the contacts to it, 12 % masses, limits and mobilities, made anew at each
-guess of the limits; 1.37 ms, 9.7 times native contact. Now Mh = U D L is factored along the trees
+guess of the limits; 1.35 ms, 9.4 times native contact. Now Mh = U D L is factored along the trees
 once a step, the Jacobian of a site has the degrees of freedom that carry its bodies, limits are a
-few columns, and some six solutions a step have six rows a site: 0.31 ms, 2.1 times native contact.
+few columns, and some six solutions a step have six rows a site: 0.30 ms, 2.1 times native contact.
 Of the plugin's time 37 % is the interference of the solids, 31 % the solutions by blocks, 22 % the
 matrices.
 """

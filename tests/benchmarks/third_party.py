@@ -3,7 +3,7 @@
 
     ./run python tests/benchmarks/third_party.py build/third_party --install
 
-The wheels (43, 40, 527 and 26 MB) go into the folder given, without what they depend on: their
+The wheels (56, 40, 527 and 26 MB) go into the folder given, without what they depend on: their
 MJCF is all that is needed. Each scene is compiled by MuJoCo, gets its data, and is then attached
 without a key in it. Writes one row a scene to results/third_party.csv, of which
 docs/generate/make_third_party.py makes the page. Needs MuJoCo 3.3 or later, to put the parts of

@@ -60,39 +60,44 @@ void ContactSpace::widen_envelope(int place) noexcept {
   }
 }
 
+// Leaves J of the place in `dense_`, carried through one of the factors.
+template <typename Carry>
+void ContactSpace::carry(int place, Carry carry, Block Carried::* out) noexcept {
+  support_.clear();
+  for (const Carried& one : carried(place)) support_.push_back(one.dof);
+  for (const Move& move : moves(place)) {
+    std::copy_n(move.column.data(), kRows, &dense_[size(kRows * move.dof)]);
+  }
+  carry(support_, dense_.data());
+  for (Carried& one : carried(place)) {
+    Eigen::Map<Block> numbers(&dense_[size(kRows * one.dof)]);
+    one.*out = numbers;
+    numbers.setZero();
+  }
+}
+
 // J through the factors of Mh, which fill in nothing but what carries.
 void ContactSpace::respond() noexcept {
   const TreeMatrix& factor = matrix_.free_factor();
+  const auto lower = [&](const auto& support, double* x) { factor.carry_lower<kRows>(support, x); };
+  const auto upper = [&](const auto& support, double* x) { factor.carry_upper<kRows>(support, x); };
   carried_.clear();
   carried_begin_.assign(1, 0);
   is_massed_ = false;
+  free_mobility_.assign(size(places()), Square::Zero());
   for (int place = 0; place < places(); ++place) {
     support_.clear();
     for (const Move& move : moves(place)) support_.push_back(move.dof);
     matrix_.close(support_);
-    const auto put = [&] {
-      for (const Move& move : moves(place)) {
-        std::copy_n(move.column.data(), kRows, &dense_[size(kRows * move.dof)]);
-      }
-    };
-    const std::size_t first = carried_.size();
-    put();
-    factor.carry_lower<kRows>(support_, dense_.data());
-    for (const int dof : support_) {
-      Eigen::Map<Block> numbers(&dense_[size(kRows * dof)]);
-      carried_.push_back({numbers, factor.inverse_pivot(dof) * numbers, numbers, dof});
-      numbers.setZero();
-    }
-    if (!factor.is_symmetric()) {
-      put();
-      factor.carry_upper<kRows>(support_, dense_.data());
-      for (std::size_t i = first; i < carried_.size(); ++i) {
-        Eigen::Map<Block> numbers(&dense_[size(kRows * carried_[i].dof)]);
-        carried_[i].forced = factor.inverse_pivot(carried_[i].dof) * numbers;
-        numbers.setZero();
-      }
-    }
+    for (const int dof : support_) carried_.push_back({.dof = dof});
     carried_begin_.push_back(carried_.size());
+    carry(place, lower, &Carried::moved);
+    if (!factor.is_symmetric()) carry(place, upper, &Carried::forced);
+    for (Carried& one : carried(place)) {
+      one.forced =
+          factor.inverse_pivot(one.dof) * (factor.is_symmetric() ? one.moved : one.forced).eval();
+      free_mobility_[size(place)].noalias() += one.moved * one.forced.transpose();
+    }
   }
 }
 
@@ -118,18 +123,13 @@ void ContactSpace::constrain_places() noexcept {
   const std::span<const StepMatrix::Column> columns = matrix_.columns();
   if (matrix_.converts() && !columns.empty() && !is_massed_) {
     is_massed_ = true;
+    const TreeMatrix& factor = matrix_.constraint_factor();
+    const auto lower = [&](const auto& support, double* x) {
+      factor.carry_lower<kRows>(support, x);
+    };
     for (int place = 0; place < places(); ++place) {
-      support_.clear();
-      for (const Carried& one : carried(place)) support_.push_back(one.dof);
-      for (const Move& move : moves(place)) {
-        std::copy_n(move.column.data(), kRows, &dense_[size(kRows * move.dof)]);
-      }
-      matrix_.mass_factor().carry_lower<kRows>(support_, dense_.data());
-      for (std::size_t i = carried_begin_[size(place)]; i < carried_begin_[size(place) + 1]; ++i) {
-        Eigen::Map<Block> numbers(&dense_[size(kRows * carried_[i].dof)]);
-        carried_[i].massed = numbers;
-        numbers.setZero();
-      }
+      carry(place, lower, &Carried::massed);
+      for (Carried& one : carried(place)) one.massed *= factor.inverse_pivot(one.dof);
     }
   }
   opened_.assign(size(places()) * columns.size(), Block::Zero());
@@ -141,7 +141,7 @@ void ContactSpace::constrain_places() noexcept {
     const auto is_near = [&](const Carried& one) {
       return is_in_tree_[size(matrix_.tree_begin(one.dof))] != 0;
     };
-    // Both in turn.
+    // For each place of its trees, what the column has in common with J.
     const auto sum_up = [&](const std::vector<double>& values, Block Carried::* part,
                             std::vector<Block>& out) {
       for (std::size_t k = 0; k < column.support.size(); ++k) {
@@ -300,12 +300,6 @@ void ContactSpace::build(const mjModel* m, mjData* d, Damping damping,
   add_motion(generalized_.data(), velocity_.data());
   respond();
   has_free_delassus_ = false;
-  free_mobility_.assign(size(this->places()), Square::Zero());
-  for (int place = 0; place < this->places(); ++place) {
-    for (const Carried& one : carried(place)) {
-      free_mobility_[size(place)].noalias() += one.moved * one.forced.transpose();
-    }
-  }
 }
 
 void ContactSpace::constrain(const NativeConstraints& constraints) noexcept {

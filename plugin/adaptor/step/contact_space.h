@@ -70,6 +70,21 @@ class ContactSpace {
   void add_motion(const double* x, double* u) const noexcept;
 
  private:
+  // What a place moves and what carries that; J carried through the factors U D L of Mh.
+  struct Carried {
+    Block moved = Block::Zero();   // L'^-1 J'
+    Block forced = Block::Zero();  // D^-1 U^-1 J'
+    Block massed = Block::Zero();  // D^-1 L'^-1 J', of the factors of M, where H converts
+    int dof = 0;
+  };
+  std::span<const Carried> carried(int place) const {
+    const std::size_t i = static_cast<std::size_t>(place);
+    return {carried_.data() + carried_begin_[i], carried_begin_[i + 1] - carried_begin_[i]};
+  }
+  std::span<Carried> carried(int place) {
+    const std::size_t i = static_cast<std::size_t>(place);
+    return {carried_.data() + carried_begin_[i], carried_begin_[i + 1] - carried_begin_[i]};
+  }
   void add_place(const mjModel* m, const mjData* d, const ContactPlace& place,
                  std::pair<int, int> trees) noexcept;
   void add_body(const mjModel* m, const mjData* d, const ContactPlace& place, int body,
@@ -77,6 +92,8 @@ class ContactSpace {
   void add_driven(const ContactPlace& place) noexcept;
   void widen_envelope(int place) noexcept;
   void choose_form() noexcept;
+  template <typename Carry>
+  void carry(int place, Carry carry, Block Carried::* out) noexcept;
   void respond() noexcept;
   void constrain_places() noexcept;
   Square& free_block(int i, int k) { return free_delassus_[index(i, k)]; }
@@ -90,17 +107,6 @@ class ContactSpace {
   StepMatrix matrix_;
   std::vector<Move> moves_;
   std::vector<std::size_t> move_begin_ = {0};
-  // What a place moves and what carries that; J carried through the factors U D L of Mh.
-  struct Carried {
-    Block moved;   // L'^-1 J'
-    Block forced;  // D^-1 U^-1 J'
-    Block massed;  // L'^-1 J', of the factors of M, where H converts
-    int dof;
-  };
-  std::span<const Carried> carried(int place) const {
-    const std::size_t i = static_cast<std::size_t>(place);
-    return {carried_.data() + carried_begin_[i], carried_begin_[i + 1] - carried_begin_[i]};
-  }
   std::vector<Carried> carried_;
   std::vector<std::size_t> carried_begin_;
   bool is_massed_ = false;

@@ -53,7 +53,8 @@ void StepMatrix::make_mass(const mjModel* m, const mjData* d) noexcept {
   }
 }
 
-void StepMatrix::add_extra(const mjModel* m, const mjData* d, Damping damping) noexcept {
+// Mh = M + N. Returns whether there is any N.
+bool StepMatrix::add_extra(const mjModel* m, const mjData* d, Damping damping) noexcept {
   free_.reset(carriers_, false);
   const double h = m->opt.timestep;
   const auto at = [&](int row, int column) -> double& {
@@ -77,35 +78,36 @@ void StepMatrix::add_extra(const mjModel* m, const mjData* d, Damping damping) n
           matrix[i] - mass_(std::min(one, other), std::max(one, other));
     }
   }
-  has_extra_ = false;
+  bool has_extra = false;
   bool is_symmetric = true;
   for (int i = 0; i < size(); ++i) {
-    has_extra_ = has_extra_ || free_(i, i) != 0.0;
+    has_extra = has_extra || free_(i, i) != 0.0;
     free_(i, i) += mass_(i, i);
     for (int k = carriers_.parent(i); k >= 0; k = carriers_.parent(k)) {
       double &below = free_(i, k), &above = free_.mirrored(i, k);
-      has_extra_ = has_extra_ || below != 0.0 || above != 0.0;
+      has_extra = has_extra || below != 0.0 || above != 0.0;
       is_symmetric = is_symmetric && below == above;
       below += mass_(i, k);
       above += mass_(i, k);
     }
   }
   if (is_symmetric) free_.mirror();
+  return has_extra;
 }
 
 void StepMatrix::build(const mjModel* m, const mjData* d, Damping damping,
                        std::span<const DofRange> trees) noexcept {
   number_dofs(m, trees);
   make_mass(m, d);
-  has_extra_ = false;
+  bool has_extra = false;
   if (damping == Damping::kNone) {
     free_ = mass_;
   } else {
-    add_extra(m, d, damping);
+    has_extra = add_extra(m, d, damping);
   }
   free_factor_ = free_;
   free_factor_.factor();
-  converts_ = has_extra_ && !solves_with_step_matrix(m);
+  converts_ = has_extra && !solves_with_step_matrix(m);
   makes_mass_factor_ = converts_;
   column_count_ = 0;
   load_.assign(dofs_.size(), 0.0);
@@ -160,26 +162,19 @@ void StepMatrix::take_columns(const NativeConstraints& constraints) noexcept {
         dense_[index(number(entry.dof))] += entry.value;
       }
     };
-    const auto take = [&](std::vector<double>& out, const TreeMatrix* divided) {
+    const auto take = [&](std::vector<double>& out) {
       out.clear();
-      for (const int i : column.support) {
-        out.push_back(dense_[index(i)] * (divided ? divided->inverse_pivot(i) : 1.0));
-        dense_[index(i)] = 0.0;
-      }
+      for (const int i : column.support) out.push_back(std::exchange(dense_[index(i)], 0.0));
     };
     put();
-    take(column.values, nullptr);
+    take(column.values);
     put();
     free_factor_.carry_upper<1>(column.support, dense_.data());
-    take(column.forced, &free_factor_);
+    for (const int i : column.support) dense_[index(i)] *= free_factor_.inverse_pivot(i);
+    take(column.forced);
     put();
-    if (converts_) {
-      mass_factor_.carry_lower<1>(column.support, dense_.data());
-      take(column.constrained, &mass_factor_);
-    } else {
-      free_factor_.carry_lower<1>(column.support, dense_.data());
-      take(column.constrained, nullptr);
-    }
+    constraint_factor().carry_lower<1>(column.support, dense_.data());
+    take(column.constrained);
   }
 }
 
@@ -223,8 +218,7 @@ void StepMatrix::couple() noexcept {
     const Column& column = columns_[index(c)];
     for (std::size_t k = 0; k < column.support.size(); ++k) {
       const int i = column.support[k];
-      const double pivot = converts_ ? mass_factor_.inverse_pivot(i) : 1.0;
-      dense_[index(i)] = column.constrained[k] / pivot;
+      dense_[index(i)] = column.constrained[k] * (converts_ ? mass_factor_.inverse_pivot(i) : 1.0);
     }
     for (int other = 0; other < (coupling_.is_symmetric() ? c + 1 : count); ++other) {
       if (std::min(c, other) < coupling_.first(std::max(c, other))) continue;
@@ -299,7 +293,7 @@ const EnvelopeMatrix& StepMatrix::matrix() noexcept {
 void StepMatrix::release(std::vector<double>& x) noexcept {
   if (column_count_ == 0) return;
   product_ = x;
-  (converts_ ? mass_factor_ : free_factor_).solve(product_.data());
+  constraint_factor().solve(product_.data());
   shares_.assign(column_count_, 0.0);
   for (std::size_t c = 0; c < column_count_; ++c) {
     const Column& column = columns_[c];
@@ -324,7 +318,7 @@ void StepMatrix::solve(std::vector<double>& x) noexcept {
 void StepMatrix::accelerate(std::vector<double>& x) noexcept {
   factor_mass();
   release(x);
-  (converts_ ? mass_factor_ : free_factor_).solve(x.data());
+  constraint_factor().solve(x.data());
 }
 
 }  // namespace volcontact::adaptor

@@ -57,13 +57,14 @@ class StepMatrix {
     std::vector<int> support;
     std::vector<double> values;       // G
     std::vector<double> forced;       // D^-1 U^-1 G, of the factors of Mh = U D L
-    std::vector<double> constrained;  // L'^-1 G; that of M, divided by its D, where it converts
+    std::vector<double> constrained;  // L'^-1 G; of the factors of M where it converts
   };
   std::span<const Column> columns() const { return {columns_.data(), column_count_}; }
   /// Whether the solver's acceleration is not that of the step.
   bool converts() const { return converts_; }
   const TreeMatrix& free_factor() const { return free_factor_; }
-  const TreeMatrix& mass_factor() const { return mass_factor_; }
+  /// Of what constraints divide by: M, or Mh where the solver's acceleration is that of the step.
+  const TreeMatrix& constraint_factor() const { return converts_ ? mass_factor_ : free_factor_; }
   /// (1 + P' Mh^-1 G)^-1, factored.
   const EnvelopeMatrix& coupling() const { return coupling_; }
 
@@ -73,7 +74,7 @@ class StepMatrix {
  private:
   void number_dofs(const mjModel* m, std::span<const DofRange> trees) noexcept;
   void make_mass(const mjModel* m, const mjData* d) noexcept;
-  void add_extra(const mjModel* m, const mjData* d, Damping damping) noexcept;
+  bool add_extra(const mjModel* m, const mjData* d, Damping damping) noexcept;
   void factor_mass() noexcept;
   void sort_columns(const NativeConstraints& constraints) noexcept;
   void take_columns(const NativeConstraints& constraints) noexcept;
@@ -88,7 +89,6 @@ class StepMatrix {
   std::vector<int> free_envelope_, envelope_;
   TreeMatrix mass_, mass_factor_;  // M
   TreeMatrix free_, free_factor_;  // Mh
-  bool has_extra_ = false;
   bool makes_mass_factor_ = false;
   bool converts_ = false;
   std::vector<Column> columns_;

@@ -69,8 +69,8 @@ class TreeMatrix {
       const std::size_t row = trees_->start(i);
       const int count = trees_->depth(i);
       const double inverse = 1.0 / lower_[row];
-      double* const low = &lower_[row + 1];
-      double* const up = is_symmetric() ? low : &upper_[row + 1];
+      double* const low = lower_.data() + row + 1;
+      double* const up = is_symmetric() ? low : upper_.data() + row + 1;
       int carrier = trees_->parent(i);
       for (int q = 0; q < count; ++q, carrier = trees_->parent(carrier)) {
         const double by = up[q] * inverse;
