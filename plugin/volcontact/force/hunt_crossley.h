@@ -12,10 +12,10 @@
 namespace volcontact {
 
 /// Volumetric spring with Hunt-Crossley damping: f = k V (1 + a v), never negative. The damping is
-/// a constant, or such that an impact has the coefficient of restitution asked for: then a follows
-/// from the speed at first touch, which is kept until the site ends. docs/theory.md, "Normal force"
-/// and "Restitution"; Gonthier et al. Throws std::invalid_argument on values out of range and where
-/// both are given.
+/// a constant, or such that a blow has the coefficient of restitution asked for: then a follows
+/// from its speed, the largest at which the bodies approached since they last parted.
+/// docs/theory.md, "Normal force" and "Restitution"; Gonthier et al. Throws std::invalid_argument
+/// on values out of range and where both are given.
 class HuntCrossley final : public NormalForce {
  public:
   static constexpr const char* kName = "hunt_crossley";
@@ -32,12 +32,12 @@ class HuntCrossley final : public NormalForce {
       Field<Params>{"damping", "s/m", &Params::damping, kNonNegative,
                     "a, relative rise of the force per approach speed", &rules::kDamping},
       Field<Params>{"restitution", "-", &Params::restitution, kRestitution,
-                    "e, in place of damping: a from the speed at first touch",
-                    &rules::kRestitution},
+                    "e, in place of damping: a from the speed of the blow", &rules::kRestitution},
       Field<Params>{"restitution_speed_floor", "m/s", &Params::restitution_speed_floor, kPositive,
                     "slower impacts are damped as if they had this speed", &rules::kLargerOfTwo}};
   static constexpr std::array kStates{
-      StateField{"impact_speed", "m/s", Keeping::kValue, "v_n at first touch, 0 before"}};
+      StateField{"impact_speed", "m/s", Keeping::kValue,
+                 "of the blow, negative once the bodies part, 0 before the first"}};
 
   explicit HuntCrossley(const Params& params)
       : p_(validated<HuntCrossley>(params)), damping_number_(damping_number_of(p_.restitution)) {
@@ -60,18 +60,29 @@ class HuntCrossley final : public NormalForce {
     const double damping = latches() ? latched_damping(in, state) : p_.damping;
     const double raised = 1.0 + damping * in.approach_speed;
     if (!(raised > 0.0)) return {};  // comes away faster than the layer follows
-    return {p_.stiffness * raised, p_.stiffness * in.volume * damping};
+    const bool is_bounded = latches() && parts_faster(in, std::abs(state.pending[0]));
+    return {p_.stiffness * raised, is_bounded ? 0.0 : p_.stiffness * in.volume * damping};
   }
 
  private:
   bool latches() const { return damping_number_ > 0.0; }
 
+  // Whether the bodies part faster than after a blow of this speed: something else drives them.
+  bool parts_faster(const NormalInput& in, double blow) const {
+    return -in.approach_speed > p_.restitution * blow;
+  }
+
   double latched_damping(const NormalInput& in, const LawState& state) const {
     const double known = state.committed[0];
-    const double speed =
-        known > 0.0 ? known : std::max(in.approach_speed, p_.restitution_speed_floor);
-    state.pending[0] = speed;
-    return damping_number_ / speed;
+    if (in.approach_speed > 0.0) {  // a blow begins where the bodies had parted
+      const double blow = std::max({known, in.approach_speed, p_.restitution_speed_floor});
+      state.pending[0] = blow;
+      return damping_number_ / blow;
+    }
+    const double blow = std::max(std::abs(known), p_.restitution_speed_floor);
+    state.pending[0] = -blow;
+    if (!parts_faster(in, blow)) return damping_number_ / blow;
+    return damping_number_ * p_.restitution / -in.approach_speed;
   }
 
   Params p_;

@@ -106,7 +106,7 @@ TEST(HuntCrossley, ImpactsBelowTheFloorAreDampedAsAtTheFloor) {
   const HuntCrossley law({.stiffness = 1e7, .restitution = 0.5, .restitution_speed_floor = 0.02});
   double none = 0.0, latched = 0.0;
   const NormalOutput out =
-      law.evaluate({.volume = 1e-6, .approach_speed = -0.3}, {&none, &latched, 0.0});
+      law.evaluate({.volume = 1e-6, .approach_speed = 1e-3}, {&none, &latched, 0.0});
   EXPECT_EQ(latched, 0.02);
   EXPECT_NEAR(out.rolling_damping, 1e7 * 1.43275 / 0.02, 1e7 * 1e-5 / 0.02);  // table of the theory
 }
@@ -118,6 +118,41 @@ TEST(HuntCrossley, KeepsTheSpeedOfTheFirstTouch) {
   law.evaluate({.volume = 1e-6, .approach_speed = 0.1}, {&first, &later, 1e-3});
   EXPECT_EQ(first, 0.7);
   EXPECT_EQ(later, 0.7);
+}
+
+// A slow touch, then a blow before the bodies part: the blow has the restitution, not the touch.
+TEST(HuntCrossley, ABlowOnWhatTouchesHasItsOwnSpeed) {
+  const HuntCrossley law({.restitution = 0.5});
+  double none = 0.0, touch = 0.0, blow = 0.0;
+  law.evaluate({.volume = 1e-9, .approach_speed = 0.02}, {&none, &touch, 1e-3});
+  const NormalOutput out =
+      law.evaluate({.volume = 1e-6, .approach_speed = 0.7}, {&touch, &blow, 1e-3});
+  EXPECT_EQ(blow, 0.7);
+  EXPECT_NEAR(out.magnitude / out.elastic, 1.0 + damping_number_of(0.5), 1e-12);
+}
+
+TEST(HuntCrossley, BeginsAnewWhenTheBodiesPressAgain) {
+  const HuntCrossley law({.restitution = 0.5});
+  double first = 0.7, parting = 0.0, again = 0.0;
+  law.evaluate({.volume = 1e-6, .approach_speed = -0.1}, {&first, &parting, 1e-3});
+  EXPECT_EQ(parting, -0.7);  // still that of the blow they part from
+  law.evaluate({.volume = 1e-6, .approach_speed = 0.1}, {&parting, &again, 1e-3});
+  EXPECT_EQ(again, 0.1);
+}
+
+// What was pressed slowly and is let go parts faster than after any blow it had: it loses what the
+// end of an impact loses, not all.
+TEST(HuntCrossley, WhatIsLetGoKeepsTheForceOfThePartingOfAnImpact) {
+  const double e = 0.8, A = damping_number_of(e);
+  const HuntCrossley law({.restitution = e});
+  double pressed = 0.01, parting = 0.0;
+  for (const double speed : {0.008, 0.1, 1.6}) {
+    const NormalInput in{.volume = 1e-6, .approach_speed = -speed};
+    const NormalOutput out = law.evaluate(in, {&pressed, &parting, 1e-3});
+    EXPECT_NEAR(out.magnitude / out.elastic, 1.0 - A * e, 1e-12) << speed;
+    EXPECT_NEAR(law.slope(in, {&pressed, &parting, 1e-3}).damping, 0.0,
+                speed > 0.008 ? 0.0 : 1e7 * 1e-6 * A / 0.01);
+  }
 }
 
 TEST(HuntCrossley, KeepsNothingUnderConstantDamping) {
