@@ -5,6 +5,7 @@
 
 #include "adaptor/mujoco/sizes.h"
 #include "adaptor/step/implicit_step.h"
+#include "adaptor/step/turning.h"
 
 namespace volcontact::adaptor {
 namespace {
@@ -47,6 +48,41 @@ Vec3 ImplicitStep::slip_of(const Site& site, const std::vector<double>& u,
   return {at[0], at[1], site.tangent.friction.lever * at[2]};
 }
 
+// For friction that holds by what it remembers of the way.
+void ImplicitStep::set_drift(const mjModel* m, const mjData* d, double time) noexcept {
+  for (const int i : island_) {
+    Site& site = sites_[size(i)];
+    if (!site.laws.has_friction() || !site.laws.friction_keeps()) continue;
+    const ContactPlace& place = places_[size(i)];
+    const Vec3 turning = turning_acceleration(m, d, place.body_a, place.point) -
+                         turning_acceleration(m, d, place.body_b, place.point);
+    const Mat3& axes = site.tangent.axes;
+    site.drift = time * Vec3(axes.col(0).dot(turning), axes.col(1).dot(turning), 0.0);
+  }
+}
+
+// How the site slides where friction has this strength under the normal force of the last solution.
+// Slip and normal force go straight with friction, between the last solution and that without any;
+// before there is friction, by the mobility of the site alone.
+ImplicitStep::Slide ImplicitStep::slide_under(std::size_t i, double strength,
+                                              double step) const noexcept {
+  const Site& site = this->site(i);
+  const double lever = site.tangent.friction.lever;
+  const double* f = &force_[i * size(kRows) + 3];
+  const Vec3 acting(f[0], f[1], lever > 0.0 ? f[2] / lever : 0.0);
+  const Vec3 slip = slip_of(site, velocity_, i);
+  const double speed = slip.norm(), borne = acting.norm(), normal = normal_force(i);
+  if (borne > 0.0 && site.free_speed > speed && normal > 0.0) {
+    const double mu = strength / normal, less = 1.0 - mu * (normal - site.free_normal) / borne;
+    const double most = less > 0.0 ? mu * site.free_normal / less : strength;
+    return {most, speed + (site.free_speed - speed) * (1.0 - most / borne)};
+  }
+  const Vec3 direction = speed > 0.0 ? Vec3(slip / speed) : Vec3::UnitX();
+  const Vec3 scaled(direction[0], direction[1], lever * direction[2]);
+  const double mobility = scaled.dot(space_.mobility(i).bottomRightCorner<3, 3>() * scaled);
+  return {strength, speed - step * mobility * (strength + acting.dot(direction))};
+}
+
 // Friction under the normal forces of the last solution and at its slip: a spring and a damper
 // while it holds, Coulomb's where it would have to hold more.
 void ImplicitStep::set_friction(double step) noexcept {
@@ -68,22 +104,17 @@ void ImplicitStep::set_friction(double step) noexcept {
     const double lever = slope.lever;
     const Vec3 held(axes.col(0).dot(still.force), axes.col(1).dot(still.force),
                     lever > 0.0 ? still.torque / lever : 0.0);
-    // What acts at present, after the last solution, and how much a force slows the slip.
-    const double* f = &force_[i * size(kRows) + 3];
-    const Vec3 acting(f[0], f[1], lever > 0.0 ? f[2] / lever : 0.0);
-    const Vec3 wanted = held - (slope.damping + step * slope.stiffness) * slip;
-    const double speed = slip.norm();
-    const Vec3 direction = speed > 0.0 ? Vec3(slip / speed) : Vec3::UnitX();
-    const Vec3 scaled(direction[0], direction[1], lever * direction[2]);
-    const double mobility = scaled.dot(space_.mobility(i).bottomRightCorner<3, 3>() * scaled);
-    // The speed at which Coulomb's friction leaves it, when what acts now is replaced by it.
-    const double left = speed - step * mobility * (slope.strength + acting.dot(direction));
-    if (wanted.norm() > slope.strength && left > 0.0) {
+    const double holds = slope.damping + step * slope.stiffness;
+    const Vec3 at_rest = held - holds * site.drift;
+    const Vec3 wanted = at_rest - holds * slip;
+    const bool gives_way = wanted.norm() > slope.strength;
+    const Slide slide = gives_way ? slide_under(i, slope.strength, step) : Slide{};
+    if (slide.speed > 0.0) {
       site.held.setZero();
-      site.rub = slope.strength / left;
+      site.rub = slide.force / slide.speed;
     } else {
-      site.held = {held[0], held[1], lever * held[2]};
-      site.rub = slope.damping + step * slope.stiffness;
+      site.held = {at_rest[0], at_rest[1], lever * at_rest[2]};
+      site.rub = holds;
     }
   }
 }
@@ -107,23 +138,22 @@ void ImplicitStep::set_damper(Site& site, double normal_force, const Vec3& along
   site.rub = slope.damping;
 }
 
-// The share that friction can hold of what it was solved to hold at a site.
-double ImplicitStep::held_share(std::size_t i) const noexcept {
+// How much friction can hold at a site, and how much it was solved to hold.
+ImplicitStep::Load ImplicitStep::load(std::size_t i) const noexcept {
   const Site& site = this->site(i);
-  if (!site.laws.has_friction()) return 1.0;
+  if (!site.laws.has_friction()) return {};
   const double* f = &force_[i * size(kRows)];
   const Vec3 slip = slip_of(site, velocity_, i);
   const Vec3 along = site.tangent.axes.leftCols<2>() * slip.head<2>();
   const FrictionSlope slope =
       site.laws.friction_slope(normal_force(i), along, velocity_[i * size(kRows) + 5]);
-  const double size_of_it = std::hypot(f[3], f[4], slope.lever > 0.0 ? f[5] / slope.lever : 0.0);
-  return size_of_it > slope.strength ? slope.strength / size_of_it : 1.0;
+  return {slope.strength, std::hypot(f[3], f[4], slope.lever > 0.0 ? f[5] / slope.lever : 0.0)};
 }
 
 // Shortens what friction was solved to hold to what it can hold.
 void ImplicitStep::bound_friction() noexcept {
   for (std::size_t i = 0; i < island_.size(); ++i) {
-    const double share = held_share(i);
+    const double share = load(i).share();
     if (share == 1.0) continue;
     double* f = &force_[i * size(kRows)];
     for (int k = 3; k < kRows; ++k) f[k] *= share;
@@ -137,15 +167,12 @@ void ImplicitStep::damp_friction(double step) noexcept {
   for (int pass = 0; pass < kPasses; ++pass) {
     bool changed = false;
     for (std::size_t i = 0; i < island_.size(); ++i) {
-      const double share = held_share(i);
-      if (share > kSlight) continue;
+      const Load load = this->load(i);
+      if (load.share() > kSlight) continue;
       Site& site = this->site(i);
-      const double speed = slip_of(site, velocity_, i).norm();
-      const double* f = &force_[i * size(kRows) + 3];
-      const double lever = site.tangent.friction.lever;
-      const double bears = std::hypot(f[0], f[1], lever > 0.0 ? f[2] / lever : 0.0);
+      const Slide slide = slide_under(i, load.most, step);
       site.held.setZero();
-      site.rub = speed > 0.0 ? share * bears / speed : 0.0;
+      site.rub = slide.speed > 0.0 ? slide.force / slide.speed : 0.0;
       changed = true;
     }
     if (!changed) return;

@@ -277,6 +277,7 @@ void ImplicitStep::solve_contacts(FrictionBound bound, double step) noexcept {
   for (std::size_t i = 0; i < island_.size(); ++i) {
     site(i).rub = 0.0;
     site(i).free_speed = slip_of(site(i), velocity_, i).norm();
+    site(i).free_normal = normal_force(i);
   }
   const bool rubs = std::any_of(island_.begin(), island_.end(),
                                 [this](int i) { return sites_[size(i)].laws.has_friction(); });
@@ -286,8 +287,8 @@ void ImplicitStep::solve_contacts(FrictionBound bound, double step) noexcept {
     solve_active(true, step);
     if (is_settled()) break;
   }
+  if (rubs) damp_friction(step);
   if (rubs && bound == FrictionBound::kCut) bound_friction();
-  if (rubs && bound == FrictionBound::kDamped) damp_friction(step);
   space_.move(force_, velocity_);
 }
 
@@ -407,6 +408,8 @@ void ImplicitStep::solve_with_constraints(const mjModel* m, mjData* d, ImplicitP
     limit.share = 1.0;
     limit.is_solved = is_stiff;
   });
+  // Where forces are held, positions move with the mean of the velocities before and after.
+  if (is_stiff) set_drift(m, d, parts == ImplicitParts::kHeld ? step : 0.5 * step);
   space_.build(m, d, damping_, places_, islands_, island, known);
   for (int round = 0; round < kRounds; ++round) {
     space_.constrain(constraints_);

@@ -117,7 +117,11 @@ class ImplicitStep {
     // Friction: force = held - rub * slip, or `rub` alone where it slides; as (t_1, t_2, about n).
     Vec3 held = Vec3::Zero();
     double rub = 0.0;
-    double free_speed = 0.0;  // slip at the end of the step without friction
+    double free_speed = 0.0;  // slip at the end of the step without friction, and what presses then
+    double free_normal = 0.0;
+    // What the way over the step has, per step, beyond the slip at its end: bodies go on along
+    // lines where what they lie on turns.
+    Vec3 drift = Vec3::Zero();
   };
   // How friction is brought within what it can hold: cut after the solution, which is quick, or
   // solved again as a damper, which can only dissipate.
@@ -145,12 +149,22 @@ class ImplicitStep {
   double normal_force(std::size_t i) const noexcept { return std::max(0.0, force_[6 * i]); }
   void solve_active(bool with_friction, double step) noexcept;
   void solve_once(bool with_friction, double step) noexcept;
+  void set_drift(const mjModel* m, const mjData* d, double time) noexcept;
   void set_friction(double step) noexcept;
   void set_damper(Site& site, double normal_force, const Vec3& along, double spin,
                   double speed) const noexcept;
   void bound_friction() noexcept;
   void damp_friction(double step) noexcept;
-  double held_share(std::size_t i) const noexcept;
+  struct Load {
+    double most = 0.0, borne = 0.0;
+
+    double share() const noexcept { return borne > most ? most / borne : 1.0; }
+  };
+  Load load(std::size_t i) const noexcept;
+  struct Slide {
+    double force = 0.0, speed = 0.0;  // not above 0 where it stops
+  };
+  Slide slide_under(std::size_t i, double strength, double step) const noexcept;
   bool is_settled() const noexcept;
   void write_results() noexcept;
   ByChannel taken(const Site& site, std::size_t i) const noexcept;
