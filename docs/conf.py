@@ -66,6 +66,7 @@ SECTIONS = {
         for name in (
             "volume_spring",
             "hunt_crossley",
+            "elastic_coulomb",
             "regularized_coulomb",
             "bristle",
             "coupling",

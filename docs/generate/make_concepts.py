@@ -217,6 +217,7 @@ def friction_laws() -> Drawn:
             vc.RegularizedCoulomb(friction=0.4, slip_speed=1e-3),
             VOLUMETRIC,
         ),
+        "elastic_coulomb, the default": (vc.ElasticCoulomb(friction=0.4), INK),
         "bristle": (vc.Bristle(friction=0.4, static_friction=0.4), NATIVE),
     }
     numbers = []

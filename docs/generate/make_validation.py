@@ -41,6 +41,7 @@ ORDER = (
     "slide_to_roll",
     "incline",
     "bristle",
+    "sticking",
     "spinning_disc",
     "tippe_top",
     "ball_in_cylinder",

@@ -219,6 +219,30 @@ def regularized_coulomb() -> Drawn:
     return figure, shown
 
 
+def elastic_coulomb() -> Drawn:
+    """A box that is pulled until it slides, and pulled back, on a soft and on a stiff material."""
+    figure, axes = plot("way [um]", "friction over normal force [-]")
+    shown: list[float] = []
+    for stiffness, color in ((STIFFNESS, VOLUMETRIC), (10.0 * STIFFNESS, NATIVE)):
+        law = vc.ElasticCoulomb(friction=FRICTION)
+        normal = vc.VolumeSpring(stiffness=stiffness)
+        model = model_of(vc.Box((0.05, 0.05, 0.05)), normal, law)
+        h, x, state, ways, shares = 1e-3, 0.0, None, [], []
+        depth = 1e-4 * STIFFNESS / stiffness  # under the same load
+        for i in range(900):
+            speed = 2e-4 * (1.0 if i < 500 else -1.0)
+            x += h * speed
+            twist = np.array([0.0, 0.0, 0.0, speed, 0.0, 0.0])
+            report = model.evaluate(X_WA=pose(x, 0.05 - depth), V_WA=twist, state=state, elapsed=h)
+            state = report.state
+            ways.append(x)
+            shares.append(-report.force_on_A[0] / report.force_on_A[2])
+        axes.plot(1e6 * np.array(ways), shares, color=color, label=f"k_v = {stiffness:g} N/m^3")
+        shown += shares[::40]
+    axes.legend(loc="center left")
+    return figure, shown
+
+
 def bristle() -> Drawn:
     """A box that is pulled slowly, rests, and is pulled back."""
     figure, axes = plot("way [um]", "friction over normal force [-]")
@@ -331,6 +355,7 @@ PICTURE: dict[str, Callable[[], Drawn]] = {
     "laws/volume_spring": volume_spring,
     "laws/hunt_crossley": hunt_crossley,
     "laws/regularized_coulomb": regularized_coulomb,
+    "laws/elastic_coulomb": elastic_coulomb,
     "laws/bristle": bristle,
     "laws/coupling": coupling,
     "laws/rolling": rolling,

@@ -144,6 +144,7 @@ std::vector<double> ModelValues::get(std::string_view name) const {
   }
   if (name == "tolerance") return {tolerance_};
   if (name == "share_of_a") return {share_of_a_};
+  if (name == "mass") return {mass_};
   if (name == "threads") return {threads_};
   const auto [row, in_friction] = field(name);
   require(row != nullptr, unknown_word_message("parameter", name, number_names()));
@@ -167,6 +168,8 @@ void ModelValues::set(std::string_view name, const double* numbers, int count) {
     tolerance_ = one_number(name, numbers, count, kTolerance);
   } else if (name == "share_of_a") {
     share_of_a_ = one_number(name, numbers, count, kZeroToOne);
+  } else if (name == "mass") {
+    mass_ = one_number(name, numbers, count, kNonNegative, "kg");
   } else if (name == "threads") {
     const double number = one_number(name, numbers, count, kThreads);
     require(number == std::floor(number),
@@ -222,6 +225,7 @@ ContactLaws ModelValues::laws() const {
   laws.rolling = rolling_;
   laws.formulation = formulation_;
   laws.share_of_a = share_of_a_;
+  laws.mass = mass_;
   return laws;
 }
 
@@ -240,7 +244,7 @@ std::vector<std::string> ModelValues::number_names() const {
     if (!row) continue;
     for (const FieldRow& field : row->fields) names.push_back(field.name);
   }
-  names.insert(names.end(), {"tolerance", "share_of_a", "threads"});
+  names.insert(names.end(), {"tolerance", "share_of_a", "mass", "threads"});
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     for (const bool is_b : {false, true}) {
       const std::string head = "pair/" + std::to_string(i) + (is_b ? "/b/" : "/a/");
@@ -283,6 +287,7 @@ std::string ModelValues::table() const {
   }
   line("tolerance", "-", kTolerance.text, digits(get("tolerance")));
   line("share_of_a", "-", kZeroToOne.text, digits(get("share_of_a")));
+  line("mass", "kg", kNonNegative.text, digits(get("mass")));
   line("threads", "-", kThreads.text, digits(get("threads")));
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     for (const bool is_b : {false, true}) {

@@ -81,6 +81,7 @@ class ModelValues {
   Engine engine_ = Engine::kAuto;
   double tolerance_ = 1e-3;
   double share_of_a_ = 0.5;
+  double mass_ = 0.0;
   double threads_ = 1;
 };
 

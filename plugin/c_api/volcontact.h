@@ -195,8 +195,9 @@ VC_API int vc_model_choose(vc_model* model, const char* name, const char* word);
 VC_API int vc_model_chosen(const vc_model* model, const char* name, char* word, int capacity);
 
 /* Sets numbers: parameters of the two laws by their names (stiffness, friction, ...), tolerance,
- * share_of_a, threads, and of pair i "pair/i/a/<parameter of the shape>", "pair/i/a/pose" (16
- * numbers) and the same with b. */
+ * share_of_a, mass (the reduced mass of the two bodies, of which sticking friction takes its
+ * damping; 0: not known), threads, and of pair i "pair/i/a/<parameter of the shape>",
+ * "pair/i/a/pose" (16 numbers) and the same with b. */
 VC_API int vc_model_set(vc_model* model, const char* name, const double* numbers, int count);
 
 /* Writes up to `capacity` numbers of a parameter and returns how many it has. */

@@ -10,7 +10,7 @@ namespace volcontact::fmu {
 namespace {
 
 // What the solver integrates of what the laws keep; the rest is set once, at a touch.
-constexpr const char* kIntegrated[] = {"deflection", "twist", "dwell"};
+constexpr const char* kIntegrated[] = {"deflection", "twist", "dwell", "stiffness"};
 
 // Finds the numbers of a row that are continuous states; the last law's come last.
 void find_states(const vc_model* model, int& first, int& last) {

@@ -114,16 +114,22 @@ void Unit::publish_rates(std::size_t m) {
 // Energy of the bristles as the solver has them, so that what it integrates closes the account to
 // its own tolerance: the container counts what friction holds of them.
 void Unit::book_bristles(Model& model, int mine, int committed, const double* rates) {
-  if (model.bristle_stiffness == 0.0 || model.last - model.first < 4) return;
+  constexpr int kSpring = 4;                                  // the deflection, then the twist
+  const bool follows_patch = model.bristle_stiffness == 0.0;  // its stiffness is the next state
+  if (model.last - model.first < (follows_patch ? kSpring + 1 : kSpring)) return;
+  const auto held_stiffness = static_cast<std::size_t>(mine + kSpring);
+  const double stiffness = follows_patch ? model.next[held_stiffness] : model.bristle_stiffness;
+  const double stiffening = follows_patch ? model.rates[held_stiffness] : 0.0;
   double* power = values(Role::kPower, 0);
   double* elastic = values(Role::kElasticEnergy, 0);
-  for (int j = 0; j < 4; ++j) {  // the deflection, then the twist
+  for (int j = 0; j < kSpring; ++j) {
     const double solved = model.rows[static_cast<std::size_t>(committed + j)];
     const double held = model.next[static_cast<std::size_t>(mine + j)];
     const double stored =
         held * model.rates[static_cast<std::size_t>(mine + j)] - solved * rates[j];
-    if (power) power[j < 3 ? 2 : 3] += model.bristle_stiffness * stored;
-    if (elastic) *elastic += 0.5 * model.bristle_stiffness * (solved * solved - held * held);
+    const double more = solved * solved - held * held;
+    if (power) power[j < 3 ? 2 : 3] += stiffness * stored - 0.5 * stiffening * more;
+    if (elastic) *elastic += 0.5 * stiffness * more;
   }
 }
 
@@ -153,12 +159,14 @@ void Unit::get_rates(double* rates) {
 }
 
 void Unit::get_nominals(double* nominals) const {
-  constexpr double kEnergy = 1e-3, kDeflection = 1e-6, kDwell = 1.0;  // [J], [m], [-]
+  constexpr double kEnergy = 1e-3, kDeflection = 1e-6;  // [J], [m]
+  constexpr double kDwell = 1.0, kStiffness = 1e5;      // [-], [N/m]
   std::size_t i = 0;
   for (const Group& group : file_.groups) {
     if (!group.is_state()) continue;
     const double nominal = group.role == Role::kDissipated ? kEnergy
                            : group.name == "dwell"         ? kDwell
+                           : group.name == "stiffness"     ? kStiffness
                                                            : kDeflection;
     for (int k = 0; k < group.count; ++k) nominals[i++] = nominal;
   }

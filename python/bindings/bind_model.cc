@@ -62,10 +62,11 @@ PyReport evaluate(const ContactModel& model, const std::optional<Matrix4>& X_WA,
 ContactModel make_model(const std::vector<GeometricPair>& pairs, const NormalPtr& normal,
                         const FrictionPtr& friction, bool rolling, double tolerance,
                         const std::string& engine, int threads, const std::string& formulation,
-                        double share_of_a) {
+                        double share_of_a, double mass) {
   require(tolerance > 0.0 && tolerance < 1.0,
           "contact_model: tolerance = " + std::to_string(tolerance) + " must be > 0 and < 1");
-  return ContactModel(pairs, {normal, friction, rolling, formulation_from(formulation), share_of_a},
+  return ContactModel(pairs,
+                      {normal, friction, rolling, formulation_from(formulation), share_of_a, mass},
                       {tolerance, engine_from(engine), threads});
 }
 
@@ -161,13 +162,14 @@ void bind_model(nb::module_& m) {
           "__init__",
           [](ContactModel* self, const std::vector<GeometricPair>& pairs, const NormalPtr& normal,
              const FrictionPtr& friction, bool rolling, double tolerance, const std::string& engine,
-             int threads, const std::string& formulation, double share_of_a) {
+             int threads, const std::string& formulation, double share_of_a, double mass) {
             new (self) ContactModel(make_model(pairs, normal, friction, rolling, tolerance, engine,
-                                               threads, formulation, share_of_a));
+                                               threads, formulation, share_of_a, mass));
           },
           nb::kw_only(), nb::arg("pairs"), nb::arg("normal"), nb::arg("friction") = nb::none(),
           nb::arg("rolling") = true, nb::arg("tolerance") = 1e-3, nb::arg("engine") = "auto",
           nb::arg("threads") = 1, nb::arg("formulation") = "gonthier", nb::arg("share_of_a") = 0.5,
+          nb::arg("mass") = 0.0,
           R"(Const once made.
 
 Args:
@@ -176,6 +178,8 @@ Args:
     formulation: 'gonthier', k V along the area vector at the centroid of the volume, or
         'potential', the gradient of int min(p_A, p_B) dV: conservative for every pair it takes
     share_of_a [-]: share of the compliance 1/k_v that is A's layer, 0 to 1; for 'potential'
+    mass [kg]: reduced mass of the two bodies, 1 / (1/m_A + 1/m_B), of which sticking friction
+        takes its damping and a restitution the speed of a blow; 0: not known
 
 Raises:
     ValueError: a forced engine or the formulation does not serve a pair)")

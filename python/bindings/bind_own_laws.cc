@@ -30,7 +30,9 @@ using StateRow = std::tuple<std::string, std::string, std::string>;  // name, un
 Keeping keeping_from(const std::string& word) {
   if (word == "vector") return Keeping::kVector;
   if (word == "amount") return Keeping::kAmount;
-  require(word == "value", "keeping '" + word + "' must be one of vector, amount, value");
+  if (word == "vector_value") return Keeping::kVectorValue;
+  require(word == "value",
+          "keeping '" + word + "' must be one of vector, amount, value, vector_value");
   return Keeping::kValue;
 }
 
@@ -170,7 +172,8 @@ void bind_inputs(nb::module_& m) {
   nb::class_<NormalInput>(m, "NormalInput", "All a normal law knows of a contact site.")
       .def_ro("volume", &NormalInput::volume, "V [m^3]")
       .def_ro("depth_moment", &NormalInput::depth_moment, "int L^2/2 dA [m^4]")
-      .def_ro("approach_speed", &NormalInput::approach_speed, "> 0 while approaching [m/s]");
+      .def_ro("approach_speed", &NormalInput::approach_speed, "> 0 while approaching [m/s]")
+      .def_ro("mass", &NormalInput::mass, "Reduced mass of the bodies, 0 where not known [kg]");
   nb::class_<Patch>(m, "Patch", "The contact patch as a friction law sees it.")
       .def_ro("gyration_radius", &Patch::gyration_radius, "[m]")
       .def_ro("volume", &Patch::volume, "[m^3]")
@@ -187,7 +190,10 @@ void bind_inputs(nb::module_& m) {
       .def_ro("travel", &FrictionInput::travel, nb::rv_policy::copy,
               "Way of A against B since the committed time [m], shape (3,)")
       .def_ro("turn", &FrictionInput::turn, "About the normal since then [rad]")
-      .def_ro("patch", &FrictionInput::patch, nb::rv_policy::copy);
+      .def_ro("patch", &FrictionInput::patch, nb::rv_policy::copy)
+      .def_ro("normal_stiffness", &FrictionInput::normal_stiffness,
+              "Elastic part of the normal force per depth V/|S| [N/m]")
+      .def_ro("mass", &FrictionInput::mass, "Reduced mass of the bodies, 0 where not known [kg]");
 }
 
 void bind_outputs(nb::module_& m) {

@@ -869,11 +869,11 @@ class HuntCrossley(NormalForce):
     Args:
         stiffness [N/m^3]: k_v, force per interference volume; > 0
         damping [s/m]: a, relative rise of the force per approach speed; >= 0
-        restitution [-]: e, in place of damping: a from the speed at first touch; > 0 and <= 1
+        restitution [-]: e, in place of damping: a from the speed of the blow; > 0 and <= 1
         restitution_speed_floor [m/s]: slower impacts are damped as if they had this speed; > 0
 
     Keeps, for each contact site:
-        impact_speed [m/s]: v_n at first touch, 0 before
+        impact_speed [m/s]: of the blow, negative once the bodies part, 0 before the first
     """
 
     def __init__(self, *, stiffness: float = 10000000.0, damping: float = 0.0, restitution: float = 1.0, restitution_speed_floor: float = 0.01) -> None: ...
@@ -888,7 +888,7 @@ class HuntCrossley(NormalForce):
 
     @property
     def restitution(self) -> float:
-        """e, in place of damping: a from the speed at first touch [-]"""
+        """e, in place of damping: a from the speed of the blow [-]"""
 
     @property
     def restitution_speed_floor(self) -> float:
@@ -907,6 +907,46 @@ class VolumeSpring(NormalForce):
     @property
     def stiffness(self) -> float:
         """k_v, force per interference volume [N/m^3]"""
+
+class ElasticCoulomb(Friction):
+    """
+    Friction law 'elastic_coulomb'.
+
+    Args:
+        friction [-]: mu; >= 0
+        tangential_ratio [-]: k_t/k_n, tangential over normal stiffness of a patch; > 0
+        tangential_damping [-]: zeta of sticking, over the critical damping of a ball; >= 0
+        presliding [m]: least deflection under which a patch begins to slide; >= 0
+        coupling: how sliding and spinning share the friction; one of 'ellipsoid' 'quadrature' 'none'
+
+    Keeps, for each contact site:
+        deflection [m]: of the spring along the plane, shape (3,)
+        twist [m]: deflection of the spin, at the radius r_g
+        stiffness [N/m]: k_t, the largest since it last slid
+        strength [N]: most that it could hold since then
+    """
+
+    def __init__(self, *, friction: float = 0.2, tangential_ratio: float = 0.8, tangential_damping: float = 10.0, presliding: float = 1e-06, coupling: str = 'ellipsoid') -> None: ...
+
+    @property
+    def friction(self) -> float:
+        """mu [-]"""
+
+    @property
+    def tangential_ratio(self) -> float:
+        """k_t/k_n, tangential over normal stiffness of a patch [-]"""
+
+    @property
+    def tangential_damping(self) -> float:
+        """zeta of sticking, over the critical damping of a ball [-]"""
+
+    @property
+    def presliding(self) -> float:
+        """least deflection under which a patch begins to slide [m]"""
+
+    @property
+    def coupling(self) -> str:
+        """how sliding and spinning share the friction"""
 
 class RegularizedCoulomb(Friction):
     """
@@ -1036,6 +1076,10 @@ class NormalInput:
     def approach_speed(self) -> float:
         """> 0 while approaching [m/s]"""
 
+    @property
+    def mass(self) -> float:
+        """Reduced mass of the bodies, 0 where not known [kg]"""
+
 class Patch:
     """The contact patch as a friction law sees it."""
 
@@ -1084,6 +1128,14 @@ class FrictionInput:
 
     @property
     def patch(self) -> Patch: ...
+
+    @property
+    def normal_stiffness(self) -> float:
+        """Elastic part of the normal force per depth V/|S| [N/m]"""
+
+    @property
+    def mass(self) -> float:
+        """Reduced mass of the bodies, 0 where not known [kg]"""
 
 class NormalOutput:
     """What a normal law returns."""
@@ -1240,7 +1292,7 @@ class ContactModel:
     Geometric pairs x normal law x friction law: the CSA paper's contact model container.
     """
 
-    def __init__(self, *, pairs: Sequence[Pair], normal: NormalForce, friction: Friction | None = None, rolling: bool = True, tolerance: float = 0.001, engine: str = 'auto', threads: int = 1, formulation: str = 'gonthier', share_of_a: float = 0.5) -> None:
+    def __init__(self, *, pairs: Sequence[Pair], normal: NormalForce, friction: Friction | None = None, rolling: bool = True, tolerance: float = 0.001, engine: str = 'auto', threads: int = 1, formulation: str = 'gonthier', share_of_a: float = 0.5, mass: float = 0.0) -> None:
         """
         Const once made.
 
@@ -1250,6 +1302,8 @@ class ContactModel:
             formulation: 'gonthier', k V along the area vector at the centroid of the volume, or
                 'potential', the gradient of int min(p_A, p_B) dV: conservative for every pair it takes
             share_of_a [-]: share of the compliance 1/k_v that is A's layer, 0 to 1; for 'potential'
+            mass [kg]: reduced mass of the two bodies, 1 / (1/m_A + 1/m_B), of which sticking friction
+                takes its damping and a restitution the speed of a blow; 0: not known
 
         Raises:
             ValueError: a forced engine or the formulation does not serve a pair

@@ -40,12 +40,12 @@ class LawState:
         unit: SI, "-" for none.
         keeping: how it follows sites that split and merge: an "amount" is shared and summed, a
             "value" is the same for all and averaged, a "vector" is an amount of three numbers that
-            turns with the contact plane.
+            turns with the contact plane, a "vector_value" turns likewise and is averaged.
         meaning: in a few words.
     """
 
     unit: str
-    keeping: Literal["vector", "amount", "value"] = "value"
+    keeping: Literal["vector", "amount", "value", "vector_value"] = "value"
     meaning: str = ""
 
 

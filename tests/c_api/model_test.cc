@@ -108,8 +108,8 @@ TEST(CModel, TableHasALineForEveryNameAndItsValueCanBeSetAgain) {
       EXPECT_EQ(std::stod(value), numbers[0]) << line;
     }
   }
-  // 5 words and the coupling, 4 + 2 numbers of the laws, 3 of the model, 3 of the pair.
-  EXPECT_EQ(lines, 5 + 1 + 4 + 2 + 3 + 3);
+  // 5 words and the coupling, 4 + 2 numbers of the laws, 4 of the model, 3 of the pair.
+  EXPECT_EQ(lines, 5 + 1 + 4 + 2 + 4 + 3);
 }
 
 TEST(CModel, StateSizeFollowsTheLaws) {

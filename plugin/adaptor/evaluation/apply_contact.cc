@@ -106,7 +106,7 @@ void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
     release(account, now, scratch);
     scratch.dissipated = 0.0;
     find_unpaid_pairs(contact, m, scratch);
-    postpone_stiff(scratch);
+    postpone_stiff(contact, scratch);
     return;
   }
   now.implicit = find_stiff_sites(contact, m, d, scratch);
@@ -240,12 +240,17 @@ void apply_contact(const SceneContact& contact, const mjModel* m, mjData* d,
 
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const ContactReport& report = scratch.reports[k];
-    now.elastic += report.elastic_energy;
     if (!now.implicit) now.stored += stored_power(report);
     now.power += report.power;
     now.taken += report.taken;
-    now.slide_energy += report.bristle_energy.slide;
-    now.spin_energy += report.bristle_energy.spin;
+    // Bristles hold no more than sliding put in, whatever the way that they were bent.
+    const double bent = report.bristle_energy.sum();
+    const double paid = k < scratch.energies.size() && scratch.energies[k].bristle < bent
+                            ? scratch.energies[k].bristle / bent
+                            : 1.0;
+    now.elastic += report.elastic_energy - (1.0 - paid) * bent;
+    now.slide_energy += paid * report.bristle_energy.slide;
+    now.spin_energy += paid * report.bristle_energy.spin;
   }
   now.elastic -= now.unpaid;
   write_forces(contact, m, d, goes_on, scratch);

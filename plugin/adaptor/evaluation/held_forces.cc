@@ -100,7 +100,7 @@ void hold_solved(const SceneContact& contact, const mjModel* m, mjData* d, const
   }
 }
 
-void postpone_stiff(EvaluationScratch& scratch) noexcept {
+void postpone_stiff(const SceneContact& contact, EvaluationScratch& scratch) noexcept {
   std::size_t site = 0;
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     ContactReport& report = scratch.reports[k];
@@ -108,7 +108,9 @@ void postpone_stiff(EvaluationScratch& scratch) noexcept {
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
       is_stiff = scratch.stiff[site++] != 0 || is_stiff;
     }
-    if (is_stiff && !scratch.held[k]) take_share(0.0, report);
+    if (is_stiff && !scratch.held[k]) {
+      take_share(0.0, contact.pair(scratch.cull.near[k]).model, report);
+    }
   }
 }
 

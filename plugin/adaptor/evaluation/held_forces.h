@@ -23,7 +23,7 @@ void hold_solved(const SceneContact& contact, const mjModel* m, mjData* d, const
 
 /// What a later stage of Runge-Kutta cannot hold, and was not solved when the step began, waits
 /// for the next.
-void postpone_stiff(EvaluationScratch& scratch) noexcept;
+void postpone_stiff(const SceneContact& contact, EvaluationScratch& scratch) noexcept;
 
 /// Adds what was kept to the forces on the bodies.
 void add_held(const SceneContact& contact, const mjModel* m, const mjData* d,

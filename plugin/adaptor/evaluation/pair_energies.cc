@@ -119,7 +119,8 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m,
     if (share == 1.0) continue;
     limited = true;
     scratch.held[k] = 1;
-    take_share(share, report);
+    take_share(share, contact.pair(scratch.cull.near[k]).model, report);
+    energy.rubbed = std::min(energy.rubbed, report.bristle_energy.sum());
   }
   return limited;
 }

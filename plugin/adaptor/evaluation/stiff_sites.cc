@@ -7,6 +7,7 @@
 
 #include "adaptor/mujoco/mjgeoms.h"
 #include "adaptor/scene/pair_rates.h"
+#include "volcontact/model/site_laws.h"
 
 namespace volcontact::adaptor {
 namespace {
@@ -44,9 +45,26 @@ bool reverses_slip(const SiteReport& site, const InverseMass& inverse, double h)
   return h * torque * inverse.about > kEulerDamper * std::abs(site.spin);
 }
 
+// Whether friction that follows the patch shakes the bodies in an explicit step, where it could
+// stop them in it: what slides faster is slowed by what friction can hold, whatever holds it.
+bool shakes(const PairContact& pair, ContactReport& report, std::size_t site,
+            const InverseMass& inverse, double h) {
+  const SiteReport& at = report.sites[site];
+  const double slip = at.slip.norm(), spin = std::abs(at.spin);
+  if (slip == 0.0 && spin == 0.0 && at.bristle_energy.sum() == 0.0) return false;
+  const FrictionSlope slope =
+      SiteLaws(pair.model, report, site).friction_slope(at.normal_force, at.slip, at.spin);
+  const double sliding = kBall * inverse.along;
+  if (!(h * slope.strength * sliding > kEulerDamper * slip ||
+        h * slope.strength * slope.lever * inverse.about > kEulerDamper * spin)) {
+    return false;
+  }
+  return h * (h * slope.stiffness + 2.0 * slope.damping) * sliding > kEulerSpring;
+}
+
 }  // namespace
 
-bool is_stiff(const mjModel* m, mjData* d, const PairContact& pair, const ContactReport& report,
+bool is_stiff(const mjModel* m, mjData* d, const PairContact& pair, ContactReport& report,
               std::size_t site, ExplicitBounds most, EvaluationScratch& scratch) noexcept {
   const double h = m->opt.timestep;
   const InverseMass inverse = inverse_mass(m, pair.geoms);
@@ -54,6 +72,7 @@ bool is_stiff(const mjModel* m, mjData* d, const PairContact& pair, const Contac
   if (friction && !most.friction_is_explicit) {
     if (shakes_at_rest(pair, h)) return true;
     if (friction->states().empty() && reverses_slip(report.sites[site], inverse, h)) return true;
+    if (pair.friction_follows_patch && shakes(pair, report, site, inverse, h)) return true;
   }
   const VolumeMetrics& metrics = report.sites[site].metrics;
   const SiteInputs& inputs = report.inputs[site];
@@ -82,7 +101,7 @@ bool find_stiff_sites(const SceneContact& contact, const mjModel* m, mjData* d,
   scratch.stiff.clear();
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const PairContact& pair = contact.pair(scratch.cull.near[k]);
-    const ContactReport& report = scratch.reports[k];
+    ContactReport& report = scratch.reports[k];
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
       scratch.stiff.push_back(all || is_stiff(m, d, pair, report, i, most, scratch) ? 1 : 0);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adaptor/keys/materials.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -152,6 +153,24 @@ void warn_unused(const KeyedValues* keyed, const LawRow& normal, const LawRow& f
   }
 }
 
+// Where nobody names a law: the first that has all the fields of such laws that are given, so that
+// a slip speed says which law is meant; else the first of all.
+const LawRow& law_with_the_fields(const std::vector<LawRow>& laws, const Side& a, const Side& b,
+                                  const KeyedValues* pair) {
+  const auto is_of_another = [&](const LawRow& law) {
+    for (const KeyedValues* keyed : {pair, a.material, b.material}) {
+      if (!keyed) continue;
+      for (const auto& [name, value] : keyed->values) {
+        const auto has = [&field = name](const LawRow& row) { return row.field(field) != nullptr; };
+        if (!has(law) && std::any_of(laws.begin(), laws.end(), has)) return true;
+      }
+    }
+    return false;
+  };
+  const auto found = std::find_if_not(laws.begin(), laws.end(), is_of_another);
+  return found != laws.end() ? *found : laws.front();
+}
+
 ChoiceValues law_choices(const LawRow& law, const Side& a, const Side& b, const KeyedValues* pair) {
   ChoiceValues choices;
   for (const ChoiceRow& choice : law.choices) {
@@ -172,7 +191,7 @@ std::vector<double> default_value(const FieldRow& field, double native_friction)
 PairLaws combine(const Side& a, const Side& b, const KeyedValues* pair) {
   const auto law = [&](const char* choice, const std::vector<LawRow>& laws) -> const LawRow& {
     const std::string word = choose(choice, a, b, pair);
-    return word.empty() ? laws.front() : law_called(laws, word);
+    return word.empty() ? law_with_the_fields(laws, a, b, pair) : law_called(laws, word);
   };
   const LawRow& normal = law(kNormalLaw, normal_laws());
   const LawRow& friction = law(kFrictionLaw, friction_laws());

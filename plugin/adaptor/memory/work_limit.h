@@ -35,6 +35,8 @@ struct PairEnergy {
 
   bool is_solved = false;  ///< by an implicit step, whose work is in already; not kept
   double released = 0.0;   ///< to bodies that part slowly, of what was dissipated [J]; not kept
+  /// Of the bristles at the begin of the step, as far as sliding put it in [J]; not kept.
+  double bristle = HUGE_VAL;
 
   /// The sites of a pair at the present evaluation, together.
   struct Now {
@@ -67,6 +69,9 @@ struct PairEnergy {
     }
   };
 
+  /// Whether the step before was solved, and `rubbed` is what sliding did.
+  bool was_solved() const noexcept { return force == 0.0; }
+
   /// The end of a step of `elapsed` seconds. Stages of Runge-Kutta at which a pair waited for the
   /// next step had no force: at the worst the first alone, which counts a sixth.
   void take_in(double elapsed, const Now& now, bool may_have_waited = false) noexcept {
@@ -74,6 +79,7 @@ struct PairEnergy {
     // less by the work of half a step.
     const double ahead = force > 0.0 ? 0.5 * elapsed * std::max(0.0, -now.power) : 0.0;
     const double work = 0.5 * elapsed * (power + force * now.approach());
+    bristle = was_solved() ? std::min(rubbed, now.bristle) : now.bristle;
     put(may_have_waited && work > 0.0 ? work / 6.0 : work, kMostOwed * most);
     force = power = slow = 0.0;
     rubbed = std::min(rubbed, now.bristle);
@@ -95,7 +101,7 @@ struct PairEnergy {
     found = std::min(found, now.elastic);
     stored = now.elastic - found;
     most = std::max(most, stored);
-    rubbed = now.bristle;
+    rubbed = bristle = now.bristle;
     force = now.force;
     power = now.power;
   }

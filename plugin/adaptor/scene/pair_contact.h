@@ -16,8 +16,9 @@ struct PairContact {
   double largest_rate = 0.0;
   /// The same of friction with a memory against sliding, 0 without one [1/s^2].
   double friction_rate = 0.0;
-  double friction_damping_rate = 0.0;  ///< and of its damping [1/s]
-  bool is_jointed = false;             ///< whether one of the bodies hangs on joints
+  double friction_damping_rate = 0.0;   ///< and of its damping [1/s]
+  bool friction_follows_patch = false;  ///< then both are 0, and each site has its own
+  bool is_jointed = false;              ///< whether one of the bodies hangs on joints
 };
 
 }  // namespace volcontact::adaptor

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "adaptor/mujoco/mjgeoms.h"
 #include "adaptor/step/implicit_step.h"
@@ -30,13 +31,21 @@ double resting_force(double gravity, double inverse_mass) {
 }
 
 // Of friction at rest under a normal force, when nothing has slipped yet.
-FrictionSlope slope_at_rest(const Friction& friction, double normal_force) {
+FrictionSlope slope_at_rest(const Friction& friction, double normal_force, double inverse_mass,
+                            double normal_stiffness = 1.0) {
   FrictionInput at_rest;
   at_rest.normal_force = normal_force;
+  at_rest.normal_stiffness = normal_stiffness;
+  at_rest.mass = inverse_mass > 0.0 ? 1.0 / inverse_mass : 0.0;
   const auto size = static_cast<std::size_t>(friction.state_size());
   const std::vector<double> committed(size, 0.0);
   std::vector<double> pending(size, 0.0);
   return friction.slope(at_rest, LawState{committed.data(), pending.data(), 0.0});
+}
+
+bool follows_patch(const Friction& friction) {
+  return slope_at_rest(friction, 1.0, 1.0, 1.0).stiffness !=
+         slope_at_rest(friction, 1.0, 1.0, 2.0).stiffness;
 }
 
 // Sides of the solid's box, the smallest first [m].
@@ -62,9 +71,9 @@ double inverse_sliding_mass(const mjModel* m, int geom, const Shape& solid) {
 }
 
 // The longest explicit step under which friction lets the pair lie still, one upon the other [s].
-double longest_friction_step(bool is_rk4, const Friction& friction, double inverse_mass,
-                             double weight) {
-  const FrictionSlope slope = slope_at_rest(friction, weight);
+double longest_friction_step(bool is_rk4, const Friction& friction, double along,
+                             double inverse_mass, double weight, double normal_stiffness) {
+  const FrictionSlope slope = slope_at_rest(friction, weight, along, normal_stiffness);
   const double spring = slope.stiffness * inverse_mass, damper = slope.damping * inverse_mass;
   if (friction.states().empty()) return (is_rk4 ? kRungeKuttaDamper : kEulerDamper) / damper;
   if (is_rk4) return std::min(std::sqrt(kRungeKuttaSpring / spring), kRungeKuttaDamper / damper);
@@ -83,6 +92,11 @@ GeomFacts facts_of(const mjModel* m, int geom, const Shape& solid) {
   return {m->body_invweight0[2 * m->geom_bodyid[geom]], largest_face(solid), is_jointed(m, geom)};
 }
 
+double reduced_mass(const GeomFacts& a, const GeomFacts& b) {
+  const double along = a.inverse_along + b.inverse_along;
+  return along > 0.0 ? 1.0 / along : 0.0;
+}
+
 void set_rates(const GeomFacts& a, const GeomFacts& b, double gravity, PairContact& pair) {
   const double face = std::min(a.largest_face, b.largest_face);
   const double along = a.inverse_along + b.inverse_along, sliding = kBall * along;
@@ -90,8 +104,10 @@ void set_rates(const GeomFacts& a, const GeomFacts& b, double gravity, PairConta
   pair.largest_rate = pair.stiffness * face * along;
   const Friction* friction = pair.model.laws().friction.get();
   if (!friction || friction->states().empty()) return;
+  pair.friction_follows_patch = follows_patch(*friction);
+  if (pair.friction_follows_patch) return;
   const double weight = resting_force(gravity, along);
-  const FrictionSlope slope = slope_at_rest(*friction, weight > 0.0 ? weight : 1.0);
+  const FrictionSlope slope = slope_at_rest(*friction, weight > 0.0 ? weight : 1.0, along);
   pair.friction_rate = slope.stiffness * sliding;
   pair.friction_damping_rate = slope.damping * sliding;
 }
@@ -108,15 +124,19 @@ ImplicitUse implicit_use(const mjModel* m, const PairContact& pair) {
 }
 
 double longest_step_at_rest(const mjModel* m, const std::vector<Shape>& solids,
-                            const GeomPair& geoms, const Friction* friction) {
+                            const GeomPair& geoms, const Friction* friction, double stiffness) {
   const double along = inverse_mass(m, geoms).along;
   if (!friction || along == 0.0) return HUGE_VAL;
   const double inverse =
       inverse_sliding_mass(m, geoms.a, solids[static_cast<std::size_t>(geoms.a)]) +
       inverse_sliding_mass(m, geoms.b, solids[static_cast<std::size_t>(geoms.b)]);
-  const double gravity = Eigen::Map<const Vec3>(m->opt.gravity).norm();
-  return longest_friction_step(m->opt.integrator == mjINT_RK4, *friction, inverse,
-                               resting_force(gravity, along));
+  const double weight = resting_force(Eigen::Map<const Vec3>(m->opt.gravity).norm(), along);
+  // Of all solids that size, a ball has the smallest patch: where that shakes, all do.
+  const double radius = 0.5 * std::min(sides_of(solids[static_cast<std::size_t>(geoms.a)])[0],
+                                       sides_of(solids[static_cast<std::size_t>(geoms.b)])[0]);
+  const double patch = 2.0 * std::sqrt(std::numbers::pi * radius * weight / stiffness);
+  return longest_friction_step(m->opt.integrator == mjINT_RK4, *friction, along, inverse, weight,
+                               stiffness * patch);
 }
 
 }  // namespace volcontact::adaptor

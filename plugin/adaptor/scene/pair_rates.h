@@ -34,6 +34,9 @@ struct GeomFacts {
 };
 GeomFacts facts_of(const mjModel* m, int geom, const Shape& solid);
 
+/// Mass that two bodies have against displacements at the first pose, 0 where none moves [kg].
+double reduced_mass(const GeomFacts& a, const GeomFacts& b);
+
 /// Sets the rates of a pair under gravity [m/s^2].
 void set_rates(const GeomFacts& a, const GeomFacts& b, double gravity, PairContact& pair);
 
@@ -54,8 +57,8 @@ struct ImplicitUse {
 ImplicitUse implicit_use(const mjModel* m, const PairContact& pair);
 
 /// The longest explicit step under which friction lets the pair lie still, one upon the other [s];
-/// infinite where nothing moves or rubs.
+/// infinite where nothing moves or rubs. `stiffness` k_v [N/m^3].
 double longest_step_at_rest(const mjModel* m, const std::vector<Shape>& solids,
-                            const GeomPair& geoms, const Friction* friction);
+                            const GeomPair& geoms, const Friction* friction, double stiffness);
 
 }  // namespace volcontact::adaptor

@@ -9,6 +9,7 @@
 
 #include "adaptor/geoms/native_pairs.h"
 #include "adaptor/geoms/solids_of_geoms.h"
+#include "adaptor/keys/law_tables.h"
 #include "adaptor/keys/scene_key.h"
 #include "adaptor/memory/applied_ledger.h"
 #include "adaptor/memory/energy_account.h"
@@ -133,10 +134,26 @@ void SceneContact::find_room(const mjModel* m, const SceneContact* before) {
   keys_.options.target = Target::kPassive;
   beside_ = before && before->beside_ ? before->beside_ : std::make_shared<SideStates>();
   if (sites_.row_size == 0) return;
-  alert(
-      "the model has no room in userdata, so what laws with a memory keep, as bristle and "
-      "restitution do, lies beside mjData: it is not copied, reset or restored with it; load the "
-      "scene with volcontact.load");
+  const std::string told =
+      "the model has no room in userdata, so what laws with a memory keep, as sticking friction "
+      "and restitution do, lies beside mjData: it is not copied, reset or restored with it; load "
+      "the scene with volcontact.load";
+  if (keeps_by_choice()) {
+    alert(told);
+  } else {
+    warn_once(told);
+  }
+}
+
+// Whether a law with a memory was asked for. The default friction has one too: a micrometre of way,
+// and less than a line for everybody who attaches to a model.
+bool SceneContact::keeps_by_choice() const {
+  return std::any_of(law_classes_.begin(), law_classes_.end(), [](const LawClass& law_class) {
+    const ContactLaws& laws = law_class.laws;
+    if (!laws.normal->states().empty()) return true;
+    return laws.friction && !laws.friction->states().empty() &&
+           friction_laws().front().name != laws.friction->name();
+  });
 }
 
 void SceneContact::warn_about_meshes(const mjModel* m) {
@@ -262,8 +279,10 @@ PairContact SceneContact::make_pair(int index) const {
       options.engine != Engine::kAuto && serves(options.engine, solids_[a], solids_[b]);
   const Engine engine = is_asked ? options.engine : engine_for(solids_[a], solids_[b]);
   const int most_cells = options.engine == Engine::kOctree ? kMostCells : kMostCellsInStep;
+  ContactLaws laws = law_class.laws;
+  laws.mass = reduced_mass(facts_[a], facts_[b]);
   PairContact pair{geoms, engine,
-                   ContactModel({{solids_[a], solids_[b], Pose{}, Pose{}}}, law_class.laws,
+                   ContactModel({{solids_[a], solids_[b], Pose{}, Pose{}}}, std::move(laws),
                                 {options.tolerance, engine, kInnerThreads, most_cells}),
                    law_class.stiffness};
   set_rates(facts_[a], facts_[b], gravity_, pair);
@@ -300,7 +319,8 @@ void SceneContact::warn_about_friction(const mjModel* m) {
   for (std::size_t i = 0; i < geom_pairs_.size(); ++i) {
     const GeomPair& geoms = geom_pairs_[i];
     const LawClass& law_class = law_classes_[static_cast<std::size_t>(class_of_pair_[i])];
-    const double longest = longest_step_at_rest(m, solids_, geoms, law_class.laws.friction.get());
+    const double longest =
+        longest_step_at_rest(m, solids_, geoms, law_class.laws.friction.get(), law_class.stiffness);
     if (m->opt.timestep <= longest) continue;
     warn_once("friction of geoms '" + label(m, mjOBJ_GEOM, geoms.a) + "' and '" +
               label(m, mjOBJ_GEOM, geoms.b) +

@@ -88,6 +88,7 @@ class SceneContact {
   void check_engine(const mjModel* m, const GeomPair& geoms);
   PairContact make_pair(int index) const;
   void warn_about_model(const mjModel* m);
+  bool keeps_by_choice() const;
   void warn_about_meshes(const mjModel* m);
   void warn_about_friction(const mjModel* m);
   void warn_once(const std::string& warning);

@@ -16,6 +16,8 @@ struct FrictionInput {
   Vec3 travel = Vec3::Zero();   ///< way of A against B along the patch since the committed time [m]
   double turn = 0.0;            ///< angle of A against B about the normal since then [rad]
   Patch patch;                  ///< what carries the normal force
+  double normal_stiffness = 0.0;  ///< elastic part of the normal force per depth V/|S| [N/m]
+  double mass = 0.0;              ///< reduced mass of the two bodies, 0 where not known [kg]
 };
 
 struct FrictionOutput {

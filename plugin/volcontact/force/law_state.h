@@ -11,6 +11,8 @@ enum class Keeping : int {
   kVector = 0,  ///< three numbers, a vector in the contact plane: turned with it, else as an amount
   kAmount = 1,  ///< shared among the sites that came of one; the sum where sites became one
   kValue = 2,   ///< the same for all that came of one; the mean by volume where sites became one
+  kVectorValue =
+      3,  ///< three numbers, a vector in the contact plane: turned with it, else as a value
 };
 
 /// One row of a law's table `kStates`: what the law keeps for each contact site. An internal
@@ -21,7 +23,9 @@ struct StateField {
   Keeping keeping;
   const char* meaning;
 
-  constexpr int size() const { return keeping == Keeping::kVector ? 3 : 1; }
+  constexpr int size() const {
+    return keeping == Keeping::kVector || keeping == Keeping::kVectorValue ? 3 : 1;
+  }
 };
 
 /// Numbers that a law with this table keeps for each contact site.

@@ -7,6 +7,7 @@
 
 #include "volcontact/base/type_list.h"
 #include "volcontact/force/bristle.h"
+#include "volcontact/force/elastic_coulomb.h"
 #include "volcontact/force/hunt_crossley.h"
 #include "volcontact/force/law_table.h"
 #include "volcontact/force/regularized_coulomb.h"
@@ -17,7 +18,7 @@ namespace volcontact {
 /// Every law of the library. A new one is added here and nowhere else; the first is the default.
 /// Laws of a user's own program are added by add_law().
 using NormalLaws = TypeList<HuntCrossley, VolumeSpring>;
-using FrictionLaws = TypeList<RegularizedCoulomb, Bristle>;
+using FrictionLaws = TypeList<ElasticCoulomb, RegularizedCoulomb, Bristle>;
 
 /// A law with its table and the way to make one.
 template <typename Base>

@@ -10,6 +10,7 @@ struct NormalInput {
   double volume = 0.0;          ///< V [m^3]
   double depth_moment = 0.0;    ///< int L^2/2 dA [m^4]
   double approach_speed = 0.0;  ///< v_n at the centroid, > 0 while approaching [m/s]
+  double mass = 0.0;            ///< reduced mass of the two bodies, 0 where not known [kg]
 };
 
 struct NormalOutput {

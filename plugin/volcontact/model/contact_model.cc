@@ -63,15 +63,18 @@ void split_motion(const BodyMotion& motion, SiteReport& site) {
   site.slip = velocity + site.approach_speed * site.normal;
 }
 
-void add_friction(const ContactLaws& laws, const CarriedSite& carried, const LawState& state,
+Patch patch_of(const VolumeMetrics& metrics, const Vec3& normal) {
+  const double polar = std::max(0.0, normal.dot(metrics.inertia * normal));
+  return {std::sqrt(polar / metrics.volume), metrics.volume, metrics.area_vector.norm(),
+          metrics.second_moment()};
+}
+
+void add_friction(const ContactLaws& laws, const SiteInputs& inputs, const LawState& state,
                   SiteReport& site) {
-  const Vec3& n = site.normal;
-  const FrictionOutput friction = laws.friction->evaluate(
-      {site.normal_force, n, site.slip, site.spin, carried.travel - carried.travel.dot(n) * n,
-       carried.rotation.dot(n), patch_of(site.metrics, n)},
-      state);
+  const FrictionInput in = friction_input(site, inputs, site.normal_force, site.slip, site.spin);
+  const FrictionOutput friction = laws.friction->evaluate(in, state);
   site.force_on_A += friction.force;
-  site.torque_on_A += friction.torque * n;
+  site.torque_on_A += friction.torque * site.normal;
   site.bristle_energy.slide = friction.slide_energy;
   site.bristle_energy.spin = friction.spin_energy;
   site.elastic_energy += site.bristle_energy.sum();
@@ -92,10 +95,20 @@ void add_site(SiteReport&& site, int pair, ContactReport& report) {
 
 }  // namespace
 
-Patch patch_of(const VolumeMetrics& metrics, const Vec3& normal) noexcept {
-  const double polar = std::max(0.0, normal.dot(metrics.inertia * normal));
-  return {std::sqrt(polar / metrics.volume), metrics.volume, metrics.area_vector.norm(),
-          metrics.second_moment()};
+FrictionInput friction_input(const SiteReport& site, const SiteInputs& inputs, double normal_force,
+                             const Vec3& slip, double spin) noexcept {
+  const Vec3& n = site.normal;
+  const double size = inputs.normal_in.volume;
+  FrictionInput in{normal_force,
+                   n,
+                   slip,
+                   spin,
+                   inputs.travel - inputs.travel.dot(n) * n,
+                   inputs.rotation.dot(n),
+                   patch_of(site.metrics, n)};
+  if (size > 0.0) in.normal_stiffness = inputs.normal_out.elastic / size * in.patch.area;
+  in.mass = inputs.normal_in.mass;
+  return in;
 }
 
 SiteReport evaluate_site(const VolumeMetrics& metrics_W, const BodyMotion& motion,
@@ -110,7 +123,7 @@ SiteReport evaluate_site(const VolumeMetrics& metrics_W, const BodyMotion& motio
   const Vec3 rotation = motion.V_WA.angular - motion.V_WB.angular;
   site.spin = rotation.dot(site.normal);
 
-  const NormalInput normal_in{push.size, push.energy, site.approach_speed};
+  const NormalInput normal_in{push.size, push.energy, site.approach_speed, laws.mass};
   const NormalOutput normal = laws.normal->evaluate(normal_in, slice(state, 0));
   site.normal_force = normal.magnitude;
   site.force_on_A = normal.magnitude * site.normal;
@@ -128,8 +141,9 @@ SiteReport evaluate_site(const VolumeMetrics& metrics_W, const BodyMotion& motio
   Vec3 elastic_torque = Vec3::Zero();
   if (push.size > 0.0) elastic_torque = normal.elastic / push.size * push.couple;
   if (push.size > 0.0) site.torque_on_A += elastic_torque;
-  if (inputs) *inputs = {normal_in, normal, elastic_torque, carried.travel, carried.rotation};
-  if (laws.friction) add_friction(laws, carried, slice(state, laws.normal->state_size()), site);
+  const SiteInputs asked{normal_in, normal, elastic_torque, carried.travel, carried.rotation};
+  if (laws.friction) add_friction(laws, asked, slice(state, laws.normal->state_size()), site);
+  if (inputs) *inputs = asked;
   return site;
 }
 
@@ -150,6 +164,9 @@ ContactModel::ContactModel(std::vector<GeometricPair> pairs, ContactLaws laws,
   }
   require(laws_.share_of_a >= 0.0 && laws_.share_of_a <= 1.0,
           "contact_model: share_of_a = " + std::to_string(laws_.share_of_a) + " must be 0 to 1");
+  require(laws_.mass >= 0.0 && laws_.mass - laws_.mass == 0.0,
+          "contact_model: mass = " + std::to_string(laws_.mass) +
+              " [kg] must be >= 0; 0 where it is not known");
   states_ = states_of(laws_);
   row_size_ = states_.empty() ? 0 : kSiteHead + size_of(states_);
 }

@@ -33,10 +33,13 @@ struct ContactLaws {
   Formulation formulation = Formulation::kGonthier;
   /// Of `potential`: share of the compliance 1/k_v that is A's layer, from 0 (A rigid) to 1 [-].
   double share_of_a = 0.5;
+  double mass = 0.0;  ///< reduced mass of the two bodies, 1 / (1/m_A + 1/m_B); 0: not known [kg]
 };
 
-/// The contact patch as friction laws see it.
-Patch patch_of(const VolumeMetrics& metrics_W, const Vec3& normal) noexcept;
+/// What the friction law of a site is asked, under a normal force [N], at a slip [m/s] and a spin
+/// [rad/s].
+FrictionInput friction_input(const SiteReport& site, const SiteInputs& inputs, double normal_force,
+                             const Vec3& slip, double spin) noexcept;
 
 /// Forces of one contact site from its metrics (world frame), the motion of the bodies, and what
 /// was carried over. `state` has the numbers of both laws. docs/theory.md, "From metrics to

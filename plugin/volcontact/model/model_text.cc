@@ -69,6 +69,7 @@ std::string text_of(const ContactModel& model) {
   append_choice("formulation", kFormulationWords[static_cast<int>(laws.formulation)], text);
   append_value("tolerance", {model.options().tolerance}, text);
   append_value("share_of_a", {laws.share_of_a}, text);
+  append_value("mass", {laws.mass}, text);
   for (const GeometricPair& pair : model.pairs()) {
     text += "pair\n";
     append_side(pair.X_Aa, pair.a, text);

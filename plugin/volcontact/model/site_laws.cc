@@ -18,26 +18,16 @@ NormalSlope SiteLaws::normal_slope() const noexcept {
   return laws_.normal->slope(inputs_.normal_in, normal_state_);
 }
 
-FrictionInput SiteLaws::friction_input(double normal_force, const Vec3& slip,
-                                       double spin) const noexcept {
-  const Vec3& n = site_.normal;
-  return {normal_force,
-          n,
-          slip,
-          spin,
-          inputs_.travel - inputs_.travel.dot(n) * n,
-          inputs_.rotation.dot(n),
-          patch_of(site_.metrics, n)};
-}
-
 FrictionOutput SiteLaws::friction(double normal_force, const Vec3& slip,
                                   double spin) const noexcept {
-  return laws_.friction->evaluate(friction_input(normal_force, slip, spin), friction_state_);
+  return laws_.friction->evaluate(friction_input(site_, inputs_, normal_force, slip, spin),
+                                  friction_state_);
 }
 
 FrictionSlope SiteLaws::friction_slope(double normal_force, const Vec3& slip,
                                        double spin) const noexcept {
-  return laws_.friction->slope(friction_input(normal_force, slip, spin), friction_state_);
+  return laws_.friction->slope(friction_input(site_, inputs_, normal_force, slip, spin),
+                               friction_state_);
 }
 
 SiteTangent SiteLaws::tangent() const noexcept {

@@ -25,8 +25,6 @@ class SiteLaws {
   SiteTangent tangent() const noexcept;
 
  private:
-  FrictionInput friction_input(double normal_force, const Vec3& slip, double spin) const noexcept;
-
   const ContactLaws& laws_;
   const SiteReport& site_;
   const SiteInputs& inputs_;

@@ -142,10 +142,12 @@ void SiteCarrier::inherit(std::size_t site, const VolumeMetrics& metrics_W,
     std::size_t i = 0;
     for (const StateField& state : states) {
       switch (state.keeping) {
-        case Keeping::kVector: {
+        case Keeping::kVector:
+        case Keeping::kVectorValue: {
           const Vec3 moved = turned(ConstMap3(from + i), ConstMap3(head.normal_W), normal);
           const Vec3 spun_on = moved * std::cos(spun) + normal.cross(moved) * std::sin(spun);
-          Eigen::Map<Vec3>(to + i) += share * spun_on;
+          const bool is_amount = state.keeping == Keeping::kVector;
+          Eigen::Map<Vec3>(to + i) += (is_amount ? share : weight) * spun_on;
           break;
         }
         case Keeping::kAmount:

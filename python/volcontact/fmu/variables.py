@@ -11,7 +11,8 @@ from volcontact.fmu.container import Body, Container, Model, Parameter
 from volcontact.fmu.units import limits
 
 INTEGERS, BOOLEANS = ("sites", "forgotten", "extrapolation"), ("touching", "site_active")
-_INTEGRATED = ("deflection", "twist", "dwell")  # plugin/fmu/unit.cc has the same
+_INTEGRATED = ("deflection", "twist", "dwell", "stiffness")  # plugin/fmu/unit.cc has the same
+_NOMINAL = {"dwell": 1.0, "stiffness": 1e5}  # and 1e-6 of a deflection, as unit_evaluate.cc
 _FIXED = ("restitution",)  # a change of these changes what laws keep
 
 
@@ -255,12 +256,12 @@ def _states(container: Container, model: Model, m: int, slot: int, head: str) ->
     for state in model.states:
         if state.name not in _INTEGRATED:
             continue
-        nominal = 1.0 if state.name == "dwell" else 1e-6
+        nominal = _NOMINAL.get(state.name, 1e-6)
         group = Group("state", f"{head}.{state.name}", "of the bristles, in the world",
                       state.unit, "local", index=slot, start=[0.0] * state.count, key=state.name,
                       nominal=nominal)  # fmt: skip
         states.append(group)
-        unit = {"m": "m/s", "-": "1/s"}[state.unit]
+        unit = {"m": "m/s", "-": "1/s", "N/m": "N/m s"}[state.unit]
         rates.append(Group("state_rate", f"der({group.name})", "its time derivative", unit,
                            "local", index=slot, start=[0.0] * state.count, key=state.name,
                            needs=needs, models=(m,), state=group))  # fmt: skip
@@ -272,7 +273,7 @@ def _parameters(container: Container) -> list[Group]:
     for m, model in enumerate(container.models):
         head = "law" if len(container.models) == 1 else f"contact[{m + 1}].law"
         for parameter in model.parameters:
-            if parameter.name != "share_of_a":
+            if parameter.name not in ("share_of_a", "mass"):
                 groups.append(_parameter(parameter, m, f"{head}.{parameter.name}"))
     return groups
 

@@ -91,8 +91,24 @@ TEST(Materials, DefaultMaterialTakesFrictionFromTheGeom) {
   EXPECT_EQ(value(laws, "stiffness"), 0.5 * HuntCrossley::Params{}.stiffness);
   EXPECT_EQ(value(laws, "damping"), 1.0);
   EXPECT_STREQ(laws.laws.normal->name(), "hunt_crossley");
-  EXPECT_STREQ(laws.laws.friction->name(), "regularized_coulomb");
+  EXPECT_STREQ(laws.laws.friction->name(), "elastic_coulomb");
   EXPECT_TRUE(laws.laws.rolling);
+}
+
+TEST(Materials, AFieldOfOneLawSaysWhichIsMeant) {
+  const auto law_with = [](const char* field, double value) {
+    const KeyedValues material{"volcontact/material/m", {{field, {value}}}, {}};
+    return combine({"a", 1.0, &material}, {"b", 1.0, nullptr}, nullptr).friction_law;
+  };
+  EXPECT_EQ(law_with("friction", 0.3), "elastic_coulomb");
+  EXPECT_EQ(law_with("tangential_ratio", 0.5), "elastic_coulomb");
+  EXPECT_EQ(law_with("slip_speed", 1e-3), "regularized_coulomb");
+  EXPECT_EQ(law_with("static_friction", 0.5), "bristle");
+  const KeyedValues slip{"volcontact/material/s", {{"slip_speed", {1e-3}}}, {}};
+  const KeyedValues rest{"volcontact/material/r", {{"static_friction", {0.5}}}, {}};
+  const PairLaws both = combine({"a", 1.0, &slip}, {"b", 1.0, &rest}, nullptr);
+  EXPECT_EQ(both.friction_law, "elastic_coulomb");  // no law has both, so the default, in words
+  EXPECT_EQ(both.warnings.size(), 2u);
 }
 
 TEST(Materials, LawNamedByOneSideServesBoth) {

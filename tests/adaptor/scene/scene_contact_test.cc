@@ -140,7 +140,10 @@ TEST_P(Work, IsTheChangeOfKineticEnergyAtAnyStep) {
     const ModelPointer m = testing::load(testing::ball_scene(
         0.06,
         testing::numeric(std::string("volcontact/option/target/") + GetParam(), "1") +
-            testing::material("m", {{"stiffness", stiffness}, {"friction", "0.3"}},
+            testing::material("m",
+                              {{"stiffness", stiffness},
+                               {"friction", "0.3"},
+                               {"friction_law/regularized_coulomb", "1"}},
                               {"floor", "ball"}),
         "gravity=\"0 0 0\""));
     m->opt.timestep = 2e-3;

@@ -149,8 +149,9 @@ TEST(SceneStates, SitesBeyondTheRowsAreCounted) {
 
 TEST(SceneStates, ASceneWithoutMemoryKeepsNoRows) {
   const auto m = testing::compile(
-      "<mujoco><worldbody><geom type=\"plane\" size=\"1 1 1\"/>"
-      "<body><freejoint/><geom size=\".1\"/></body></worldbody></mujoco>");
+      std::string("<mujoco><worldbody><geom type=\"plane\" size=\"1 1 1\"/>") +
+      "<body><freejoint/><geom name=\"ball\" size=\".1\"/></body></worldbody>" +
+      testing::material("m", {{"friction_law/regularized_coulomb", "1"}}, {"ball"}) + "</mujoco>");
   // But for the energy of the one pair.
   const int energies = SitePoolLayout{rows_for(1, 2), PairEnergy::kNumbers}.size();
   EXPECT_EQ(SceneContact(m.get()).layout(m.get()).states, energies);

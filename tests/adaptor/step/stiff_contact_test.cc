@@ -134,7 +134,10 @@ TEST(StiffContact, SlidingBoxIsSlowedByCoulombFriction) {
 class ServoArm : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ServoArm, PressesSteadily) {
-  for (const char* stiffness : {"2e9", "2e11", "2e13"}) {
+  for (const auto& [stiffness, law] :
+       {std::pair{"2e9", "elastic_coulomb"}, std::pair{"2e11", "elastic_coulomb"},
+        std::pair{"2e13", "elastic_coulomb"}, std::pair{"2e9", "regularized_coulomb"},
+        std::pair{"2e11", "regularized_coulomb"}, std::pair{"2e13", "regularized_coulomb"}}) {
     const ModelPointer m = testing::load(
         std::string("<mujoco><compiler angle=\"degree\"/><option timestep=\"2e-3\" integrator=\"") +
         GetParam() +
@@ -147,7 +150,11 @@ TEST_P(ServoArm, PressesSteadily) {
         "<geom name=\"hand\" type=\"box\" size=\".05 .05 .05\" mass=\"1\"/></body></body></body>"
         "</worldbody><actuator><position joint=\"shoulder\" kp=\"200\"/>"
         "<position joint=\"elbow\" kp=\"200\"/></actuator>" +
-        testing::material("m", {{"stiffness", stiffness}, {"damping", "0"}, {"friction", ".5"}},
+        testing::material("m",
+                          {{"stiffness", stiffness},
+                           {"damping", "0"},
+                           {"friction", ".5"},
+                           {std::string("friction_law/") + law, "1"}},
                           {"floor", "hand"}) +
         "</mujoco>");
     const Attached attached(m);

@@ -208,7 +208,7 @@ TEST(Bristle, IntegratedPatchGivesWayOnItsLimitSurface) {
     in.travel.x() = 1e-3 * limit.x();  // pushed far beyond the limit, at next to no speed
     in.turn = 1e-3 * limit.z() / r;
     std::array<double, 5> committed{}, pending{};
-    const FrictionOutput out = law.evaluate(in, {committed.data(), pending.data(), 1e-3});
+    const FrictionOutput out = law.evaluate(in, {committed.data(), pending.data(), 100.0});
     const double found = std::hypot(out.force.x(), out.torque / r) / (0.3 * f);
     EXPECT_GE(found, limit.norm() * (1.0 - 1e-6)) << e;
     EXPECT_LE(found, limit.norm() * 1.007) << e;

@@ -118,7 +118,7 @@ TEST(FrictionSlope, OfHoldingBristlesIsThatOfTheirSpringAndDamper) {
   const Bristle law({.friction = 0.3, .static_friction = 0.4, .viscous_friction = 20.0});
   const std::array<double, 5> committed{1e-6, 0.0, 0.0, 0.0, 1.0};
   std::array<double, 5> pending{};
-  const LawState state{committed.data(), pending.data(), 1e-3};
+  const LawState state{committed.data(), pending.data(), 1.0};
   const FrictionInput in = sliding(0.0);
   FrictionInput moved = in, faster = in;
   moved.travel.x() += 1e-8;

@@ -51,7 +51,7 @@ TEST(OwnLaw, IsCheckedLikeTheOthers) {
 
 TEST(OwnLaw, ComesAfterTheLawsOfTheLibrary) {
   const auto& entries = friction_law_entries();
-  EXPECT_EQ(entries.front().row.name, RegularizedCoulomb::kName);
+  EXPECT_EQ(entries.front().row.name, ElasticCoulomb::kName);
   EXPECT_EQ(entries.back().row.name, "way_drag");
   EXPECT_EQ(entries.back().row.field("drag")->defaults, std::vector<double>{2.0});
 }

@@ -263,11 +263,12 @@ TEST(SiteLaws, TheLastQuestionIsWhatIsKept) {
   BodyMotion motion = placed(at(0.0, 0.0, 0.049));
   motion.V_WA.linear = {0.1, 0.0, 0.0};
   const std::vector<double> rows = report_of(model, motion).memory;
+  motion.X_WA.translation.x() += 1e-7;  // so that the bristles hold something
   ContactReport report = report_of(model, motion, rows, 1e-3);
   const std::vector<double> before = report.memory;
   const SiteReport site = report.sites[0];
   const SiteLaws asked(model, report, 0);
-  asked.friction(0.5 * site.normal_force, Vec3::Zero(), 0.0);
+  asked.friction(0.0, Vec3::Zero(), 0.0);
   EXPECT_NE(report.memory, before);
   const FrictionOutput again = asked.friction(site.normal_force, site.slip, site.spin);
   EXPECT_EQ(report.memory, before);

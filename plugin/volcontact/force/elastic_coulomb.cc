@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volcontact/force/elastic_coulomb.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volcontact/force/patch_load.h"
+
+namespace volcontact {
+
+double ElasticCoulomb::stiffness(const FrictionInput& in) const noexcept {
+  constexpr double kUnknown = 1e5;  // for a caller that tells nothing of the normal contact [N/m]
+  const double normal = in.normal_stiffness > 0.0 ? in.normal_stiffness : kUnknown;
+  constexpr double kRigid = 1e30;  // so that no stiffness times no deflection is a number [N/m]
+  const double of_patch = std::min(p_.tangential_ratio * normal, kRigid);
+  const double most = p_.friction * in.normal_force;
+  return most > 0.0 && p_.presliding > 0.0 ? std::min(of_patch, most / p_.presliding) : of_patch;
+}
+
+double ElasticCoulomb::damping(const FrictionInput& in, double stiffness) const noexcept {
+  constexpr double kSettling = 5e-4;   // damping over stiffness where no mass is known [s]
+  constexpr double kBall = 2.0 / 7.0;  // of its mass, what a solid ball has against sliding [-]
+  const double critical =
+      in.mass > 0.0 ? 2.0 * std::sqrt(stiffness * kBall * in.mass) : kSettling * stiffness;
+  return p_.tangential_damping * critical;
+}
+
+FrictionSlope ElasticCoulomb::slope(const FrictionInput& in, const LawState& state) const noexcept {
+  evaluate(in, state);
+  const double stiffness = state.pending[4];
+  return {stiffness, damping(in, stiffness), p_.friction * in.normal_force,
+          p_.coupling == Coupling::kNone ? 0.0 : in.patch.gyration_radius};
+}
+
+FrictionOutput ElasticCoulomb::evaluate(const FrictionInput& in,
+                                        const LawState& state) const noexcept {
+  const double r = p_.coupling == Coupling::kNone ? 0.0 : in.patch.gyration_radius;
+  const double most = p_.friction * in.normal_force, now = this->stiffness(in);
+  const double* before = state.committed;
+  const double held = before[4];
+  const Generalized slip{in.slip, r * in.spin}, way{in.travel, r * in.turn};
+  Generalized old{Vec3(before[0], before[1], before[2]), r > 0.0 ? before[3] : 0.0};
+
+  // The spring of a patch that grows keeps its energy, that of one that shrinks its stiffness until
+  // it slides: no patch makes energy, and none that breathes under a load creeps.
+  double stiffness = std::max(now, held);
+  if (held > 0.0 && held < now) old = std::sqrt(held / now) * old;
+  // The way was made against the strength of before: no spring holds more than was put in.
+  const double bound = std::min(most, before[5]);
+  Generalized z = old + way;
+  bool bounded = limit(p_.coupling, bound / stiffness, in, z);
+  if (bounded && now < stiffness) {
+    stiffness = now;
+    z = old + way;
+    bounded = limit(p_.coupling, bound / stiffness, in, z);
+  }
+  Generalized force = stiffness * z + damping(in, stiffness) * slip;
+  limit(p_.coupling, most, in, force);
+  Generalized rate = slip;
+  // A spring at its bound stores no more.
+  if (bounded && z.dot(rate) > 0.0) rate = rate - z.dot(rate) / z.dot(z) * z;
+
+  for (int i = 0; i < 3; ++i) state.pending[i] = z.along[i];
+  state.pending[3] = z.twist;
+  state.pending[4] = stiffness;
+  state.pending[5] = most;
+  FrictionOutput out;
+  out.force = -force.along;
+  out.torque = -r * force.twist;
+  out.slide_energy = 0.5 * stiffness * z.along.squaredNorm();
+  out.spin_energy = 0.5 * stiffness * z.twist * z.twist;
+  out.slide_power = force.along.dot(slip.along) - stiffness * z.along.dot(rate.along);
+  out.spin_power = force.twist * slip.twist - stiffness * z.twist * rate.twist;
+  return out;
+}
+
+}  // namespace volcontact
