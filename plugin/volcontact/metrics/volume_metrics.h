@@ -35,8 +35,11 @@ struct VolumeMetrics {
 
   /// Contact normal on A, from B to A: -S/|S|; zero when S vanishes.
   Vec3 normal() const {
+    // A closed surface sums to rounding, which has a direction too: (|S| / V^(2/3))^3 of it.
+    constexpr double kRounding = 1e-39;
     const double length = area_vector.norm();
-    return length > 0.0 ? Vec3(-area_vector / length) : Vec3::Zero();
+    const bool has_direction = length * length * length > kRounding * volume * volume;
+    return has_direction ? Vec3(-area_vector / length) : Vec3::Zero();
   }
 
   /// |S| / area of the smaller of the two surfaces, 1 for a flat patch; when small, the normal

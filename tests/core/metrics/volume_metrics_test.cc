@@ -90,6 +90,16 @@ TEST(VolumeMetrics, NormalIsAgainstTheAreaVectorAndZeroWithoutOne) {
   EXPECT_EQ(m.normal(), Vec3(0, 0, -1));
 }
 
+// A body inside another, whose surface sums to rounding: no direction to be pushed in.
+TEST(VolumeMetrics, RoundingIsNoDirection) {
+  VolumeMetrics metrics;
+  metrics.volume = 1e-3;
+  metrics.area_vector = {3e-18, -4e-18, 0.0};
+  EXPECT_TRUE(metrics.normal().isZero(0.0));
+  metrics.area_vector = {0.0, 0.0, -3e-13};  // a ball that comes out by a picometre
+  EXPECT_EQ(metrics.normal(), Vec3::UnitZ());
+}
+
 TEST(VolumeMetrics, FlatnessComparesWithTheSmallerSurface) {
   VolumeMetrics m;
   EXPECT_EQ(m.flatness(), 0.0);
