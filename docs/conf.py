@@ -41,6 +41,7 @@ SECTIONS = {
         "docs/choosing",
         "docs/python",
         "docs/environment",
+        "docs/convergence",
         "docs/studies",
         "docs/studies/peg_in_hole_misalignment",
         "docs/studies/battery_insert_0g",

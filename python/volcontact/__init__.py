@@ -42,6 +42,7 @@ from volcontact._volcontact import (
     series_stiffness,
 )
 from volcontact.audit import Audit
+from volcontact.convergence import Convergence, Estimate, converge
 from volcontact.fmu import export_fmu, merge_fmus
 from volcontact.identify import identify
 from volcontact.own_laws import FrictionLaw, LawField, LawState, NormalLaw
@@ -61,11 +62,13 @@ __all__ = [
     "Contact",
     "ContactModel",
     "ContactReport",
+    "Convergence",
     "ConvexPolytope",
     "Csg",
     "Cylinder",
     "ElasticCoulomb",
     "Ellipsoid",
+    "Estimate",
     "Friction",
     "FrictionInput",
     "FrictionLaw",
@@ -97,6 +100,7 @@ __all__ = [
     "__version__",
     "attach",
     "contact_forces",
+    "converge",
     "export_fmu",
     "identify",
     "interference",

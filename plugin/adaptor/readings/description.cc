@@ -133,9 +133,11 @@ std::string implicit_text(const mjModel* m, const SceneContact& contact, const P
   const ImplicitUse use = implicit_use(m, pair);
   if (use.by_friction) return "always, for its friction";
   const Friction* friction = pair.model.laws().friction.get();
-  const bool by_friction = friction && friction->states().empty();
-  if (!use.is_possible)
-    return by_friction ? "where friction would reverse the sliding within a step" : "not needed";
+  if (!use.is_possible) {
+    if (pair.friction_follows_patch) return "where friction would stop the sliding within a step";
+    const bool reverses = friction && friction->states().empty();
+    return reverses ? "where friction would reverse the sliding within a step" : "not needed";
+  }
   char text[64];
   std::snprintf(text, sizeof text, "where a patch is larger than %.2g m^2", use.least_area);
   return text;

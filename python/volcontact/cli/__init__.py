@@ -23,6 +23,7 @@ from volcontact.cli import (
     check,
     compare,
     completion,
+    converge,
     doctor,
     fmu,
     identify,
@@ -42,6 +43,7 @@ _COMMANDS = (
     check,
     run,
     compare,
+    converge,
     view,
     metrics,
     mesh,
@@ -59,6 +61,7 @@ examples:
   volcontact check scene.xml                       what volcontact understands of a scene
   volcontact run scene.xml --duration 2            step it and say how it ended
   volcontact compare scene.xml --out report        volumetric beside native contact, with pictures
+  volcontact converge scene.xml                    what its step costs, figure by figure
   volcontact view scene.xml                        watch it, with contact patches and forces
   volcontact metrics scene.xml                     its contact sites in numbers
   volcontact mesh check part.stl                   whether a mesh is a solid

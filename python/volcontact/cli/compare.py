@@ -76,6 +76,11 @@ def add_to(commands: Subparsers) -> None:
     parser.add_argument(
         "--no-frames", action="store_true", help="leave the pictures out (needs no OpenGL)"
     )
+    parser.add_argument(
+        "--error",
+        action="store_true",
+        help="say what the step costs under volumetric contact, by two runs more",
+    )
     parser.set_defaults(execute=execute)
 
 
@@ -125,10 +130,19 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             progress=bars.task("pictures"),
         )
     report = arguments.out / files.REPORT
+    found = None
+    if arguments.error:
+        from volcontact.cli.converge import error_of_step, print_estimates
+
+        found = error_of_step(arguments, terminal, volumetric)
     if terminal.json:
-        terminal.result({**comparison.summary(), "report": str(report)})
+        about = {} if found is None else {"error_of_step": found.summary()}
+        terminal.result({**comparison.summary(), **about, "report": str(report)})
     else:
         _print(comparison, report, terminal)
+        if found is not None:
+            terminal.out.print()
+            print_estimates(found, terminal)
     return report_warnings(comparison.runs, terminal)
 
 

@@ -58,6 +58,11 @@ def add_to(commands: Subparsers) -> None:
         action="store_true",
         help="say in which step contact made most energy, and where",
     )
+    parser.add_argument(
+        "--error",
+        action="store_true",
+        help="say what the step costs, by two runs more at a half and a quarter of it",
+    )
     parser.set_defaults(execute=execute)
 
 
@@ -109,6 +114,12 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             text = json.dumps(summary, indent=2, allow_nan=False) + "\n"
             (folder / files.SUMMARY).write_text(text, encoding="utf-8")
             write_table((recording,), folder / files.TRAJECTORY)
+    found = None
+    if arguments.error:
+        from volcontact.cli.converge import error_of_step, print_estimates
+
+        found = error_of_step(arguments, terminal, recording)
+        summary["error_of_step"] = found.summary()
     if terminal.json:
         terminal.result(summary)
     else:
@@ -120,6 +131,9 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
         if arguments.audit:
             table.add_row("Most energy made in a step", escape(_audit_text(recording.audit())))
         terminal.out.print(table)
+        if found is not None:
+            terminal.out.print()
+            print_estimates(found, terminal)
         if arguments.out is not None:
             terminal.out.print(f"written to {arguments.out}", markup=False)
     return report_warnings((recording,), terminal)

@@ -193,10 +193,10 @@ def test_fields_of_laws_have_bounds_of_their_own(tmp_path, rows):
 def test_every_field_of_every_law_has_bounds():
     import inspect
 
-    from volcontact import Bristle, HuntCrossley, RegularizedCoulomb
+    from volcontact import Bristle, ElasticCoulomb, HuntCrossley, RegularizedCoulomb
     from volcontact.identify.ranges import DEFAULTS, reason_against
 
-    for law in (HuntCrossley, Bristle, RegularizedCoulomb):
+    for law in (HuntCrossley, ElasticCoulomb, Bristle, RegularizedCoulomb):
         fields = {name for name, item in inspect.getmembers(law) if isinstance(item, property)}
         assert fields - {"name", "state_size", "coupling"} <= DEFAULTS.keys()
     for field, (low, high, _) in DEFAULTS.items():

@@ -257,6 +257,13 @@ def test_third_party_page_is_generated_from_the_results() -> None:
     )
 
 
+def test_convergence_page_is_generated_from_the_results() -> None:
+    module = generator("make_convergence")
+    assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
+        "run './run python docs/generate/make_convergence.py'"
+    )
+
+
 def test_results_hold_no_path_and_no_name_of_a_machine() -> None:
     results = sorted((ROOT / "tests" / "benchmarks" / "results").glob("*.csv"))
     assert results

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`volcontact converge`: what the step costs, figure by figure."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rich.markup import escape
+from rich.table import Table
+
+from volcontact._files import appearing
+from volcontact.cli.arguments import add_command, add_keys, add_time, positive
+from volcontact.cli.terminal import Terminal
+from volcontact.convergence import LEAST, NOTHING
+from volcontact.report.units import quantity
+
+if TYPE_CHECKING:
+    from volcontact.cli.arguments import Subparsers
+    from volcontact.convergence import Convergence, Estimate
+    from volcontact.recording import Recording
+
+_EXAMPLES = """\
+  volcontact converge scene.xml
+  volcontact converge scene.xml --duration 2 --levels 6 --out convergence.json
+  volcontact converge scene.xml --quantities force penetration --within 0.001
+  volcontact converge scene.xml --contact native --json
+"""
+_FEWEST = 3
+_LITTLE = 1e-6
+
+
+def add_to(commands: Subparsers) -> None:
+    """Adds the command to the program."""
+    parser = add_command(
+        commands,
+        "converge",
+        "run a scene at its step, at half of it and so on, and say what the step costs",
+        _EXAMPLES,
+    )
+    add_time(parser, duration=3.0)
+    add_keys(parser)
+    parser.add_argument(
+        "--levels",
+        type=_levels,
+        default=5,
+        metavar="N",
+        help="runs, each at half the step of the one before (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--quantities",
+        nargs="+",
+        default=[],
+        metavar="WORD",
+        help="figures whose name has one of these words (default: all)",
+    )
+    parser.add_argument(
+        "--within",
+        type=positive,
+        default=0.01,
+        metavar="SHARE",
+        help="relative error that is asked of a figure (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--contact",
+        choices=("volumetric", "native"),
+        default="volumetric",
+        help="kind of contact (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--out", type=Path, metavar="FILE", help="write all of it as JSON into this file"
+    )
+    parser.set_defaults(execute=execute)
+
+
+def _levels(text: str) -> int:
+    if not (text.isdecimal() and _FEWEST <= int(text) <= 12):
+        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number from {_FEWEST} to 12")
+    return int(text)
+
+
+def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
+    """Runs the command and returns the exit status."""
+    from volcontact.convergence import converge
+
+    with terminal.progress() as bars:
+        tasks: dict[str, object] = {}
+
+        def told(done: int, total: int, name: str) -> None:
+            if name not in tasks:
+                tasks[name] = bars.task(f"step {name}" if name[0] == "1" else name)
+            tasks[name](done, total)  # type: ignore[operator]
+
+        found = converge(
+            arguments.scene,
+            duration=arguments.duration,
+            timestep=arguments.timestep,
+            levels=arguments.levels,
+            within=arguments.within,
+            contact=arguments.contact,
+            quantities=arguments.quantities,
+            material=dict(arguments.material),
+            options=dict(arguments.option),
+            progress=told,
+        )
+    if arguments.out is not None:
+        text = json.dumps(found.summary(), indent=2, allow_nan=False) + "\n"
+        with appearing(arguments.out) as part:
+            part.write_text(text, encoding="utf-8")
+    if terminal.json:
+        terminal.result(found.summary())
+        return 0
+    print_estimates(found, terminal)
+    if arguments.out is not None:
+        terminal.out.print(f"written to {arguments.out}", markup=False)
+    return 0
+
+
+def error_of_step(
+    arguments: argparse.Namespace, terminal: Terminal, first: Recording
+) -> Convergence:
+    """For `--error` of other commands: two runs more, at a half and a quarter of the step."""
+    from volcontact.convergence import converge
+
+    with terminal.progress() as bars:
+        task = bars.task("error of the step")
+        return converge(
+            arguments.scene,
+            duration=arguments.duration,
+            timestep=arguments.timestep,
+            levels=_FEWEST,
+            contact=first.contact,
+            material=dict(arguments.material),
+            options=dict(arguments.option),
+            with_tolerance=False,
+            first=first,
+            progress=lambda done, total, _: task(done, total),
+        )
+
+
+def print_estimates(found: Convergence, terminal: Terminal) -> None:
+    """The table, and what has no value to converge to."""
+    from volcontact.report.key_figures import text_of
+
+    table = Table(box=None, pad_edge=False)
+    first_step, asked = _time(found.steps[0]), f"{100 * found.within:g} % from"
+    table.add_column("", min_width=18)
+    for head in (f"at {first_step}", "tends to", "+-", "error", "order", asked):
+        table.add_column(head, no_wrap=True)
+    erratic, missing = [], []
+    for one in found.estimates:
+        if one.kind == "erratic":
+            erratic.append(one)
+        elif one.kind == "none":
+            missing.append(one)
+        else:
+            error = one.error_of_first or 0.0
+            table.add_row(
+                escape(one.name),
+                _number(one.values[0], one),
+                _number(one.limit, one),
+                _number(one.error or 0.0, one),
+                _share(error, one),
+                "" if one.order is None else f"{one.order:.1f}",
+                "shorter" if one.step is None else _time(one.step),
+            )
+    terminal.out.print(table)
+    for one in erratic:
+        low, middle, high = (text_of(value, one.unit) for value in one.spread())
+        terminal.out.print(
+            f"{one.name} has no value that these steps tend to: {low} to {high}, {middle} in the "
+            f"median of {len(one.values)} runs. Impacts that hang on how they are met have a "
+            "distribution: take shorter steps, or ask for it with volcontact study.",
+            markup=False,
+        )
+    for one in missing:
+        terminal.out.print(f"{one.name}: not in every run.", markup=False)
+    for one, change in zip(found.estimates, found.geometry, strict=False):
+        scale = max((abs(value) for value in one.values if value is not None), default=0.0)
+        if change is None or one.kind not in ("converges", "settled"):
+            continue
+        if abs(change) > found.within * scale:
+            terminal.out.print(
+                f"{one.name} changes by {_number(change, one)} when overlaps are asked for ten "
+                "times as closely: give a smaller volcontact/option/tolerance.",
+                markup=False,
+            )
+
+
+def _time(seconds: float) -> str:
+    return quantity(seconds, "s")
+
+
+def _number(value: float | None, one: Estimate) -> str:
+    from volcontact.report.key_figures import text_of
+
+    nothing = value is not None and abs(value) <= NOTHING.get(one.unit, LEAST)
+    return "0" if nothing else text_of(value, one.unit)
+
+
+def _share(error: float, one: Estimate) -> str:
+    if not one.limit or abs(one.limit) <= NOTHING.get(one.unit, LEAST):
+        return _number(error, one)
+    share = error / abs(one.limit)
+    return f"{100.0 * share:+.2g} %" if abs(share) >= _LITTLE else "0"
