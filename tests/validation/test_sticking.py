@@ -165,6 +165,13 @@ def test_slope_holds_at_other_steps_and_loads(step: float, share: float) -> None
     assert on_slope(share, step, 10.0) < 1e-7
 
 
-@pytest.mark.parametrize("integrator", ["implicit", "implicitfast", "RK4"])
+@pytest.mark.parametrize(
+    "integrator",
+    [
+        word
+        for word in ("implicit", "implicitfast", "RK4")
+        if hasattr(mujoco.mjtIntegrator, f"mjINT_{word.upper()}")
+    ],
+)
 def test_turntable_under_other_integrators(integrator: str) -> None:
     assert on_turntable(2e-3, integrator, {"stiffness": 1e9}) < 1e-9
