@@ -10,7 +10,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from volcontact.convergence import LEAST, NOTHING
+from volcontact.cli.converge import row_of
+from volcontact.convergence import Estimate
 from volcontact.report.key_figures import text_of
 from volcontact.report.units import quantity
 
@@ -54,33 +55,17 @@ a sum over several impacts hangs on their order. What is below 1 nm, 1 nN and so
 """  # noqa: E501
 
 
-def text(value: float | None, unit: str) -> str:
-    """A figure as of the program."""
-    nothing = value is not None and abs(value) <= NOTHING.get(unit, LEAST)
-    return "0" if nothing else text_of(value, unit)
-
-
 def row(figure: dict[str, Any]) -> str:
-    """A line of the table."""
-    unit, values, limit = figure["unit"], figure["values"], figure["limit"]
-    first = text(values[0], unit)
-    if figure["kind"] == "erratic":
-        low, high = text(min(values), unit), text(max(values), unit)
-        return f"| {figure['name']} | {first} | {low} to {high} |  |  |  |  |"
-    if figure["kind"] == "none":
-        return f"| {figure['name']} | {first} | not in every run |  |  |  |  |"
-    error = values[0] - limit
-    share = 0.0 if abs(limit) <= NOTHING.get(unit, LEAST) else error / abs(limit)
-    cells = (
-        figure["name"],
-        first,
-        text(limit, unit),
-        text(figure["error"], unit),
-        "0" if abs(share) < 1e-6 else f"{100 * share:+.2g} %",
-        "" if figure["order"] is None else f"{figure['order']:.1f}",
-        "shorter" if figure["step"] is None else quantity(figure["step"], "s"),
-    )
-    return f"| {' | '.join(cells)} |"
+    """A line of the table, as the program has it."""
+    fields = {name: value for name, value in figure.items() if name != "change_with_tolerance"}
+    one = Estimate(**fields)
+    if one.kind in ("converges", "settled"):
+        return f"| {' | '.join(row_of(one))} |"
+    if one.kind == "none":
+        return f"| {one.name} |  | not in every run |  |  |  |  |"
+    first, (low, _, high) = text_of(one.values[0], one.unit), one.spread()
+    about = f"{text_of(low, one.unit)} to {text_of(high, one.unit)}"
+    return f"| {one.name} | {first} | {about} |  |  |  |  |"
 
 
 def section(name: str, result: dict[str, Any]) -> str:

@@ -30,7 +30,6 @@ _SHRINKS = 0.8  # of a difference to the next, at most, where a figure converges
 _ALIKE = 0.5  # orders of two pairs of differences that agree
 _ROUNDING = 1e-12
 NOTHING, LEAST = {"degree": 1e-3}, 1e-9  # below which nobody cares how little, in other units
-_TOLERANCE = 1e-3  # of volcontact/option/tolerance, where nobody gives one
 _ORDERS = (0.3, 4.0)  # believed
 # Factors of safety of [Roache1998]: where three runs or more agree on the order, and where not.
 _SAFE, _UNSURE = 1.25, 3.0
@@ -98,12 +97,15 @@ class Convergence:
         estimates: by figure.
         geometry: by figure, how much the finest run changes when overlaps are asked for ten times
             as closely; none without that run.
+        runs: of the steps, without their frames. One that stopped early, or was warned of, says
+            nothing of the step: look at `stopped`, `warnings` and `dropped`.
     """
 
     steps: tuple[float, ...]
     within: float
     estimates: tuple[Estimate, ...]
     geometry: tuple[float | None, ...] = ()
+    runs: tuple[Recording, ...] = ()
 
     def summary(self) -> dict[str, Any]:
         """As of JSON."""
@@ -192,15 +194,14 @@ def converge(
     )
     geometry: tuple[float | None, ...] = ()
     if with_tolerance and contact == "volumetric":
-        given = dict(options or {}).get("tolerance", _TOLERANCE)
-        tolerance = float(given) if isinstance(given, (int, float, str)) else _TOLERANCE
+        tolerance = runs[-1].description["options"]["tolerance"]
         tenth = run(steps[-1], "tolerance / 10", {"tolerance": 0.1 * tolerance})
         fine = _figures(tenth, design, quantities)
         geometry = tuple(
             None if a is None or b is None else a - b
             for a, b in ((fine[name][1], rows[-1][name][1]) for name in rows[0])
         )
-    return Convergence(steps, within, estimates, geometry)
+    return Convergence(steps, within, estimates, geometry, tuple(runs))
 
 
 def _figures(
@@ -209,7 +210,10 @@ def _figures(
     from volcontact.report.key_figures import measured
     from volcontact.simulation import SimulationError
 
-    every = {name: (unit, value) for name, unit, value in measured(run, design)}
+    every = {
+        name: (unit, value if value is not None and math.isfinite(value) else None)
+        for name, unit, value in measured(run, design)
+    }
     if not quantities:
         return every
     words = [word.lower() for word in quantities]
@@ -246,25 +250,28 @@ def estimate(
     known = [value for value in values if value is not None]
     if len(known) < len(values):
         return Estimate(name, unit, tuple(values), "none")
-    scale = max(abs(value) for value in known)
-    if scale <= NOTHING.get(unit, LEAST):
-        return _of(name, unit, known, "settled", None, known[-1], scale, steps, within, scale)
+    scale, nothing = max(abs(value) for value in known), NOTHING.get(unit, LEAST)
     differences = [b - a for a, b in pairwise(known)]
-    if abs(differences[-1]) <= _ROUNDING * scale and abs(differences[-2]) <= _ROUNDING * scale:
-        return _of(name, unit, known, "settled", None, known[-1], 0.0, steps, within, scale)
-    orders = _orders(differences[-3:])
-    if orders is not None:
-        order = min(max(sum(orders) / len(orders), _ORDERS[0]), _ORDERS[1])
-        agree = len(orders) > 1 and max(orders) - min(orders) <= _ALIKE
-        beyond = differences[-1] / (2.0**order - 1.0)
-        error = (_SAFE if agree else _UNSURE) * abs(beyond)
-        limit = known[-1] + beyond
-        return _of(name, unit, known, "converges", order, limit, error, steps, within, scale)
-    last = known[-3:]
-    spread = max(last) - min(last)
-    if spread <= within * scale:
-        return _of(name, unit, known, "settled", None, known[-1], spread, steps, within, scale)
-    return Estimate(name, unit, tuple(known), "erratic")
+    # What has come to nothing, or to the last digit, has no order.
+    is_still = scale <= nothing or max(map(abs, differences[-2:])) <= _ROUNDING * scale
+    orders = None if is_still else _orders(differences[-3:])
+    if orders is None:
+        last = known[-3:]
+        limit, error = known[-1], max(last) - min(last)
+        if error > max(within * scale, nothing):
+            return Estimate(name, unit, tuple(known), "erratic")
+        step = _step_within(known, steps, limit, _asked(within, limit, scale, nothing))
+        return Estimate(name, unit, tuple(known), "settled", None, limit, error, step)
+    order = min(max(sum(orders) / len(orders), _ORDERS[0]), _ORDERS[1])
+    agree = len(orders) > 1 and max(orders) - min(orders) <= _ALIKE
+    beyond = differences[-1] / (2.0**order - 1.0)
+    error = (_SAFE if agree else _UNSURE) * abs(beyond)
+    limit = known[-1] + beyond
+    asked = _asked(within, limit, scale, nothing)
+    step = _step_within(known, steps, limit, asked)
+    if step is None:
+        step = steps[-1] * (asked / abs(beyond)) ** (1.0 / order)
+    return Estimate(name, unit, tuple(known), "converges", order, limit, error, step)
 
 
 def _orders(differences: Sequence[float]) -> list[float] | None:
@@ -277,25 +284,17 @@ def _orders(differences: Sequence[float]) -> list[float] | None:
     return orders
 
 
-def _of(
-    name: str,
-    unit: str,
-    values: Sequence[float],
-    kind: Kind,
-    order: float | None,
-    limit: float,
-    error: float,
-    steps: Sequence[float],
-    within: float,
-    scale: float,
-) -> Estimate:
-    asked = within * (abs(limit) if limit != 0.0 else scale)
-    step = None
-    nothing = NOTHING.get(unit, LEAST)
-    for value, at in zip(reversed(values), reversed(steps), strict=True):
-        if abs(value - limit) > max(asked, nothing):
+def _asked(within: float, limit: float, scale: float, nothing: float) -> float:
+    return max(within * (abs(limit) if limit != 0.0 else scale), nothing)
+
+
+def _step_within(
+    values: Sequence[float], steps: Sequence[float], limit: float, asked: float
+) -> float | None:
+    """The longest step from which on all values are that near to the limit; None where none is."""
+    found = None
+    for value, step in zip(reversed(values), reversed(steps), strict=True):
+        if abs(value - limit) > asked:
             break
-        step = at
-    if step is None and order is not None:
-        step = steps[-1] * (asked / abs(values[-1] - limit)) ** (1.0 / order)
-    return Estimate(name, unit, tuple(values), kind, order, limit, error, step)
+        found = step
+    return found

@@ -20,19 +20,13 @@ inline void total_up(ContactReport& report) noexcept {
   }
 }
 
-/// A share of all that acts at the sites. Friction keeps what it holds under what presses then.
+/// A share of all that acts at the sites of a report that keeps its inputs. Friction keeps what it
+/// holds under what presses then.
 inline void take_share(double share, const ContactModel& model, ContactReport& report) noexcept {
   for (std::size_t i = 0; i < report.sites.size(); ++i) {
     SiteReport& site = report.sites[i];
-    const SiteLaws laws(model, report, i);
     site.normal_force *= share;
-    if (laws.has_friction() && laws.friction_keeps() && !report.inputs.empty()) {
-      site.elastic_energy -= site.bristle_energy.sum();
-      const FrictionOutput held = laws.friction(site.normal_force, site.slip, site.spin);
-      site.bristle_energy.slide = held.slide_energy;
-      site.bristle_energy.spin = held.spin_energy;
-      site.elastic_energy += site.bristle_energy.sum();
-    }
+    SiteLaws(model, report, i).hold_under(site.normal_force);
     site.force_on_A *= share;
     site.torque_on_A *= share;
     for (ByChannel* power : {&site.power, &site.taken}) {

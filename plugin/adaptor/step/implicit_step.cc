@@ -230,13 +230,7 @@ void ImplicitStep::write_results() noexcept {
     report.normal_force = f[0];
     report.force_on_A = f[0] * axes.col(2) + f[3] * axes.col(0) + f[4] * axes.col(1);
     report.torque_on_A = f[1] * axes.col(0) + f[2] * axes.col(1) + f[5] * axes.col(2);
-    const double elastic = inputs.normal_out.elastic_energy;
-    if (site.laws.has_friction()) {
-      const FrictionOutput friction = site.laws.friction(f[0], report.slip, report.spin);
-      report.bristle_energy.slide = friction.slide_energy;
-      report.bristle_energy.spin = friction.spin_energy;
-    }
-    report.elastic_energy = elastic + report.bristle_energy.sum();
+    site.laws.hold_under(f[0]);
     report.taken = taken(site, i);
     report.power = report.taken;
     report.power.normal += inputs.normal_out.elastic * mean_motion(i)[0];

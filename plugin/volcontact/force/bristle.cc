@@ -67,25 +67,15 @@ FrictionOutput Bristle::evaluate(const FrictionInput& in, const LawState& state)
       mean_decay(decays) * (so_far.share * way + so_far.sliding * state.elapsed * pulled(mean));
   const bool bounded = limit(p_.coupling, most / p_.bristle_stiffness, in, z);
 
-  Generalized rate = now.share * slip + now.sliding * (pulled(slip) - relaxing * z);
+  const Generalized rate = now.share * slip + now.sliding * (pulled(slip) - relaxing * z);
   Generalized force = p_.bristle_stiffness * z + p_.bristle_damping * rate;
   limit(p_.coupling, most, in, force);
   if (in.normal_force > 0.0) force = force + p_.viscous_friction * slip;
-  // A deflection at its bound stores no more.
-  if (bounded && z.dot(rate) > 0.0) rate = rate - z.dot(rate) / z.dot(z) * z;
 
   for (int i = 0; i < 3; ++i) state.pending[i] = z.along[i];
   state.pending[3] = z.twist;
   state.pending[4] = dwell;
-  const double k = p_.bristle_stiffness;
-  FrictionOutput out;
-  out.force = -force.along;
-  out.torque = -r * force.twist;
-  out.slide_energy = 0.5 * k * z.along.squaredNorm();
-  out.spin_energy = 0.5 * k * z.twist * z.twist;
-  out.slide_power = force.along.dot(slip.along) - k * z.along.dot(rate.along);
-  out.spin_power = force.twist * slip.twist - k * z.twist * rate.twist;
-  return out;
+  return held_by(z, p_.bristle_stiffness, bounded, force, slip, r, rate);
 }
 
 }  // namespace volcontact

@@ -56,22 +56,12 @@ FrictionOutput ElasticCoulomb::evaluate(const FrictionInput& in,
   }
   Generalized force = stiffness * z + damping(in, stiffness) * slip;
   limit(p_.coupling, most, in, force);
-  Generalized rate = slip;
-  // A spring at its bound stores no more.
-  if (bounded && z.dot(rate) > 0.0) rate = rate - z.dot(rate) / z.dot(z) * z;
 
   for (int i = 0; i < 3; ++i) state.pending[i] = z.along[i];
   state.pending[3] = z.twist;
   state.pending[4] = stiffness;
   state.pending[5] = most;
-  FrictionOutput out;
-  out.force = -force.along;
-  out.torque = -r * force.twist;
-  out.slide_energy = 0.5 * stiffness * z.along.squaredNorm();
-  out.spin_energy = 0.5 * stiffness * z.twist * z.twist;
-  out.slide_power = force.along.dot(slip.along) - stiffness * z.along.dot(rate.along);
-  out.spin_power = force.twist * slip.twist - stiffness * z.twist * rate.twist;
-  return out;
+  return held_by(z, stiffness, bounded, force, slip, r, slip);
 }
 
 }  // namespace volcontact

@@ -60,4 +60,21 @@ inline bool limit(Coupling coupling, double most, const FrictionInput& in, Gener
   return true;
 }
 
+/// What a law gives that holds by an elastic deflection `z` of a stiffness, with the generalized
+/// `force` against a slip: what is not stored is dissipated. A deflection at its bound stores no
+/// more, however it is pulled. `lever`: by which a spin is a slip [m].
+inline FrictionOutput held_by(const Generalized& z, double stiffness, bool is_at_bound,
+                              const Generalized& force, const Generalized& slip, double lever,
+                              Generalized rate) {
+  if (is_at_bound && z.dot(rate) > 0.0) rate = rate - z.dot(rate) / z.dot(z) * z;
+  FrictionOutput out;
+  out.force = -force.along;
+  out.torque = -lever * force.twist;
+  out.slide_energy = 0.5 * stiffness * z.along.squaredNorm();
+  out.spin_energy = 0.5 * stiffness * z.twist * z.twist;
+  out.slide_power = force.along.dot(slip.along) - stiffness * z.along.dot(rate.along);
+  out.spin_power = force.twist * slip.twist - stiffness * z.twist * rate.twist;
+  return out;
+}
+
 }  // namespace volcontact

@@ -24,6 +24,14 @@ FrictionOutput SiteLaws::friction(double normal_force, const Vec3& slip,
                                   friction_state_);
 }
 
+void SiteLaws::hold_under(double normal_force) const noexcept {
+  if (!has_friction()) return;
+  const FrictionOutput held = friction(normal_force, site_.slip, site_.spin);
+  site_.bristle_energy.slide = held.slide_energy;
+  site_.bristle_energy.spin = held.spin_energy;
+  site_.elastic_energy = inputs_.normal_out.elastic_energy + site_.bristle_energy.sum();
+}
+
 FrictionSlope SiteLaws::friction_slope(double normal_force, const Vec3& slip,
                                        double spin) const noexcept {
   return laws_.friction->slope(friction_input(site_, inputs_, normal_force, slip, spin),

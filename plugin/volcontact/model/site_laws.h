@@ -19,6 +19,8 @@ class SiteLaws {
   /// Whether it depends on what was before, not on the motion of now alone.
   bool friction_keeps() const noexcept { return !laws_.friction->states().empty(); }
   FrictionOutput friction(double normal_force, const Vec3& slip, double spin) const noexcept;
+  /// Friction keeps, and the report says it stores, what it holds under that normal force [N].
+  void hold_under(double normal_force) const noexcept;
   FrictionSlope friction_slope(double normal_force, const Vec3& slip, double spin) const noexcept;
 
   /// Stiffness and damping of the site. docs/theory.md, "Stiffness of a site".
@@ -26,7 +28,7 @@ class SiteLaws {
 
  private:
   const ContactLaws& laws_;
-  const SiteReport& site_;
+  SiteReport& site_;
   const SiteInputs& inputs_;
   LawState normal_state_;
   LawState friction_state_;

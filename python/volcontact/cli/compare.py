@@ -143,7 +143,8 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
         if found is not None:
             terminal.out.print()
             print_estimates(found, terminal)
-    return report_warnings(comparison.runs, terminal)
+    more = () if found is None else found.runs[1:]
+    return report_warnings((*comparison.runs, *more), terminal)
 
 
 def _renderer(arguments: argparse.Namespace) -> Renderer:

@@ -13,6 +13,7 @@ from rich.table import Table
 
 from volcontact._files import appearing
 from volcontact.cli.arguments import add_command, add_keys, add_time, positive
+from volcontact.cli.status import report_warnings
 from volcontact.cli.terminal import Terminal
 from volcontact.convergence import LEAST, NOTHING
 from volcontact.report.units import quantity
@@ -111,11 +112,11 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             part.write_text(text, encoding="utf-8")
     if terminal.json:
         terminal.result(found.summary())
-        return 0
-    print_estimates(found, terminal)
-    if arguments.out is not None:
-        terminal.out.print(f"written to {arguments.out}", markup=False)
-    return 0
+    else:
+        print_estimates(found, terminal)
+        if arguments.out is not None:
+            terminal.out.print(f"written to {arguments.out}", markup=False)
+    return report_warnings(found.runs, terminal)
 
 
 def error_of_step(
@@ -156,16 +157,7 @@ def print_estimates(found: Convergence, terminal: Terminal) -> None:
         elif one.kind == "none":
             missing.append(one)
         else:
-            error = one.error_of_first or 0.0
-            table.add_row(
-                escape(one.name),
-                _number(one.values[0], one),
-                _number(one.limit, one),
-                _number(one.error or 0.0, one),
-                _share(error, one),
-                "" if one.order is None else f"{one.order:.1f}",
-                "shorter" if one.step is None else _time(one.step),
-            )
+            table.add_row(*map(escape, row_of(one)))
     terminal.out.print(table)
     for one in erratic:
         low, middle, high = (text_of(value, one.unit) for value in one.spread())
@@ -187,6 +179,19 @@ def print_estimates(found: Convergence, terminal: Terminal) -> None:
                 "times as closely: give a smaller volcontact/option/tolerance.",
                 markup=False,
             )
+
+
+def row_of(one: Estimate) -> tuple[str, ...]:
+    """Cells of a figure that has a limit: name, at first, limit, bar, error, order, step."""
+    return (
+        one.name,
+        _number(one.values[0], one),
+        _number(one.limit, one),
+        _number(one.error, one),
+        _share(one.error_of_first or 0.0, one),
+        "" if one.order is None else f"{one.order:.1f}",
+        "shorter" if one.step is None else _time(one.step),
+    )
 
 
 def _time(seconds: float) -> str:

@@ -136,4 +136,5 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             print_estimates(found, terminal)
         if arguments.out is not None:
             terminal.out.print(f"written to {arguments.out}", markup=False)
-    return report_warnings((recording,), terminal)
+    more = () if found is None else found.runs[1:]
+    return report_warnings((recording, *more), terminal)

@@ -146,6 +146,31 @@ def test_chaos_is_said_in_words(tmp_path, capsys, monkeypatch):
     assert "Largest contact force has no value that these steps tend to: 1.00 N to 5.00 N" in said
 
 
+def test_runs_that_blow_up_are_told_and_have_no_figures(tmp_path, capsys):
+    scene = tmp_path / "scene.xml"
+    scene.write_text(SCENE)
+    wild = ["--material", "stiffness=1e300", "--option", "implicit=off"]
+    assert main(["converge", str(scene), "--duration", "0.1", "--levels", "3", *wild]) == 3
+    assert "volumetric contact: " in capsys.readouterr().err
+
+
+def test_tolerance_of_the_scene_is_the_one_that_is_divided(monkeypatch):
+    from volcontact import simulation
+
+    asked = []
+    simulate = simulation.simulate
+
+    def watched(*arguments, **rest):
+        asked.append((rest["options"] or {}).get("tolerance"))
+        return simulate(*arguments, **rest)
+
+    monkeypatch.setattr(simulation, "simulate", watched)
+    key = '<custom><numeric name="volcontact/option/tolerance" data="1e-5"/></custom>'
+    scene = SCENE.replace("</mujoco>", key + '<size nuserdata="9000"/></mujoco>')
+    vc.converge(scene, duration=0.02, levels=3)
+    assert asked == [None, None, None, pytest.approx(1e-6)]
+
+
 def test_model_is_not_changed():
     model = mujoco.MjModel.from_xml_string(SCENE)
     found = vc.converge(model, duration=0.02, levels=3, quantities=["energy"], with_tolerance=False)
