@@ -44,16 +44,16 @@ struct LegendreTable {
   }
 };
 
-/// Estimates of the error of the rule with 8 nodes. Where the integrand is smooth the error falls
-/// on as the Legendre coefficients do; where a kink was overlooked it does not.
-struct LegendreError {
+/// Estimates of the error of a rule. Where the integrand is smooth the error falls on as the
+/// coefficients do that the nodes tell; where a kink was overlooked it does not.
+struct RuleError {
   double smooth, kinked;
 };
 
 /// From how fast the Legendre coefficients of the integrand fall; `terms` are its values times the
 /// weights of the rule. Two coefficients next to each other are small together only by chance: the
 /// fall is taken over all of them but the first.
-inline LegendreError legendre_errors(const double* terms) {
+inline RuleError legendre_errors(const double* terms) {
   static constexpr LegendreTable kTable;
   double c[LegendreTable::kCount] = {};
   for (int i = 0; i < LegendreTable::kCount; ++i) {

@@ -180,17 +180,19 @@ class LinesRun {
   // Without corners the rim is smooth and nearly round: equal steps of the angle converge fastest.
   // False when they do not, as a corner was overlooked.
   bool integrate_smooth() {
-    double u[kLanes], v[kLanes], weight[kLanes], section[kLanes], volume[2];
+    double u[kLanes], v[kLanes], weight[kLanes], section[kLanes];
+    EvenTurnValues values;
     std::fill_n(weight, kLanes, kPi / kLanes);
     for (int half = 0; half < 2; ++half) {
       even_directions(2 * kLanes, half, u, v);
       s_.sections.integrate(s_.path, u, v, weight, section);
       s_.sections.accept_batch();
-      volume[half] = s_.sections.batch().moments[0];
+      values.set(2 * kLanes, half, section);
     }
-    error_ = even_error(volume[0], volume[1]);
+    const RuleError errors = values.errors(2 * kLanes);
+    error_ = errors.kinked * s_.sections.total().moments[0];
     measure_opening();
-    return error_ <= outer_rule::kEvenTarget * options_.tolerance * (volume[0] + volume[1]);
+    return errors.smooth <= outer_rule::kEvenTarget * options_.tolerance;
   }
 
   void integrate_arcs() {
@@ -290,7 +292,7 @@ class LinesRun {
     }
     s_.sections.integrate(s_.path, u, v, weight, section);
     for (int i = 0; i < kLanes; ++i) section[i] *= weight[i];
-    const LegendreError error = legendre_errors(section);
+    const RuleError error = legendre_errors(section);
     double volume = 0.0;
     for (double part : section) volume += part;
     volume_scale_ = std::max(volume_scale_, volume);

@@ -55,6 +55,9 @@ void Sections::accept_batch() {
   total_.bore.wall += batch_.bore.wall;
   total_.bore.x += batch_.bore.x;
   total_.bore.y += batch_.bore.y;
+  total_.bore.xx += batch_.bore.xx;
+  total_.bore.xy += batch_.bore.xy;
+  total_.bore.yy += batch_.bore.yy;
   total_.bore.xh += batch_.bore.xh;
   total_.bore.yh += batch_.bore.yh;
   total_.low = std::min(total_.low, batch_.low);

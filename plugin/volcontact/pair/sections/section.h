@@ -107,9 +107,9 @@ struct SectionSums {
   double moments[10];
   double depth_moment;
   /// Over the wall of a bore, where dw = |u| |v| dh d(angle), times h in central sections: int dw
-  /// times 1, x, y, x h, y h.
+  /// times 1, x, y, xx, xy, yy, x h, y h.
   struct OnBore {
-    double wall, x, y, xh, yh;
+    double wall, x, y, xx, xy, yy, xh, yh;
     double depth_moment;      ///< int depth dV
     double depth_x, depth_y;  ///< the same times x, y of the direction of the half-plane
     double depth;             ///< the largest: of rho - 1, times h in central sections

@@ -55,6 +55,15 @@ void add_bore(const Sections& sections, const SectionFrame& frame, Surface& s) {
   s.moment -= (1.0 + r2 / square) * turn;
 }
 
+Surface surface_of(const Sections& sections, const FaceSet& faces, const SectionFrame& frame,
+                   Owner owner) {
+  Surface s;
+  add_planes(sections, faces, frame, owner, s);
+  add_rounds(sections, frame, owner, s);
+  if (faces.has_bore && faces.wall.owner == owner) add_bore(sections, frame, s);
+  return s;
+}
+
 constexpr double kLonger = 1.001;  // than an area, which a vector cannot be
 
 // From which solid the area vector is taken: plane faces give it best. The error of a vector goes
@@ -83,13 +92,8 @@ MomentSum moments_of(const Sections& sections, const FaceSet& faces, const Secti
   sum.first = u * m[1] + v * m[2] + t * m[3];
   sum.second = m[4] * u * u.transpose() + m[5] * both(u, v) + m[6] * v * v.transpose() +
                m[7] * both(u, t) + m[8] * both(v, t) + m[9] * t * t.transpose();
-  Surface surface[2];
-  for (Owner owner : {Owner::kA, Owner::kB}) {
-    Surface& s = surface[index(owner)];
-    add_planes(sections, faces, frame, owner, s);
-    add_rounds(sections, frame, owner, s);
-    if (faces.has_bore && faces.wall.owner == owner) add_bore(sections, frame, s);
-  }
+  const Surface surface[2] = {surface_of(sections, faces, frame, Owner::kA),
+                              surface_of(sections, faces, frame, Owner::kB)};
   const double share_b = share_of_b(surface[0], surface[1], faces);
   sum.area_vector = (1.0 - share_b) * surface[0].vector - share_b * surface[1].vector;
   sum.area_moment = (1.0 - share_b) * surface[0].moment - share_b * surface[1].moment;
@@ -115,7 +119,11 @@ double SurfaceFlux::open(double volume, const Eigen::Vector2d& middle, double si
   return rest.cwiseAbs().maxCoeff();
 }
 
-double openness(const Sections& sections, const FaceSet& faces, const SectionFrame& frame) {
+namespace {
+
+// Through the faces, and through what else there is.
+SurfaceFlux flux_of(const Sections& sections, const FaceSet& faces, const SectionFrame& frame,
+                    const SurfaceFlux::Axes& other) {
   SurfaceFlux flux((SurfaceFlux::Axes() << frame.u, frame.v).finished());
   for (int i = 0; i < sections.faces().active_planes; ++i) {
     flux.add_plane(faces.planes[sections.faces().planes[i].face].normal,
@@ -124,7 +132,31 @@ double openness(const Sections& sections, const FaceSet& faces, const SectionFra
   for (int i = 0; i < sections.faces().round_count; ++i) {
     flux.add_round(sections.faces().rounds[i], sections.total().rounds[i].sums);
   }
-  return flux.open(sections.total().moments[0]);
+  flux.add(other);
+  return flux;
+}
+
+}  // namespace
+
+double openness(const Sections& sections, const FaceSet& faces, const SectionFrame& frame) {
+  return flux_of(sections, faces, frame, SurfaceFlux::Axes::Zero())
+      .open(sections.total().moments[0]);
+}
+
+double bore_openness(const Sections& sections, const FaceSet& faces, const SectionFrame& frame) {
+  const Surface a = surface_of(sections, faces, frame, Owner::kA),
+                b = surface_of(sections, faces, frame, Owner::kB);
+  const double area = 0.5 * (a.area + b.area), volume = sections.total().moments[0];
+  if (!(area > 0.0)) return 0.0;
+  double gap = (a.vector + b.vector).norm();
+  if (!frame.central) {
+    // The wall is at rho = 1, where n dS is -(u cos + v sin) dw / |u|^2.
+    const SectionSums::OnBore& w = sections.total().bore;
+    SurfaceFlux::Axes wall;
+    wall << -w.x, -w.y, -w.xx, -w.xy, -w.xy, -w.yy;
+    gap = std::max(gap, flux_of(sections, faces, frame, wall).open(volume) / frame.u.norm());
+  }
+  return gap / area * volume;
 }
 
 double share_of_bore(const Sections& sections, const FaceSet& faces, const SectionFrame& frame) {

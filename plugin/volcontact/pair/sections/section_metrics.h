@@ -39,6 +39,10 @@ class SurfaceFlux {
 /// The same of a set of sections without a bore.
 double openness(const Sections& sections, const FaceSet& faces, const SectionFrame& frame);
 
+/// The same with a bore, of which the overlap may be a thin layer: the gap as a share of the
+/// surface, and of V. From the apex of a cone flux of 1 alone is looked at.
+double bore_openness(const Sections& sections, const FaceSet& faces, const SectionFrame& frame);
+
 /// Which share of the push on the owner of a bore comes from its wall, from 0 to 1.
 double share_of_bore(const Sections& sections, const FaceSet& faces, const SectionFrame& frame);
 

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 #include "volcontact/pair/convex/gjk.h"
 
@@ -282,9 +283,12 @@ class WindowSearch {
     return inside(x);
   }
 
-  // The direction that leaves every near face at the largest angle.
+  // The direction that leaves every near face at the largest angle. The size of the solids counts,
+  // too: a face may pass through the origin of both.
   Vec3 way_from_faces(const Vec3& x) const {
-    const double distance = kRounding * (x.norm() + solids_[1].X.translation.norm());
+    const double size = std::cbrt(
+        std::min(solids_[0].view.own_metrics().volume, solids_[1].view.own_metrics().volume));
+    const double distance = kRounding * (x.norm() + solids_[1].X.translation.norm() + size);
     faces_.near.clear();
     for (const PlaneFace& plane : faces_.active.planes) {
       if (plane.normal.dot(x) - plane.offset > -distance) faces_.near.push_back(plane.normal);

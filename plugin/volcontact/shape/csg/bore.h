@@ -25,6 +25,8 @@ struct Bore {
   double radius_at(const Vec3& x) const { return is_cone() ? slope * height(x) : radius; }
   /// Distance from the axis in radii at that height; not beyond the apex.
   double radii(const Vec3& x) const { return from_axis(x).norm() / radius_at(x); }
+  /// x as seen along the axis, or from the apex: from the axis, in radii at that height.
+  Vec3 seen(const Vec3& x) const { return from_axis(x) / radius_at(x); }
   /// Normal of the wall in the direction `out`, a unit vector normal to the axis, away from the
   /// hole. The hole lies behind the plane normal . (x - center) = radius, which touches the wall
   /// along a line.

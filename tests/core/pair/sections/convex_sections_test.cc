@@ -520,5 +520,31 @@ TEST(Lines, APolytopeOfDozensOfFacesNearlyInOnePlaneHasSectionsOfPolygons) {
   }
 }
 
+// Faces of both pass through the origin of both frames: a place there is on them, though it is no
+// distance from anywhere.
+TEST(Lines, FacesThroughTheOriginOfBothFrames) {
+  const Shape wedge = ConvexPolytope({{0.05, 0.15, 0.0},
+                                      {0.0, 0.15, 0.0},
+                                      {0.05, 0.05, 0.05},
+                                      {-0.05, 0.05, 0.0},
+                                      {0.0, 0.0, 0.1},
+                                      {0.0, 0.0, -0.1},
+                                      {0.05, 0.1, 0.0},
+                                      {0.0, 0.1, 0.05}});
+  const Shape cone =
+      Frustum({.bottom_radius = 0.0989391454639759, .top_radius = 0.05, .half_length = 0.15});
+  static OctreeScratch scratch;
+  Interference bounded;
+  octree_interference(wedge, cone, Pose{}, {}, scratch, bounded);
+  ASSERT_GT(bounded.total.volume, 4e-4);
+  for (const double off : {0.0, 1e-15, -1e-15, 1e-10}) {
+    const Pose X{Mat3::Identity(), Vec3::Constant(off)};
+    for (const VolumeMetrics& m :
+         {test::evaluated(wedge, cone, X).total, test::evaluated(cone, wedge, X.inverse()).total}) {
+      EXPECT_NEAR(m.volume, bounded.total.volume, bounded.total.volume_error) << off;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace volcontact::convex_sections_test

@@ -82,7 +82,7 @@ class ComposedColumns {
       for (const VolumeMetrics& site : s_.part.sites) s_.sites.push_back({site, number});
       return true;
     }
-    if (!view.bounded()) return false;
+    if (!view.bounded() || bores_meet()) return false;
     // Along the radius to the wall; but where a face across it is pressed, the columns of the body
     // tell the depth, as long as what lies in the bore is not nearly all that they find.
     const std::size_t before = s_.sites.size();
@@ -266,6 +266,44 @@ class ComposedColumns {
     if (!(rest.volume > 0.0)) return rest.volume_error < options_.tolerance * s_.whole.total.volume;
     s_.sites.push_back({rest, number});
     return true;
+  }
+
+  // Whether bores run into each other in A, other than about one axis: the lines from the wall of
+  // one then pass through the other.
+  bool bores_meet() const {
+    for (std::size_t k = 1; k < s_.bores.size(); ++k) {
+      for (std::size_t i = 0; i < k; ++i) {
+        if (!about_one_axis(s_.bores[i], s_.bores[k]) && !are_apart(s_.bores[i], s_.bores[k])) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  static bool about_one_axis(const Bore& a, const Bore& b) {
+    return a.axis.cross(b.axis).norm() < kLeanAcross &&
+           a.from_axis(b.center).norm() < kSameSeam * (a.radius + b.radius + a.center.norm());
+  }
+
+  // Whether a plane keeps two bores apart within the bounds of A, or all along if they are tubes.
+  bool are_apart(const Bore& a, const Bore& b) const {
+    const Vec3 across = a.axis.cross(b.axis);
+    const double lean = across.norm();
+    const Vec3 between =
+        lean > kLeanAcross ? Vec3(across / lean) : a.from_axis(b.center).normalized();
+    const double distance = std::abs(between.dot(b.center - a.center));
+    return distance >= widest(a) + widest(b);
+  }
+
+  // The largest radius within the bounds of A.
+  double widest(const Bore& bore) const {
+    if (!bore.is_cone()) return bore.radius;
+    const Pose X_BA = X_AB_.inverse();
+    const Vec3 axis_A = X_AB_.rotation * bore.axis;
+    const double top =
+        bore.height(X_BA * a_.bounds.center()) + a_.bounds.half_sizes().dot(axis_A.cwiseAbs());
+    return bore.slope * std::max(0.0, top);
   }
 
   // Whether a bore has nothing in common with those before it.

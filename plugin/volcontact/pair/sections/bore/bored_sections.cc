@@ -18,6 +18,8 @@ constexpr double kOnFace = 1e-6;   // of an apex from a face, per its distance f
 constexpr double kOnWall = 1e-12;  // of a place from the wall, per the size of the numbers
 constexpr double kEndError =
     5.0;  // error by its estimate where an arc ends in nothing, as measured
+constexpr double kGapShare = 0.1;  // of what a first look missed, that a closer one may still miss
+constexpr double kThroughBore = 0.5;  // of radii: between places outside of the wall nothing is
 
 class BoreRun {
  public:
@@ -41,6 +43,7 @@ class BoreRun {
     if (apex_is_on_a_face()) return false;
     s_.sections.choose_rule(options_.tolerance);
     move_off_axis();
+    if (bore_.is_cone()) look_straight_ahead();
     outline_.trace();
     set_rounding();
     const std::vector<Place>& places = outline_.places();
@@ -75,6 +78,17 @@ class BoreRun {
       if (std::abs(face(bore_.center)) < kOnFace * size && !(y.norm() < kOnFace)) return true;
     }
     return false;
+  }
+
+  // From the apex the outline is roundest along the axis, where the overlap is there.
+  void look_straight_ahead() {
+    const Vec3 ahead = bore_.center + bore_.height(window_.center) * bore_.axis;
+    const auto within = [&](const RayInterval& span) {
+      return span.enter < 0.0 && span.leave > 0.0;
+    };
+    if (within(a_.ray(Pose{}, ahead, bore_.axis)) && within(b_.ray(X_AB_, ahead, bore_.axis))) {
+      window_.center = ahead;
+    }
   }
 
   // A plane that holds the axis is seen edge on from it: it is moved so that the axis lies within.
@@ -112,22 +126,34 @@ class BoreRun {
   // All of the outline lies outside of the bore: the overlap goes round it, or misses it.
   bool outside_all_round() {
     set_bore_frame(outline_.places()[0].point);
+    if (has_gap()) return false;
     if (!goes_round_axis()) return add_lines_region(a_, b_, X_AB_, options_, s_, regions_);
-    integrate(-kPi, kPi, false);
-    return true;
+    return integrate(-kPi, kPi, false);
+  }
+
+  // Whether the way from one place to the next passes near the axis, though both lie outside of the
+  // wall: then there are too few to tell.
+  bool has_gap() const {
+    const std::vector<Place>& places = outline_.places();
+    Vec3 from = bore_.seen(places.back().point);
+    for (const Place& place : places) {
+      const Vec3 to = bore_.seen(place.point), way = to - from;
+      const double square = way.squaredNorm();
+      const double part = square > 0.0 ? std::clamp(-from.dot(way) / square, 0.0, 1.0) : 0.0;
+      if ((from + part * way).norm() < kThroughBore) return true;
+      from = to;
+    }
+    return false;
   }
 
   // Whether the axis pierces the outline, a convex curve: then it crosses the ray along -u, in the
   // frame of the bore, once.
   bool goes_round_axis() const {
     const std::vector<Place>& places = outline_.places();
-    const auto seen = [&](const Place& place) -> Vec3 {
-      return bore_.from_axis(place.point) / bore_.radius_at(place.point);
-    };
-    Vec3 from = seen(places.back());
+    Vec3 from = bore_.seen(places.back().point);
     int crossings = 0;
     for (const Place& place : places) {
-      const Vec3 to = seen(place);
+      const Vec3 to = bore_.seen(place.point);
       const double v0 = from.dot(side_v_), v1 = to.dot(side_v_);
       if ((v0 > 0.0) != (v1 > 0.0)) {
         const double u0 = from.dot(side_u_), u1 = to.dot(side_u_);
@@ -199,8 +225,7 @@ class BoreRun {
           (angle >= low && angle <= high) || angle - 2.0 * kPi >= low || angle + 2.0 * kPi <= high;
       if (!within) return false;
     }
-    integrate(low, high, true);
-    return true;
+    return integrate(low, high, true);
   }
 
   void set_breaks(double low, double high, bool open) {
@@ -231,13 +256,42 @@ class BoreRun {
     if (breaks_.back() < high) breaks_.back() = high;
   }
 
-  // The region between two angles; `open` when it ends there, else it goes all round.
-  void integrate(double low, double high, bool open) {
+  // The region between two angles; `open` when it ends there, else it goes all round. Once more,
+  // with more columns, where the surface that was found is not closed; false where it is not then.
+  bool integrate(double low, double high, bool open) {
     turned_by_ = 0.0;
-    error_ = 0.0;
     set_breaks(low, high, open);
+    integrate_arcs(open);
+    if (is_open(options_.tolerance)) {
+      const double volume = s_.sections.total().moments[0];
+      closer_ = true;
+      s_.sections.look_closer();
+      s_.sections.set(s_.faces.active, s_.faces.idle, frame_);
+      integrate_arcs(open);
+      open_ = kGapShare * std::max(open_, std::abs(s_.sections.total().moments[0] - volume));
+      closer_ = false;
+      s_.sections.choose_rule(options_.tolerance);
+    }
+    if (is_open(std::max(options_.tolerance, outer_rule::kLeastOpen))) return false;
+    add_region();
+    return true;
+  }
+
+  bool is_open(double tolerance) const {
+    return open_ > tolerance * s_.sections.total().moments[0];
+  }
+  double target() const {
+    return (closer_ ? outer_rule::kCloserTarget : 1.0) * outer_rule::kTarget * options_.tolerance;
+  }
+  int most_divisions() const {
+    return outer_rule::kMaxDepth + (closer_ ? outer_rule::kCloserDepth : 0);
+  }
+
+  void integrate_arcs(bool open) {
+    s_.sections.clear();
+    error_ = 0.0;
     volume_scale_ = 0.0;
-    const bool smooth_ring = !open && s_.breaks.complete && breaks_.size() == 2 &&
+    const bool smooth_ring = !open && !closer_ && s_.breaks.complete && breaks_.size() == 2 &&
                              integrate_even_turn(s_.sections, s_.path, options_.tolerance, error_);
     for (std::size_t i = 0; i + 1 < breaks_.size() && !smooth_ring; ++i) {
       const double from = breaks_[i], to = breaks_[i + 1];
@@ -248,7 +302,7 @@ class BoreRun {
         integrate_arc(arc, 0.0, 1.0, 0);
       }
     }
-    add_region();
+    open_ = bore_openness(s_.sections, s_.faces.active, frame_);
   }
 
   struct Arc {
@@ -288,11 +342,10 @@ class BoreRun {
     double volume = 0.0;
     for (int i = 0; i < kLanes; ++i) volume += section[i] *= weight[i];
     // Near an end the section is no analytic function of x: coefficients fall more slowly.
-    const LegendreError errors = legendre_errors(section);
+    const RuleError errors = legendre_errors(section);
     const double error = (arc.begins || arc.ends ? kEndError : 1.0) * errors.smooth;
     volume_scale_ = std::max(volume_scale_, volume);
-    if (error > outer_rule::kTarget * options_.tolerance * volume_scale_ &&
-        depth < outer_rule::kMaxDepth) {
+    if (error > target() * volume_scale_ && depth < most_divisions()) {
       const double middle = 0.5 * (x_from + x_to);
       integrate_arc(arc, x_from, middle, depth + 1);
       integrate_arc(arc, middle, x_to, depth + 1);
@@ -314,8 +367,9 @@ class BoreRun {
     m.depth_moment = share * across * depth_along_normal(sums.bore, across) +
                      (1.0 - share) * length * sums.depth_moment;
     m.depth = share * across * sums.bore.depth + (1.0 - share) * length * height;
-    m.volume_error = error_ + outer_rule::kInnerError * m.volume;
-    if (error_ > options_.tolerance * m.volume) m.status = Status::kApproximate;
+    const double error = std::max(error_, open_);
+    m.volume_error = error + outer_rule::kInnerError * m.volume;
+    if (error > options_.tolerance * m.volume) m.status = Status::kApproximate;
     LinesRegion& region = regions_.add();
     region.metrics = transformed(m, Pose{Mat3::Identity(), frame_.center});
     add_patches(s_.sections, s_.faces.active, frame_, region.patches);
@@ -348,6 +402,8 @@ class BoreRun {
   Vec3 side_u_, side_v_;
   double rounding_ = 0.0;  // of a distance from the axis, in radii
   double turned_by_ = 0.0, error_ = 0.0, volume_scale_ = 0.0;
+  double open_ = 0.0;    // how far the surface is from closed
+  bool closer_ = false;  // more columns, since with fewer it was not
 };
 
 }  // namespace

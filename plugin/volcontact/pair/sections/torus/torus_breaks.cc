@@ -32,6 +32,8 @@ class TorusBreaks {
   }
 
  private:
+  enum class Curve { kOpen, kClosed };
+
   void note(const Vec3& x) { angles_.push_back(std::atan2(x.y(), x.x())); }
 
   bool inside(const Vec3& x) const {
@@ -100,7 +102,7 @@ class TorusBreaks {
     for (double end : {from, to}) {
       if (distance(x_at(end)) < -kSlack * minor_) note(x_at(end));
     }
-    pierce(x_at, from, to);
+    pierce(x_at, from, to, Curve::kOpen);
   }
 
   // A round edge: where it pierces the ring, and where a half-plane touches it.
@@ -109,31 +111,34 @@ class TorusBreaks {
     const auto x_at = [&](double t) -> Vec3 {
       return rim.center + rim.radius_u * std::cos(t) + rim.radius_v * std::sin(t);
     };
-    pierce(x_at, -kPi, kPi);
+    pierce(x_at, -kPi, kPi, Curve::kClosed);
     const auto turning = [&](double t) {
       const Vec3 x = x_at(t), v = rim.radius_v * std::cos(t) - rim.radius_u * std::sin(t);
       return x.x() * v.y() - x.y() * v.x();
     };
-    each_root(turning, -kPi, kPi, [&](double t) {
+    each_root(turning, -kPi, kPi, Curve::kClosed, [&](double t) {
       const Vec3 x = x_at(t);
       if (distance(x) < 0.0 && inside(x)) note(x);
     });
   }
 
   template <typename Place>
-  void pierce(Place&& x_at, double from, double to) {
-    each_root([&](double t) { return distance(x_at(t)); }, from, to,
+  void pierce(Place&& x_at, double from, double to, Curve curve) {
+    each_root([&](double t) { return distance(x_at(t)); }, from, to, curve,
               [&](double t) {
                 if (inside(x_at(t))) note(x_at(t));
               });
   }
 
-  // Between places that are not far apart, by bracketed false position.
+  // Between places that are not far apart, by bracketed false position. A closed curve ends where
+  // it began, at the same value: a root there is then seen, whatever its rounding.
   template <typename Function, typename Use>
-  static void each_root(Function&& f, double from, double to, Use&& use) {
-    double x0 = from, f0 = f(x0);
+  static void each_root(Function&& f, double from, double to, Curve curve, Use&& use) {
+    const double first = f(from);
+    double x0 = from, f0 = first;
     for (int i = 1; i <= kEdgeSteps; ++i) {
-      const double x1 = from + (to - from) * i / kEdgeSteps, f1 = f(x1);
+      const double x1 = from + (to - from) * i / kEdgeSteps;
+      const double f1 = i == kEdgeSteps && curve == Curve::kClosed ? first : f(x1);
       if ((f0 > 0.0) != (f1 > 0.0)) {
         double a = x0, fa = f0, b = x1, fb = f1;
         for (int step = 0; step < kRootSteps && fb != fa; ++step) {

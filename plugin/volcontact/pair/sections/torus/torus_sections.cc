@@ -22,9 +22,11 @@ constexpr double kOnAxis = 1e-8;        // of a plane from the axis, per radius
 constexpr double kEndError = 5.0;       // error by its estimate where an arc ends in nothing
 constexpr double kTarget = 1e-2;  // share of the tolerance asked of an arc: kinks may be hidden
 // Where two silhouettes come near each other the normals in the check of the surface converge far
-// less fast than V: on a closer look a gap this many times as large is another one's error.
+// less fast than V: on a closer look a gap this many times as large is another one's error. So is
+// what V changed by since the first look, which was wrong by that.
 constexpr double kGapShare = 0.1;
-constexpr double kWhole = 0.999;  // share of a solid in the overlap, that is all of it
+constexpr double kGapError = 3.0;  // error of V by the gap on a first look, at most as measured
+constexpr double kWhole = 0.999;   // share of a solid in the overlap, that is all of it
 
 class TorusSectionsRun {
  public:
@@ -131,12 +133,13 @@ class TorusSectionsRun {
     }
     set_corners(range);
     integrate_corners(range);
+    open_ *= kGapError;
     if (!is_open(options_.tolerance)) return;
     const double volume = s_.sections.total().moments[0];
     closer_ = true;
     set_sections();
     integrate_corners(range);
-    open_ = std::max(kGapShare * open_, std::abs(s_.sections.total().moments[0] - volume));
+    open_ = kGapShare * std::max(open_, std::abs(s_.sections.total().moments[0] - volume));
   }
 
   bool is_open(double tolerance) const {
@@ -151,7 +154,7 @@ class TorusSectionsRun {
     s_.sections.clear();
     error_ = volume_scale_ = 0.0;
     const bool done =
-        range.whole ? s_.breaks.empty() &&
+        range.whole ? s_.breaks.empty() && !closer_ &&
                           integrate_even_turn(s_.sections, s_.path, options_.tolerance, error_)
                     : corners_.size() == 2 && whole_range(range);
     for (std::size_t i = 0; i + 1 < corners_.size() && !done; ++i) {
@@ -231,7 +234,7 @@ class TorusSectionsRun {
     s_.sections.integrate(s_.path, u, v, weight, section);
     double volume = 0.0;
     for (int i = 0; i < kLanes; ++i) volume += section[i] *= weight[i];
-    const LegendreError errors = legendre_errors(section);
+    const RuleError errors = legendre_errors(section);
     const double error = (arc.begins || arc.ends ? kEndError : 1.0) * errors.smooth;
     volume_scale_ = std::max(volume_scale_, volume);
     if (error > target() * volume_scale_ && divisions < depth()) {

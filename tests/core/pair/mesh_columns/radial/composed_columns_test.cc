@@ -283,5 +283,48 @@ TEST(ComposedColumns, TheAreaVectorIsTheGradientOfTheVolume) {
   EXPECT_LE((g.shift - m.area_vector).norm(), 1e-3 * m.area_vector.norm());
 }
 
+// Two bores that run into each other: lines from the wall of one would pass through the other. V is
+// that of a plate less the union of two circles; the slab between the two faces of the block goes
+// all through it.
+TEST(ComposedColumns, BoresThatRunIntoEachOther) {
+  const double one = 0.006, other = 0.005, block_half = 0.02;
+  for (const double d : {0.004, 0.008, 0.0105}) {
+    const double a = (d * d + one * one - other * other) / (2.0 * d), b = d - a;
+    const double common = std::abs(a) < one && std::abs(b) < other
+                              ? one * one * std::acos(a / one) - a * std::sqrt(one * one - a * a) +
+                                    other * other * std::acos(b / other) -
+                                    b * std::sqrt(other * other - b * b)
+                              : kPi * other * other;
+    const double holes = kPi * (one * one + other * other) - common;
+    const Csg block = solids::box(0.1, 0.1, block_half) - solids::tube(one, 0.05) -
+                      solids::tube(other, 0.05).posed(shifted(d, 0.0, 0.0));
+    for (const double half : {0.02, 0.03}) {
+      const double area = 4.0 * half * half - holes;
+      for (const double half_height : {0.005, 0.015, 0.05}) {
+        std::vector<Vec3> corners;
+        for (int i = 0; i < 8; ++i) {
+          corners.push_back(Vec3(half, half, half_height).cwiseProduct(corner_signs(i)));
+        }
+        std::vector<Shape> bodies = {ConvexPolytope(corners)};
+        // Of a mesh the octree sees to it, which takes long.
+        if (d == 0.008 && half == 0.02)
+          bodies.push_back(mesh_of(box_soup({half, half, half_height})));
+        for (const Shape& body : bodies) {
+          for (const double z : {block_half + half_height - 1e-4, block_half, 0.0}) {
+            const double depth =
+                std::min(block_half, z + half_height) - std::max(-block_half, z - half_height);
+            const Pose X = shifted(0.001, 0.002, z);
+            for (const VolumeMetrics& m :
+                 {evaluated(block, body, X).total, evaluated(body, block, X.inverse()).total}) {
+              EXPECT_NEAR(m.volume, depth * area, m.volume_error + 1e-6 * m.volume)
+                  << d << " " << half << " " << half_height << " " << z;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace volcontact::composed_columns_test

@@ -354,5 +354,73 @@ TEST(BoredLines, AFreePegTouchesNothing) {
   }
 }
 
+// Seen from the apex of a chamfer the outline of what lies round it is a circle about the axis,
+// from wherever the search for it begins.
+TEST(BoredLines, ABallOnTheAxisOfAChamferedHole) {
+  const double half = 0.05, bore = 0.05, wide = 0.07, start = 0.03, radius = 0.1;
+  const Shape block = Csg(
+      Csg::Operation::kDifference,
+      Csg(Csg::Operation::kDifference, Csg(Box({.half_sizes = {0.309, 0.509, half}})),
+          Csg(Cylinder({.radius = bore, .half_length = 0.1}))),
+      Csg(Frustum({.bottom_radius = bore, .top_radius = wide, .half_length = 0.5 * (half - start)}))
+          .posed({Mat3::Identity(), {0.0, 0.0, 0.5 * (half + start)}}));
+  double expected = 0.0;
+  constexpr int kSlices = 200000;
+  for (int i = 0; i < kSlices; ++i) {
+    const double z = -half + 2.0 * half * (i + 0.5) / kSlices;
+    const double hole = z < start ? bore : bore + (wide - bore) * (z - start) / (half - start);
+    const double ball2 = radius * radius - (z - half) * (z - half);
+    expected += std::max(0.0, ball2 - hole * hole) * kPi * 2.0 * half / kSlices;
+  }
+  const Shape ball = Sphere({.radius = radius});
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int quarter = 0; quarter < 8; ++quarter) {
+      const Pose X{Eigen::AngleAxisd(0.25 * kPi * quarter, Vec3::Unit(axis)).toRotationMatrix(),
+                   {0.0, 0.0, half}};
+      for (const VolumeMetrics& m :
+           {evaluated(block, ball, X).total, evaluated(ball, block, X.inverse()).total}) {
+        EXPECT_NEAR(m.volume, expected, m.volume_error + 1e-6 * expected) << axis << " " << quarter;
+      }
+    }
+  }
+}
+
+// A capsule across a bore that it is a little too thick for: symmetric, so that area vectors cancel
+// whatever is overlooked.
+TEST(BoredLines, ACapsuleAcrossABore) {
+  const double bore = 0.045, radius = 0.05, half = 0.05, outer = 0.222;
+  const Shape pipe =
+      Csg(Csg::Operation::kDifference, Csg(Cylinder({.radius = outer, .half_length = 0.4})),
+          Csg(Cylinder({.radius = bore, .half_length = 0.8})));
+  const Shape capsule = Capsule({.radius = radius, .half_length = half});
+  // In polar coordinates about the bore; y is along it, x and z across, the capsule along z.
+  double expected = 0.0;
+  constexpr int kSteps = 2000;
+  const double reach = half + radius;
+  for (int i = 0; i < kSteps; ++i) {
+    const double angle = 2.0 * kPi * (i + 0.5) / kSteps;
+    for (int k = 0; k < kSteps; ++k) {
+      const double rho = bore + (reach - bore) * (k + 0.5) / kSteps;
+      const double x = rho * std::cos(angle);
+      const double beyond = std::max(0.0, std::abs(rho * std::sin(angle)) - half);
+      const double square = radius * radius - x * x - beyond * beyond;
+      if (square > 0.0) expected += 2.0 * std::sqrt(square) * rho;
+    }
+  }
+  expected *= 2.0 * kPi / kSteps * (reach - bore) / kSteps;
+  Mat3 across;  // the capsule's axis across that of the pipe
+  across << Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitY();
+  for (const double off : {0.0, 1e-10, 1e-6}) {
+    for (const double turn : {0.0, 0.3, 0.5 * kPi}) {
+      const Mat3 round = Eigen::AngleAxisd(turn, Vec3::UnitZ()).toRotationMatrix();
+      const Pose X{round * across, {off, 0.0, 0.06}};
+      for (const VolumeMetrics& m :
+           {evaluated(pipe, capsule, X).total, evaluated(capsule, pipe, X.inverse()).total}) {
+        EXPECT_NEAR(m.volume, expected, m.volume_error + 2e-5 * expected) << off << " " << turn;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace volcontact::bored_sections_test

@@ -277,5 +277,84 @@ TEST(TorusSections, ABallSharesSegmentsOfDiscsWithTheRing) {
   }
 }
 
+// V of a ring and a ball about c, in the ring's frame: in each half-plane through the axis two
+// discs, by the midpoints of angles and of rho = R - r cos t.
+double volume_with_ball(const Torus& ring, double radius, const Vec3& c) {
+  constexpr int kSteps = 600;
+  const double R = ring.major_radius(), r = ring.minor_radius();
+  double sum = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double angle = 2.0 * kPi * (i + 0.5) / kSteps;
+    const double along = c.x() * std::cos(angle) + c.y() * std::sin(angle);
+    const double across = c.y() * std::cos(angle) - c.x() * std::sin(angle);
+    const double disc2 = radius * radius - across * across;
+    if (!(disc2 > 0.0)) continue;
+    for (int k = 0; k < kSteps; ++k) {
+      const double t = kPi * (k + 0.5) / kSteps, rho = R - r * std::cos(t), h = r * std::sin(t);
+      const double high2 = disc2 - (rho - along) * (rho - along);
+      if (!(high2 > 0.0)) continue;
+      const double length =
+          std::min(h, c.z() + std::sqrt(high2)) - std::max(-h, c.z() - std::sqrt(high2));
+      sum += std::max(0.0, length) * rho * h;
+    }
+  }
+  return sum * (2.0 * kPi / kSteps) * (kPi / kSteps);
+}
+
+// Balls that cut the tube all round: sixteen half-planes may agree by chance on a wrong sum.
+TEST(TorusSections, AWholeTurnIsAsGoodAsItClaims) {
+  test::Random random(31);
+  struct Case {
+    Torus ring;
+    double radius;
+    Vec3 at;
+  };
+  std::vector<Case> cases = {
+      {Torus({.major_radius = 0.1, .minor_radius = 0.05}),
+       0.15649541487659269,
+       {-0.084487794450899448, 0.025756266013134216, 0.055180092352032528}},
+      {Torus({.major_radius = 0.3, .minor_radius = 0.1}), 0.3, {0.1425, 0.0, 0.0}},
+  };
+  for (int i = 0; i < test::cases(150, 15); ++i) {
+    const double R = random.uniform(0.1, 0.4), r = random.uniform(0.1, 1.0) * R;
+    cases.push_back({Torus({.major_radius = R, .minor_radius = r}), random.uniform(0.6, 1.4) * R,
+                     random.in_box(0.6 * R)});
+  }
+  for (const Case& c : cases) {
+    const double expected = volume_with_ball(c.ring, c.radius, c.at);
+    if (!(expected > 1e-3 * c.ring.own_metrics().volume)) continue;
+    const Shape ball = Sphere({.radius = c.radius});
+    const Pose X{Mat3::Identity(), c.at};
+    for (const VolumeMetrics& m :
+         {evaluated(c.ring, ball, X).total, evaluated(ball, c.ring, X.inverse()).total}) {
+      EXPECT_LE(std::abs(m.volume - expected), m.volume_error + 2e-5 * expected)
+          << "ring " << c.ring.major_radius() << " " << c.ring.minor_radius() << ", ball "
+          << c.radius << " at " << c.at.transpose() << ": " << m.volume << " for " << expected;
+    }
+  }
+}
+
+// The axis of the ring lies in a thin disc: V is the thickness times what two circles have in
+// common. Its rim is farthest off where a search along it begins and ends.
+TEST(TorusSections, AThinDiscThroughTheAxis) {
+  const double R = 0.2, r = 0.1, disc = 0.1, half = 1e-4, x = 0.012, z = -0.011;
+  const double d = std::hypot(R - x, z), a = (d * d + disc * disc - r * r) / (2.0 * d), b = d - a;
+  const double common = disc * disc * std::acos(a / disc) - a * std::sqrt(disc * disc - a * a) +
+                        r * r * std::acos(b / r) - b * std::sqrt(r * r - b * b);
+  const Shape ring = Torus({.major_radius = R, .minor_radius = r});
+  const Shape plate = Cylinder({.radius = disc, .half_length = half});
+  for (int turn = 0; turn < 24; ++turn) {
+    for (int own = 0; own < 24; ++own) {
+      const Mat3 round = Eigen::AngleAxisd(2.0 * kPi * turn / 24, Vec3::UnitZ()).toRotationMatrix();
+      Mat3 upright;  // the disc's axis across that of the ring
+      upright << Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitY();
+      const Mat3 spin = Eigen::AngleAxisd(2.0 * kPi * own / 24, Vec3::UnitZ()).toRotationMatrix();
+      const Pose X{round * upright * spin, round * Vec3(x, 0.0, z)};
+      const VolumeMetrics m = evaluated(ring, plate, X).total;
+      EXPECT_NEAR(m.volume, 2.0 * half * common, 2e-5 * m.volume) << turn << " " << own;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace volcontact::torus_sections_test
