@@ -211,6 +211,9 @@ class Dispatch<TypeList<Engines...>> {
 
     template <typename E>
     bool accepts() {
+      if constexpr (!E::kHasBounds && !E::kExact) {
+        if (is_doubtful(out_.total, limits_of(q_.a), limits_of(q_.b))) return false;
+      }
       const bool possible = dispatch::are_possible(q_.a, q_.b, q_.X_AB, out_);
       if constexpr (E::kExact) {
         const bool is_number = possible || is_finite(out_.total);

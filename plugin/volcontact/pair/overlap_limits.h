@@ -34,9 +34,11 @@ inline OverlapLimits limits_of(const Mesh& mesh) {
 }
 
 namespace overlap_limits {
-inline constexpr double kRounding = 1e-6;   ///< of V, and of lengths, per the size of the solid
-inline constexpr double kMostError = 0.1;   ///< share of V that counts of the error claimed
-inline constexpr double kAreaError = 1e-2;  ///< of S; less well known than V
+inline constexpr double kRounding = 1e-6;    ///< of V, and of lengths, per the size of the solid
+inline constexpr double kMostError = 0.1;    ///< share of V that counts of the error claimed
+inline constexpr double kAreaError = 1e-2;   ///< of S; less well known than V
+inline constexpr double kMostDoubt = 0.05;   ///< error claimed by V: more is no answer
+inline constexpr double kLeastDoubt = 1e-6;  ///< of a solid: less is no matter
 inline constexpr double kSpeck = 1e-9;  ///< of a solid: where less is, and its S, may be rounding
 }  // namespace overlap_limits
 
@@ -94,6 +96,13 @@ inline bool is_possible(const VolumeMetrics& metrics, const OverlapLimits& a,
   if (is_plainly_possible(b, p_BC_A, m.area_vector)) return true;
   const Mat3 R_BA = X_AB.rotation.transpose();
   return is_possible(b, parts, R_BA * p_BC_A, R_BA * m.area_vector);
+}
+
+/// Whether an engine says itself that it does not know V.
+inline bool is_doubtful(const VolumeMetrics& m, const OverlapLimits& a, const OverlapLimits& b) {
+  using namespace overlap_limits;
+  return m.volume_error > kMostDoubt * m.volume &&
+         m.volume_error > kLeastDoubt * std::min(a.volume, b.volume);
 }
 
 /// The longest line that both bounds hold [m]; infinite where neither ends.

@@ -145,5 +145,20 @@ TEST(OverlapLimits, ATouchHoldsNoEnergy) {
   }
 }
 
+// What an engine claims of its error is taken at its word, but for specks.
+TEST(OverlapLimits, AnErrorOfTheSizeOfTheVolumeIsNoAnswer) {
+  const OverlapLimits ball = limits_of(kBall), block = limits_of(kBlock);
+  const double least = std::min(ball.volume, block.volume);
+  VolumeMetrics m;
+  m.volume = 1e-2 * least;
+  m.volume_error = 0.04 * m.volume;
+  EXPECT_FALSE(is_doubtful(m, ball, block));
+  m.volume_error = 0.06 * m.volume;
+  EXPECT_TRUE(is_doubtful(m, ball, block));
+  m.volume = 1e-12 * least;
+  m.volume_error = m.volume;
+  EXPECT_FALSE(is_doubtful(m, ball, block));
+}
+
 }  // namespace
 }  // namespace volcontact::overlap_limits_test

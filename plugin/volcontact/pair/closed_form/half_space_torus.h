@@ -78,10 +78,28 @@ class TorusSections {
   // cos(phi) = middle - half cos(turn) takes the square roots out of both ends. What is left are
   // singularities off the range: roots beyond its ends, and where the chord would be level.
   void add_segments() {
-    middle_ = 0.5 * (last_ + first_);
-    half_ = 0.5 * (last_ - first_);
-    const double below = first_ - std::min(-1.0, touch_low_);
-    const double above = std::max(1.0, touch_high_) - last_;
+    // Where a plane nearly holds the axis, the chord turns over within a narrow range about
+    // cos(phi) = 0, or passes through it. Discs that touch each other on the axis are cut to both
+    // sides.
+    constexpr double kTurnedOver = 16.0, kNarrow = 0.1;
+    const double off = std::max(std::abs(cosine_), std::abs(height_) / major_);
+    const double turn = sine_ > 0.0 ? kTurnedOver * off / sine_ : kInfinity;
+    if (turn < kNarrow * (last_ - first_)) {
+      const double from = std::clamp(-turn, first_, last_), to = std::clamp(turn, first_, last_);
+      add_segments(first_, from);
+      add_segments(from, to);
+      add_segments(to, last_);
+    } else {
+      add_segments(first_, last_);
+    }
+  }
+
+  void add_segments(double from, double to) {
+    if (!(from < to)) return;
+    middle_ = 0.5 * (to + from);
+    half_ = 0.5 * (to - from);
+    const double below = from - (from > first_ ? first_ : std::min(-1.0, touch_low_));
+    const double above = (to < last_ ? last_ : std::max(1.0, touch_high_)) - to;
     singular_[0] = {0.0, std::acosh(1.0 + below / half_)};
     singular_[1] = {kPi, std::acosh(1.0 + above / half_)};
     if (sine_ > 0.0) {
@@ -167,7 +185,7 @@ class TorusSections {
   const double height_;
   double touch_low_ = -kInfinity, touch_high_ = kInfinity;
   double first_ = -1.0, last_ = 1.0;  // range of cos(phi) with segments
-  double middle_ = 0.0, half_ = 1.0;
+  double middle_ = 0.0, half_ = 1.0;  // of the part of it that is integrated
   double error_ = 0.0;
   std::complex<double> singular_[3] = {{0.0, kInfinity}, {0.0, kInfinity}, {0.0, kInfinity}};
   TiltedSum sum_;

@@ -17,6 +17,8 @@ inline constexpr double kEvenTarget = 1e-2;  ///< the same of even steps, where 
 inline constexpr int kMaxDepth = 4;          ///< of divisions of an arc
 inline constexpr double kCloserTarget = 1e-2;  ///< of the target, on a closer look
 inline constexpr int kCloserDepth = 2;         ///< more of divisions then
+/// Divisions then, whatever the error seems to be: the same nodes would agree by the same chance.
+inline constexpr int kCloserLeast = 1;
 /// Of V: a surface as far from closed as this is an answer, to any tolerance, but an approximate
 /// one.
 inline constexpr double kLeastOpen = 1e-3;

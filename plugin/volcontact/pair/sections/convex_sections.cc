@@ -97,6 +97,7 @@ class LinesRun {
     s_.sections.set(s_.faces.active, s_.faces.idle, frame_);
     target_ *= outer_rule::kCloserTarget;
     depth_ += outer_rule::kCloserDepth;
+    least_depth_ = outer_rule::kCloserLeast;
     if (!smooth || !integrate_smooth() || is_open(options_.tolerance)) integrate_arcs();
   }
 
@@ -296,7 +297,8 @@ class LinesRun {
     double volume = 0.0;
     for (double part : section) volume += part;
     volume_scale_ = std::max(volume_scale_, volume);
-    if (error.smooth > target_ * options_.tolerance * volume_scale_ && arc.depth < depth_) {
+    if (arc.depth < least_depth_ ||
+        (error.smooth > target_ * options_.tolerance * volume_scale_ && arc.depth < depth_)) {
       divide(arc);
       return;
     }
@@ -347,7 +349,7 @@ class LinesRun {
   double error_ = 0.0;
   double open_ = 0.0;  // how far the surface is from closed
   double target_ = outer_rule::kTarget;
-  int depth_ = outer_rule::kMaxDepth;
+  int depth_ = outer_rule::kMaxDepth, least_depth_ = 0;
   double volume_scale_ = 0.0;  // least V, as known so far
 };
 

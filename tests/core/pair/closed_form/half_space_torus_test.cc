@@ -123,6 +123,28 @@ TEST(HalfSpaceTorus, AHornTorusHasNoHoleAndIsServedToo) {
   }
 }
 
+// Discs that touch on the axis, from where they are whole to where they are dry within 1e-11 of a
+// turn: half of V, and the two discs.
+TEST(HalfSpaceTorus, AHornTorusCutThroughItsAxisIsHalf) {
+  for (const double part : {1.0, 1.0 - 1e-9, 1.0 - 1e-5}) {
+    const Torus b({.major_radius = 0.1, .minor_radius = 0.1 * part});
+    const VolumeMetrics own = b.own_metrics();
+    for (const double tilt : {0.0, 1e-15, 2.9e-11, 1e-8, 1e-5}) {
+      for (const double height : {0.0, 2.4e-18, -2.4e-18, 1e-13, 1e-8}) {
+        for (const double side : {-1.0, 1.0}) {
+          const Pose X{test::turn(Vec3::UnitX(), kPi / 2 + side * tilt), {0.0, 0.0, height}};
+          const VolumeMetrics m = closed_form(HalfSpace(), b, X);
+          const double most = 2.0 * (1.0 + 1e-3) * kPi * 0.01 * (std::abs(height) + 0.2 * tilt);
+          EXPECT_NEAR(m.volume, 0.5 * own.volume, most + m.volume_error + 1e-7 * own.volume)
+              << part << " " << tilt << " " << height;
+          EXPECT_NEAR(m.area_vector.norm(), 2.0 * kPi * 0.01 * part * part, 1e-4)
+              << part << " " << tilt << " " << height;
+        }
+      }
+    }
+  }
+}
+
 TEST(HalfSpaceTorus, GradientsAreTheForces) {
   Random random(5);
   for (int i = 0; i < 40; ++i) {

@@ -283,6 +283,7 @@ class BoreRun {
   double target() const {
     return (closer_ ? outer_rule::kCloserTarget : 1.0) * outer_rule::kTarget * options_.tolerance;
   }
+  int least_divisions() const { return closer_ ? outer_rule::kCloserLeast : 0; }
   int most_divisions() const {
     return outer_rule::kMaxDepth + (closer_ ? outer_rule::kCloserDepth : 0);
   }
@@ -345,7 +346,8 @@ class BoreRun {
     const RuleError errors = legendre_errors(section);
     const double error = (arc.begins || arc.ends ? kEndError : 1.0) * errors.smooth;
     volume_scale_ = std::max(volume_scale_, volume);
-    if (error > target() * volume_scale_ && depth < most_divisions()) {
+    if (depth < least_divisions() ||
+        (error > target() * volume_scale_ && depth < most_divisions())) {
       const double middle = 0.5 * (x_from + x_to);
       integrate_arc(arc, x_from, middle, depth + 1);
       integrate_arc(arc, middle, x_to, depth + 1);

@@ -148,6 +148,7 @@ class TorusSectionsRun {
   double target() const {
     return (closer_ ? outer_rule::kCloserTarget : 1.0) * kTarget * options_.tolerance;
   }
+  int least_divisions() const { return closer_ ? outer_rule::kCloserLeast : 0; }
   int depth() const { return outer_rule::kMaxDepth + (closer_ ? outer_rule::kCloserDepth : 0); }
 
   void integrate_corners(const TorusRange& range) {
@@ -237,7 +238,8 @@ class TorusSectionsRun {
     const RuleError errors = legendre_errors(section);
     const double error = (arc.begins || arc.ends ? kEndError : 1.0) * errors.smooth;
     volume_scale_ = std::max(volume_scale_, volume);
-    if (error > target() * volume_scale_ && divisions < depth()) {
+    if (divisions < least_divisions() ||
+        (error > target() * volume_scale_ && divisions < depth())) {
       const double middle = 0.5 * (x_from + x_to);
       integrate_arc(arc, x_from, middle, divisions + 1);
       integrate_arc(arc, middle, x_to, divisions + 1);
