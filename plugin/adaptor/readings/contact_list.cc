@@ -48,8 +48,9 @@ void list_contacts(const SceneContact& contact, const mjModel* m, const mjData* 
   out.clear();
   if (revisit(contact, m, d, scratch)) {
     for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-      const auto& geoms = contact.pair(scratch.cull.near[k]).geoms;
-      for (const SiteReport& site : scratch.reports[k].sites) {
+      for (std::size_t i = 0; i < scratch.reports[k].sites.size(); ++i) {
+        const SiteReport& site = scratch.reports[k].sites[i];
+        const GeomPair& geoms = contact.pair(scratch.pair_of_site(k, i)).geoms;
         out.push_back({geoms.a, geoms.b, false, site.metrics.centroid, site.normal, site.force_on_A,
                        site.torque_on_A, site.normal_force});
       }

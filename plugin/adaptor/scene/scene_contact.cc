@@ -91,6 +91,7 @@ SceneContact::SceneContact(const mjModel* m, const std::vector<GivenKey>& given,
                   ? before->meshes_
                   : std::map<int, Shape>()),
       solids_(solids_of(m, keys_, geom_pairs_, meshes_)),
+      flush_(m, keys_, solids_, geom_pairs_),
       made_(geom_pairs_.size()),
       cull_(geom_pairs_, solids_) {
   warn_about_model(m);
@@ -271,7 +272,9 @@ void SceneContact::check_engine(const mjModel* m, const GeomPair& geoms) {
 
 PairContact SceneContact::make_pair(int index) const {
   const auto i = static_cast<std::size_t>(index);
-  const GeomPair& geoms = geom_pairs_[i];
+  GeomPair geoms = geom_pairs_[i];
+  const bool is_swapped = flush_.is_swapped(index);
+  if (is_swapped) std::swap(geoms.a, geoms.b);
   const LawClass& law_class = law_classes_[static_cast<std::size_t>(class_of_pair_[i])];
   const auto a = static_cast<std::size_t>(geoms.a), b = static_cast<std::size_t>(geoms.b);
   const SceneOptions& options = keys_.options;
@@ -281,11 +284,20 @@ PairContact SceneContact::make_pair(int index) const {
   const int most_cells = options.engine == Engine::kOctree ? kMostCells : kMostCellsInStep;
   ContactLaws laws = law_class.laws;
   laws.mass = reduced_mass(facts_[a], facts_[b]);
+  if (is_swapped) laws.share_of_a = 1.0 - laws.share_of_a;
   PairContact pair{geoms, engine,
                    ContactModel({{solids_[a], solids_[b], Pose{}, Pose{}}}, std::move(laws),
                                 {options.tolerance, engine, kInnerThreads, most_cells}),
                    law_class.stiffness};
-  set_rates(facts_[a], facts_[b], gravity_, pair);
+  pair.frame_a = flush_.frame_of(geoms.a);
+  pair.frame_b = flush_.frame_of(geoms.b);
+  // A patch on tiles may be as large as all of them.
+  const auto facts_of_group = [&](int geom) {
+    GeomFacts facts = facts_[static_cast<std::size_t>(geom)];
+    if (flush_.is_tile(geom)) facts.largest_face = flush_.largest_face(geom);
+    return facts;
+  };
+  set_rates(facts_of_group(geoms.a), facts_of_group(geoms.b), gravity_, pair);
   return pair;
 }
 
