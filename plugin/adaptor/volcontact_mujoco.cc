@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "adaptor/auto_attach.h"
@@ -83,16 +84,16 @@ std::vector<GivenKey> given_keys(const volcontact_key* keys, int count) {
 volcontact_site record_of(const PairContact& pair, int index, const SiteReport& report) {
   volcontact_site site{};
   site.pair = index;
-  site.geom_a = pair.geoms.a;
-  site.geom_b = pair.geoms.b;
+  std::tie(site.geom_a, site.geom_b) = std::minmax(pair.geoms.a, pair.geoms.b);
+  const double sign = site.geom_a == pair.geoms.a ? 1.0 : -1.0;  // of what is told of a
   site.status = static_cast<int>(report.metrics.status);
   site.volume = report.metrics.volume;
   copy_vector(report.metrics.centroid, site.centroid);
-  copy_vector(report.normal, site.normal);
+  copy_vector(sign * report.normal, site.normal);
   site.area = report.metrics.area_vector.norm();
   site.depth = report.metrics.depth;
-  copy_vector(report.force_on_A, site.force);
-  copy_vector(report.torque_on_A, site.torque);
+  copy_vector(sign * report.force_on_A, site.force);
+  copy_vector(sign * report.torque_on_A, site.torque);
   site.normal_force = report.normal_force;
   site.slip = report.slip.norm();
   site.spin = report.spin;
