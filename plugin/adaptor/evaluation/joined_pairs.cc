@@ -24,11 +24,8 @@ Aabb reach_of(const SceneContact& contact, const mjData* d, std::span<const int>
           for (int i = 0; i < 3; ++i) {
             const Vec3 axis = X_FG.rotation.row(i).transpose();
             const double at = X_FG.translation[i];
-            const double low = at - solid.support_height(-axis);
-            const double high = at + solid.support_height(axis);
-            // Written so that what is no number stays none.
-            reach.min[i] = reach.min[i] < low ? reach.min[i] : low;
-            reach.max[i] = reach.max[i] > high ? reach.max[i] : high;
+            reach.min[i] = std::min(reach.min[i], at - solid.support_height(-axis));
+            reach.max[i] = std::max(reach.max[i], at + solid.support_height(axis));
           }
         },
         contact.solids()[size(geom)]);
@@ -36,8 +33,9 @@ Aabb reach_of(const SceneContact& contact, const mjData* d, std::span<const int>
   return reach;
 }
 
-bool has_numbers(const Aabb& box) {
-  return (box.min.array() == box.min.array()).all() && (box.max.array() == box.max.array()).all();
+bool are_numbers(const mjData* d, std::span<const int> geoms) {
+  return std::all_of(geoms.begin(), geoms.end(),
+                     [d](int geom) { return pose_of_geom(d, geom).is_finite(); });
 }
 
 double squared_distance(const Aabb& box, const Vec3& p) {
@@ -134,10 +132,10 @@ void JoinedPairs::look_closer(const SceneContact& contact, const mjData* d, Side
 
 // False where a pose is no number.
 bool JoinedPairs::join_sides(const SceneContact& contact, const mjData* d) {
+  if (!are_numbers(d, a_.geoms) || !are_numbers(d, b_.geoms)) return false;
   for (Side* side : {&a_, &b_}) {
     if (!side->has_several()) continue;
     const Aabb region = reach_of(contact, d, (side == &a_ ? b_ : a_).geoms, side->frame);
-    if (!has_numbers(region)) return false;
     side->bounds.clear();
     for (const int geom : side->geoms) side->bounds.push_back(contact.flush().bounds(geom));
     side->tiles.build(side->bounds, region);
