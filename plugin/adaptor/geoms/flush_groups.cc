@@ -122,6 +122,13 @@ void round_off(std::vector<Aabb*>& boxes) {
   }
 }
 
+double largest_face_of(const Aabb& box) {
+  std::array<double, 3> sides{};
+  for (int i = 0; i < 3; ++i) sides[size(i)] = box.max[i] - box.min[i];
+  std::sort(sides.begin(), sides.end());
+  return sides[1] * sides[2];
+}
+
 }  // namespace
 
 FlushGroups::FlushGroups(const mjModel* m, const SceneKeys& keys, const std::vector<Shape>& solids,
@@ -184,6 +191,11 @@ void FlushGroups::find_groups(const mjModel* m, const SceneKeys& keys,
           group.push_back(tile->geom);
         }
         round_off(boxes);
+        Aabb all = *boxes.front();
+        for (const Aabb* box : boxes) {
+          all = {all.min.cwiseMin(box->min), all.max.cwiseMax(box->max)};
+        }
+        largest_faces_.push_back(largest_face_of(all));
       }
     }
   }
@@ -225,18 +237,6 @@ void FlushGroups::find_families(const std::vector<GeomPair>& pairs) {
     }
     ++number;
   }
-}
-
-double FlushGroups::largest_face(int geom) const {
-  Aabb all = bounds(geom);
-  for (const int other : groups_[size(tiles_[size(geom)].group)]) {
-    all.min = all.min.cwiseMin(bounds(other).min);
-    all.max = all.max.cwiseMax(bounds(other).max);
-  }
-  std::array<double, 3> sides{};
-  for (int i = 0; i < 3; ++i) sides[size(i)] = all.max[i] - all.min[i];
-  std::sort(sides.begin(), sides.end());
-  return sides[1] * sides[2];
 }
 
 }  // namespace volcontact::adaptor

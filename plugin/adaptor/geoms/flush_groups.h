@@ -46,7 +46,9 @@ class FlushGroups {
   const Aabb& bounds(int geom) const { return tiles_[static_cast<std::size_t>(geom)].bounds; }
 
   /// The largest face of the box around a tile's group [m^2].
-  double largest_face(int geom) const;
+  double largest_face(int geom) const {
+    return largest_faces_[static_cast<std::size_t>(tiles_[static_cast<std::size_t>(geom)].group)];
+  }
 
   /// Geoms by group.
   const std::vector<std::vector<int>>& groups() const { return groups_; }
@@ -68,6 +70,7 @@ class FlushGroups {
 
   std::vector<Tile> tiles_;  // by geom
   std::vector<std::vector<int>> groups_;
+  std::vector<double> largest_faces_;  // by group
   std::vector<Family> families_;  // by pair
 };
 

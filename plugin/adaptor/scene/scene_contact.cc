@@ -282,22 +282,24 @@ PairContact SceneContact::make_pair(int index) const {
       options.engine != Engine::kAuto && serves(options.engine, solids_[a], solids_[b]);
   const Engine engine = is_asked ? options.engine : engine_for(solids_[a], solids_[b]);
   const int most_cells = options.engine == Engine::kOctree ? kMostCells : kMostCellsInStep;
+  const int frame_a = flush_.frame_of(geoms.a), frame_b = flush_.frame_of(geoms.b);
+  // Flush solids are taken as one: their bodies as that of the frame, a patch as large as on all.
+  const auto facts_of = [&](int geom, int frame) {
+    GeomFacts facts = facts_[static_cast<std::size_t>(frame)];
+    if (flush_.is_tile(geom)) facts.largest_face = flush_.largest_face(geom);
+    return facts;
+  };
+  const GeomFacts facts_a = facts_of(geoms.a, frame_a), facts_b = facts_of(geoms.b, frame_b);
   ContactLaws laws = law_class.laws;
-  laws.mass = reduced_mass(facts_[a], facts_[b]);
+  laws.mass = reduced_mass(facts_a, facts_b);
   if (is_swapped) laws.share_of_a = 1.0 - laws.share_of_a;
   PairContact pair{geoms, engine,
                    ContactModel({{solids_[a], solids_[b], Pose{}, Pose{}}}, std::move(laws),
                                 {options.tolerance, engine, kInnerThreads, most_cells}),
                    law_class.stiffness};
-  pair.frame_a = flush_.frame_of(geoms.a);
-  pair.frame_b = flush_.frame_of(geoms.b);
-  // A patch on tiles may be as large as all of them.
-  const auto facts_of_group = [&](int geom) {
-    GeomFacts facts = facts_[static_cast<std::size_t>(geom)];
-    if (flush_.is_tile(geom)) facts.largest_face = flush_.largest_face(geom);
-    return facts;
-  };
-  set_rates(facts_of_group(geoms.a), facts_of_group(geoms.b), gravity_, pair);
+  pair.frame_a = frame_a;
+  pair.frame_b = frame_b;
+  set_rates(facts_a, facts_b, gravity_, pair);
   return pair;
 }
 
