@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
 #include <tuple>
 #include <utility>
 
@@ -52,12 +51,7 @@ std::optional<Mat3> quarter_turns(const Mat3& rotation) {
   return rounded;
 }
 
-struct Block {
-  int geom;
-  Pose X_RG;
-  Vec3 half_sizes;
-  Aabb bounds;
-};
+using Block = FlushGroups::Block;
 
 double length_of(const Aabb& box) { return (box.max - box.min).maxCoeff(); }
 
@@ -140,13 +134,13 @@ FlushGroups::FlushGroups(const mjModel* m, const SceneKeys& keys, const std::vec
 void FlushGroups::find_groups(const mjModel* m, const SceneKeys& keys,
                               const std::vector<Shape>& solids,
                               const std::vector<GeomPair>& pairs) {
-  std::set<int> geoms;
-  for (const GeomPair& pair : pairs) geoms.insert({pair.a, pair.b});
+  std::vector<char> can_touch(solids.size(), 0);
+  for (const GeomPair& pair : pairs) can_touch[size(pair.a)] = can_touch[size(pair.b)] = 1;
   // Boxes of one body, material and friction; in it, of parallel axes.
   std::map<std::tuple<int, int, double>, std::vector<std::vector<Block>>> alike;
-  for (const int geom : geoms) {
+  for (int geom = 0; geom < m->ngeom; ++geom) {
     const Box* box = std::get_if<Box>(&solids[size(geom)]);
-    if (!box) continue;
+    if (!box || !can_touch[size(geom)]) continue;
     auto& sets = alike[{rigid_root(m, m->geom_bodyid[geom]), keys.material_of_geom[size(geom)],
                         m->geom_friction[3 * geom]}];
     Block block{geom, pose_in_rigid_root(m, geom), box->half_sizes(), {}};
@@ -175,30 +169,32 @@ void FlushGroups::find_groups(const mjModel* m, const SceneKeys& keys,
         members[root_of(parents, static_cast<int>(i))].push_back(&blocks[i]);
       }
       for (const auto& [root, tiles] : members) {
-        if (tiles.size() < 2) continue;
-        if (tiles_.empty()) {
-          for (int geom = 0; geom < m->ngeom; ++geom) tiles_.push_back({geom, -1, {}, {}});
-        }
-        const Pose& X_RF = tiles.front()->X_RG;
-        std::vector<Aabb*> boxes;
-        std::vector<int>& group = groups_.emplace_back();
-        for (const Block* tile : tiles) {
-          const Mat3 turns = (X_RF.rotation.transpose() * tile->X_RG.rotation).array().round();
-          const Aabb bounds = bounds_in(X_RF, *tile, turns);
-          tiles_[size(tile->geom)] = {tiles.front()->geom, static_cast<int>(groups_.size()) - 1,
-                                      {turns, bounds.center()}, bounds};
-          boxes.push_back(&tiles_[size(tile->geom)].bounds);
-          group.push_back(tile->geom);
-        }
-        round_off(boxes);
-        Aabb all = *boxes.front();
-        for (const Aabb* box : boxes) {
-          all = {all.min.cwiseMin(box->min), all.max.cwiseMax(box->max)};
-        }
-        largest_faces_.push_back(largest_face_of(all));
+        if (tiles.size() > 1) add_group(m, tiles);
       }
     }
   }
+}
+
+// In the frame of its first geom.
+void FlushGroups::add_group(const mjModel* m, const std::vector<const Block*>& blocks) {
+  if (tiles_.empty()) {
+    for (int geom = 0; geom < m->ngeom; ++geom) tiles_.push_back({geom, -1, {}, {}});
+  }
+  const auto number = static_cast<int>(groups_.size());
+  std::vector<int>& group = groups_.emplace_back();
+  const Pose& X_RF = blocks.front()->X_RG;
+  std::vector<Aabb*> boxes;
+  for (const Block* block : blocks) {
+    const Mat3 turns = (X_RF.rotation.transpose() * block->X_RG.rotation).array().round();
+    const Aabb bounds = bounds_in(X_RF, *block, turns);
+    tiles_[size(block->geom)] = {blocks.front()->geom, number, {turns, bounds.center()}, bounds};
+    boxes.push_back(&tiles_[size(block->geom)].bounds);
+    group.push_back(block->geom);
+  }
+  round_off(boxes);
+  Aabb all = *boxes.front();
+  for (const Aabb* box : boxes) all = {all.min.cwiseMin(box->min), all.max.cwiseMax(box->max)};
+  largest_faces_.push_back(largest_face_of(all));
 }
 
 // A family is complete: each solid of one side can touch each of the other, by the same laws.

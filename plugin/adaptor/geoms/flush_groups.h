@@ -15,6 +15,14 @@ namespace volcontact::adaptor {
 /// Const once made.
 class FlushGroups {
  public:
+  /// A box of a scene that may be one of a group.
+  struct Block {
+    int geom;
+    Pose X_RG;  ///< in the body against which its own cannot move
+    Vec3 half_sizes;
+    Aabb bounds;  ///< in a frame to which its axes are parallel
+  };
+
   /// Of no scene: without groups.
   FlushGroups() = default;
   /// `solids` has one entry per geom; `pairs` in ascending order.
@@ -66,6 +74,7 @@ class FlushGroups {
   };
   void find_groups(const mjModel* m, const SceneKeys& keys, const std::vector<Shape>& solids,
                    const std::vector<GeomPair>& pairs);
+  void add_group(const mjModel* m, const std::vector<const Block*>& blocks);
   void find_families(const std::vector<GeomPair>& pairs);
 
   std::vector<Tile> tiles_;  // by geom
