@@ -122,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(
              kSurface + "option/formulation/potential 1;"},
         Fall{"DiscThatSpins", "<geom type=\"cylinder\" size=\".05 .01\" mass=\"1\"/>",
              "pos=\".001 .002 .00999\"", {.3, .1, 0, 0, 0, 20}, 1e-3, "Euler", kSurface}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& test) { return test.param.name; });
 
 // A body of two flush boxes, beside the same of one: thrown on one floor and on tiles.
 TEST(JoinedPairs, BothSidesMayConsistOfSeveral) {
@@ -237,7 +237,9 @@ TEST(JoinedPairs, WarmStepAllocatesNothing) {
     std::copy(kSliding.velocity.begin(), kSliding.velocity.end(), d->qvel);
     allocations_inside = 0;
     for (int i = 0; i < 500; ++i) mj_step(m.get(), d.get());
-    if (is_warm) EXPECT_EQ(allocations_inside, 0);
+    if (is_warm) {
+      EXPECT_EQ(allocations_inside, 0);
+    }
   }
 }
 

@@ -6,6 +6,8 @@
 #include <random>
 #include <set>
 
+#include "volcontact/base/fields.h"
+
 namespace volcontact::adaptor::box_union_test {
 namespace {
 
