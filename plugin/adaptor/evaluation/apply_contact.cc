@@ -131,15 +131,13 @@ void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
 }
 
 // Writes what the sites of this evaluation keep; false when there was no room for all.
-bool keep_sites(const SceneContact& contact, double* states,
-                EvaluationScratch& scratch) noexcept {
+bool keep_sites(const SceneContact& contact, double* states, EvaluationScratch& scratch) noexcept {
   const SitePool<double> pool(states, contact.sites());
   pool.clear();
   if (contact.sites().rows == 0) return true;
   scratch.kept.clear();
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    const auto size =
-        static_cast<std::size_t>(contact.pair(scratch.cull.near[k]).model.row_size());
+    const auto size = static_cast<std::size_t>(contact.pair(scratch.cull.near[k]).model.row_size());
     const std::size_t numbers = scratch.reports[k].memory.size();
     for (std::size_t site = 0; site * size < numbers; ++site) {
       scratch.kept.emplace_back(scratch.pair_of_site(k, site), k, site * size);

@@ -72,10 +72,9 @@ void BoxUnion::build(std::span<const Aabb> boxes, const Aabb& region) {
     int root = static_cast<int>(i);
     while (root != kOutside && parts_[size(root)].joined != root) root = parts_[size(root)].joined;
     joined_of_.push_back(
-        root == kOutside
-            ? kOutside
-            : static_cast<int>(std::lower_bound(order_.begin(), order_.end(), root) -
-                               order_.begin()));
+        root == kOutside ? kOutside
+                         : static_cast<int>(std::lower_bound(order_.begin(), order_.end(), root) -
+                                            order_.begin()));
   }
 }
 

@@ -58,8 +58,7 @@ double length_of(const Aabb& box) { return (box.max - box.min).maxCoeff(); }
 // Ends of the block along the axes of F, to which its own are parallel.
 Aabb bounds_in(const Pose& X_RF, const Block& block, const Mat3& turns) {
   const Vec3 half = turns.cwiseAbs() * block.half_sizes;
-  const Vec3 center =
-      X_RF.rotation.transpose() * (block.X_RG.translation - X_RF.translation);
+  const Vec3 center = X_RF.rotation.transpose() * (block.X_RG.translation - X_RF.translation);
   return {center - half, center + half};
 }
 
@@ -218,8 +217,8 @@ void FlushGroups::find_families(const std::vector<GeomPair>& pairs) {
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const int a = side_of(pairs[i].a), b = side_of(pairs[i].b);
     if (a < geoms && b < geoms) continue;
-    const auto [at, is_new] = found.try_emplace(
-        std::minmax(a, b), Seen{a, solids_of(a) * solids_of(b), pairs[i].listed});
+    const auto [at, is_new] =
+        found.try_emplace(std::minmax(a, b), Seen{a, solids_of(a) * solids_of(b), pairs[i].listed});
     Seen& seen = at->second;
     seen.is_plain = seen.is_plain && pairs[i].listed == seen.listed && pairs[i].native < 0;
     seen.pairs.push_back(static_cast<int>(i));

@@ -80,7 +80,7 @@ class FlushGroups {
   std::vector<Tile> tiles_;  // by geom
   std::vector<std::vector<int>> groups_;
   std::vector<double> largest_faces_;  // by group
-  std::vector<Family> families_;  // by pair
+  std::vector<Family> families_;       // by pair
 };
 
 }  // namespace volcontact::adaptor

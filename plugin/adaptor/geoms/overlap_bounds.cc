@@ -8,8 +8,9 @@
 namespace volcontact::adaptor {
 namespace {
 
-// How far a solid reaches along e, in F, where it lies in the half-space n . x <= offset: by duality
-// the least over l >= 0 of its support along e - l n, plus l times the offset. Any l gives a bound.
+// How far a solid reaches along e, in F, where it lies in the half-space n . x <= offset: by
+// duality the least over l >= 0 of its support along e - l n, plus l times the offset. Any l gives
+// a bound.
 double reach_within(const SolidView& solid, const Pose& X_FS, const Vec3& e, const Vec3& n,
                     double offset) {
   const auto bound = [&](double angle) {  // e and n are perpendicular

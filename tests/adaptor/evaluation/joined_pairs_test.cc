@@ -18,8 +18,9 @@ namespace {
 
 std::string box(double x, double y, double half_x, double half_y, const std::string& more = "") {
   char text[200];
-  std::snprintf(text, sizeof text, "<geom type=\"box\" size=\"%.17g %.17g .05\" pos=\"%.17g %.17g -.05\" ",
-                half_x, half_y, x, y);
+  std::snprintf(text, sizeof text,
+                "<geom type=\"box\" size=\"%.17g %.17g .05\" pos=\"%.17g %.17g -.05\" ", half_x,
+                half_y, x, y);
   return text + more + "/>";
 }
 
@@ -56,8 +57,8 @@ std::string keyed(const std::string& keys) {
 
 std::string scene(const Fall& fall, const std::string& floor) {
   return "<mujoco><option timestep=\"" + std::to_string(fall.step) + "\" integrator=\"" +
-         fall.integrator + "\"/><worldbody>" + floor + "<body name=\"b\" " + fall.pose + "><freejoint/>" +
-         fall.geoms + "</body></worldbody>" + keyed(fall.keys) + "</mujoco>";
+         fall.integrator + "\"/><worldbody>" + floor + "<body name=\"b\" " + fall.pose +
+         "><freejoint/>" + fall.geoms + "</body></worldbody>" + keyed(fall.keys) + "</mujoco>";
 }
 
 struct Motion {
@@ -106,22 +107,62 @@ TEST_P(FlushSolids, MoveWhatTouchesThemAsOneSolid) {
 
 INSTANTIATE_TEST_SUITE_P(
     , FlushSolids,
-    ::testing::Values(
-        Fall{"BallOnASeam", kBall, "pos=\"0 .05 .0501\"", {0, 0, -1, 0, 0, 0}, 1e-4, "Euler", kSurface},
-        Fall{"BallOnACorner", kBall, "pos=\".001 .002 .0501\"", {.2, .1, -1, 0, 5, 50}, 1e-4, "RK4",
-             kSurface},
-        Fall{"BallOfARestitution", kBall, "pos=\"0 0 .0501\"", {.2, .1, -1, 0, 5, 50}, 1e-4, "Euler",
-             "material/m/stiffness 1e8;material/m/restitution .8;"},
-        Fall{"BoxThatSlides", kBox, "pos=\"-.2 .01 .0299\"", {1, .3, 0, 0, 0, 3}, 1e-3, "Euler",
-             kSurface},
-        Fall{"BoxOnBristles", kBox, "pos=\"-.2 .01 .0299\"", {1, .3, 0, 0, 0, 3}, 1e-3, "RK4",
-             kSurface + "material/m/friction_law/bristle 1;"},
-        Fall{"BoxThatRests", kBox, "pos=\".01 .01 .0299\"", {0, 0, 0, 0, 0, 0}, 1e-3, "Euler",
-             kSurface},
-        Fall{"BoxOfAPotential", kBox, "pos=\"-.1 .01 .0299\"", {1, .3, 0, 0, 0, 3}, 1e-3, "Euler",
-             kSurface + "option/formulation/potential 1;"},
-        Fall{"DiscThatSpins", "<geom type=\"cylinder\" size=\".05 .01\" mass=\"1\"/>",
-             "pos=\".001 .002 .00999\"", {.3, .1, 0, 0, 0, 20}, 1e-3, "Euler", kSurface}),
+    ::testing::Values(Fall{"BallOnASeam",
+                           kBall,
+                           "pos=\"0 .05 .0501\"",
+                           {0, 0, -1, 0, 0, 0},
+                           1e-4,
+                           "Euler",
+                           kSurface},
+                      Fall{"BallOnACorner",
+                           kBall,
+                           "pos=\".001 .002 .0501\"",
+                           {.2, .1, -1, 0, 5, 50},
+                           1e-4,
+                           "RK4",
+                           kSurface},
+                      Fall{"BallOfARestitution",
+                           kBall,
+                           "pos=\"0 0 .0501\"",
+                           {.2, .1, -1, 0, 5, 50},
+                           1e-4,
+                           "Euler",
+                           "material/m/stiffness 1e8;material/m/restitution .8;"},
+                      Fall{"BoxThatSlides",
+                           kBox,
+                           "pos=\"-.2 .01 .0299\"",
+                           {1, .3, 0, 0, 0, 3},
+                           1e-3,
+                           "Euler",
+                           kSurface},
+                      Fall{"BoxOnBristles",
+                           kBox,
+                           "pos=\"-.2 .01 .0299\"",
+                           {1, .3, 0, 0, 0, 3},
+                           1e-3,
+                           "RK4",
+                           kSurface + "material/m/friction_law/bristle 1;"},
+                      Fall{"BoxThatRests",
+                           kBox,
+                           "pos=\".01 .01 .0299\"",
+                           {0, 0, 0, 0, 0, 0},
+                           1e-3,
+                           "Euler",
+                           kSurface},
+                      Fall{"BoxOfAPotential",
+                           kBox,
+                           "pos=\"-.1 .01 .0299\"",
+                           {1, .3, 0, 0, 0, 3},
+                           1e-3,
+                           "Euler",
+                           kSurface + "option/formulation/potential 1;"},
+                      Fall{"DiscThatSpins",
+                           "<geom type=\"cylinder\" size=\".05 .01\" mass=\"1\"/>",
+                           "pos=\".001 .002 .00999\"",
+                           {.3, .1, 0, 0, 0, 20},
+                           1e-3,
+                           "Euler",
+                           kSurface}),
     [](const auto& test) { return test.param.name; });
 
 // A body of two flush boxes, beside the same of one: thrown on one floor and on tiles.
@@ -130,7 +171,8 @@ TEST(JoinedPairs, BothSidesMayConsistOfSeveral) {
       "<geom type=\"box\" size=\".05 .05 .02\" pos=\"-.05 0 0\" mass=\".5\"/>"
       "<geom type=\"box\" size=\".05 .05 .02\" pos=\".05 0 0\" mass=\".5\"/>";
   const std::string one = "<geom type=\"box\" size=\".1 .05 .02\" mass=\"1\"/>";
-  Fall fall{"", two, "pos=\"0 0 .06\" euler=\"10 20 5\"", {.3, .2, 0, 1, 0, 2}, 2e-4, "Euler", kSurface};
+  Fall fall{"",      two,     "pos=\"0 0 .06\" euler=\"10 20 5\"", {.3, .2, 0, 1, 0, 2}, 2e-4,
+            "Euler", kSurface};
   Fall of_one = fall;
   of_one.geoms = one;
   const Motion parts = run(scene(fall, floor_of_tiles()), fall, 1000);
@@ -139,9 +181,11 @@ TEST(JoinedPairs, BothSidesMayConsistOfSeveral) {
   EXPECT_EQ(parts.most_sites, 1u);
 }
 
-const Fall kSliding{"", kBox, "pos=\"-.2 .01 .0299\"", {1, .3, 0, 0, 0, 3}, 1e-3, "Euler", kSurface};
+const Fall kSliding{"",      kBox,    "pos=\"-.2 .01 .0299\"", {1, .3, 0, 0, 0, 3}, 1e-3,
+                    "Euler", kSurface};
 
-std::vector<volcontact_site> sites_of(const testing::ModelPointer& m, const testing::DataPointer& d) {
+std::vector<volcontact_site> sites_of(const testing::ModelPointer& m,
+                                      const testing::DataPointer& d) {
   std::vector<volcontact_site> sites(64);
   sites.resize(static_cast<std::size_t>(volcontact_sites(m.get(), d.get(), sites.data(), 64)));
   return sites;
@@ -248,8 +292,13 @@ TEST(JoinedPairs, AnInnerCornerCountsOnlyWhereItIsTouched) {
   const std::string corner =
       box(-0.1, -0.1, 0.1, 0.1) + box(0.1, -0.1, 0.1, 0.1) + box(-0.1, 0.1, 0.1, 0.1);
   for (const double y : {-0.03, -0.005}) {
-    Fall fall{"", kBall, "pos=\"-.02 " + std::to_string(y) + " .0499\"", {.2, 0, 0, 0, 4, 20}, 1e-3,
-              "Euler", kSurface};
+    Fall fall{"",
+              kBall,
+              "pos=\"-.02 " + std::to_string(y) + " .0499\"",
+              {.2, 0, 0, 0, 4, 20},
+              1e-3,
+              "Euler",
+              kSurface};
     const Motion parts = run(scene(fall, corner), fall, 150);
     const Motion whole = run(scene(fall, box(0.0, 0.0, 0.2, 0.2)), fall, 150);
     double most = 0.0;
@@ -265,14 +314,14 @@ TEST(JoinedPairs, AnInnerCornerCountsOnlyWhereItIsTouched) {
   }
 }
 
-// A tile before the ball in the file and one behind it: told in the order of the geoms all the same.
+// A tile before the ball in the file and one behind it: told in the order of the geoms all the
+// same.
 TEST(JoinedPairs, TheOrderOfGeomsChangesNothing) {
-  const std::string ball =
-      "<body name=\"b\" pos=\"0 .01 .0499\"><freejoint/>" + kBall + "</body>";
+  const std::string ball = "<body name=\"b\" pos=\"0 .01 .0499\"><freejoint/>" + kBall + "</body>";
   const std::string between = "<mujoco><worldbody>" + box(-0.2, 0.0, 0.2, 0.2) + ball + "<body>" +
                               box(0.2, 0.0, 0.2, 0.2) + "</body></worldbody></mujoco>";
-  const std::string one = "<mujoco><worldbody>" + box(0.0, 0.0, 0.4, 0.2) + ball +
-                          "</worldbody></mujoco>";
+  const std::string one =
+      "<mujoco><worldbody>" + box(0.0, 0.0, 0.4, 0.2) + ball + "</worldbody></mujoco>";
   const Fall fall{"", "", "", {.2, .1, 0, 0, 3, 20}, 2e-3, "", ""};
   const Motion parts = run(between, fall, 300), whole = run(one, fall, 300);
   for (std::size_t i = 0; i < parts.q.size(); ++i) ASSERT_NEAR(parts.q[i], whole.q[i], 1e-9) << i;

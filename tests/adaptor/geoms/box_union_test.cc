@@ -93,7 +93,8 @@ TEST(BoxUnion, TellsWhereASmallerRegionMayJoinMore) {
   EXPECT_EQ(boxes.count(), 1);
   EXPECT_FALSE(boxes.may_join_in_less());
   // A wall beside a floor: their faces end in different planes, but for one that is far away.
-  const std::vector<Aabb> room{{{0.0, 0.0, 0.0}, {1.0, 1.0, 0.1}}, {{1.0, 0.0, 0.0}, {1.1, 1.0, 1.0}}};
+  const std::vector<Aabb> room{{{0.0, 0.0, 0.0}, {1.0, 1.0, 0.1}},
+                               {{1.0, 0.0, 0.0}, {1.1, 1.0, 1.0}}};
   boxes.build(room, {{0.5, 0.4, 0.08}, {1.05, 0.6, 0.5}});
   EXPECT_EQ(boxes.count(), 2);
   EXPECT_FALSE(boxes.may_join_in_less());

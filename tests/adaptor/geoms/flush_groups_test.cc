@@ -48,7 +48,8 @@ std::string box(const std::string& name, const std::string& pos, const std::stri
 }
 
 TEST(FlushGroups, TilesOfTheWorldAreOneGroup) {
-  const Scene scene(box("a", "0 0 0") + box("b", "1 0 0") + box("c", "1 1 0") + box("far", "5 0 0"));
+  const Scene scene(box("a", "0 0 0") + box("b", "1 0 0") + box("c", "1 1 0") +
+                    box("far", "5 0 0"));
   ASSERT_EQ(scene.groups.groups().size(), 1u);
   EXPECT_EQ(scene.tiles(), 3u);
   EXPECT_FALSE(scene.groups.is_tile(scene.geom("far")));
@@ -103,22 +104,20 @@ TEST(FlushGroups, OnlyBodiesThatCannotMoveAgainstEachOther) {
   EXPECT_EQ(tiles_with(on("", "")), 2u) << "static";
   EXPECT_EQ(tiles_with(on("", "<joint type=\"slide\"/>")), 0u);
   EXPECT_EQ(tiles_with(on("mocap=\"true\"", "")), 0u);
-  const std::string turned =
-      "<body pos=\"0 1 0\" euler=\"0 0 90\"><body pos=\"0 -1 0\">" + box("b", "0 0 0") +
-      "</body></body>";
+  const std::string turned = "<body pos=\"0 1 0\" euler=\"0 0 90\"><body pos=\"0 -1 0\">" +
+                             box("b", "0 0 0") + "</body></body>";
   EXPECT_EQ(tiles_with(turned), 2u) << "by way of two bodies";
   const std::string slab = "<body pos=\"0 0 5\"><freejoint/>" + box("c", "0 0 0") +
                            "<body pos=\"1 0 0\">" + box("d", "0 0 0") + "</body></body>";
   EXPECT_EQ(tiles_with(slab), 2u) << "welded, and moving together";
-  const std::string mocap = "<body pos=\"0 0 5\" mocap=\"true\">" + box("c", "0 0 0") +
-                            box("d", "1 0 0") + "</body>";
+  const std::string mocap =
+      "<body pos=\"0 0 5\" mocap=\"true\">" + box("c", "0 0 0") + box("d", "1 0 0") + "</body>";
   EXPECT_EQ(tiles_with(mocap), 2u);
 }
 
 TEST(FlushGroups, FamiliesAreWhatTouchesTheSameSolids) {
-  const Scene scene(box("a", "0 0 0") + box("b", "1 0 0") +
-                    "<body pos=\"0 0 5\"><freejoint/>" + box("c", "0 0 0") + box("d", "1 0 0") +
-                    "</body>");
+  const Scene scene(box("a", "0 0 0") + box("b", "1 0 0") + "<body pos=\"0 0 5\"><freejoint/>" +
+                    box("c", "0 0 0") + box("d", "1 0 0") + "</body>");
   std::map<int, int> sizes;
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
     ++sizes[scene.groups.family_of(static_cast<int>(i))];
@@ -132,10 +131,11 @@ TEST(FlushGroups, FamiliesAreWhatTouchesTheSameSolids) {
 
 TEST(FlushGroups, SidesOfAFamilyAreInOneOrder) {
   // A tile before the ball, and one behind it.
-  const testing::ModelPointer m = testing::compile(
-      "<mujoco><worldbody>" + box("a", "0 0 0") +
-      "<body pos=\"0 0 9\"><freejoint/><geom name=\"ball\" size=\".1\"/></body>"
-      "<body>" + box("b", "1 0 0") + "</body></worldbody></mujoco>");
+  const testing::ModelPointer m =
+      testing::compile("<mujoco><worldbody>" + box("a", "0 0 0") +
+                       "<body pos=\"0 0 9\"><freejoint/><geom name=\"ball\" size=\".1\"/></body>"
+                       "<body>" +
+                       box("b", "1 0 0") + "</body></worldbody></mujoco>");
   const SceneKeys keys = read_scene_keys(m.get());
   const std::vector<GeomPair> pairs = pairs_that_can_touch(m.get(), keys);
   ASSERT_EQ(pairs.size(), 2u);
@@ -150,9 +150,12 @@ TEST(FlushGroups, SidesOfAFamilyAreInOneOrder) {
 TEST(FlushGroups, AFamilyWithAPairOfItsOwnIsNone) {
   const std::string tiles = box("a", "0 0 0") + box("b", "1 0 0");
   EXPECT_FALSE(Scene(tiles).groups.empty());
-  EXPECT_TRUE(Scene(tiles, "<contact><pair geom1=\"a\" geom2=\"ball\" friction=\".1 .1 .1 0 0\"/>"
-                           "</contact>").groups.empty());
-  const std::string masked = box("a", "0 0 0") + box("b", "1 0 0", "contype=\"2\" conaffinity=\"2\"");
+  EXPECT_TRUE(Scene(tiles,
+                    "<contact><pair geom1=\"a\" geom2=\"ball\" friction=\".1 .1 .1 0 0\"/>"
+                    "</contact>")
+                  .groups.empty());
+  const std::string masked =
+      box("a", "0 0 0") + box("b", "1 0 0", "contype=\"2\" conaffinity=\"2\"");
   EXPECT_TRUE(Scene(masked).groups.empty());
 }
 

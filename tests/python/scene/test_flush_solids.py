@@ -74,10 +74,9 @@ def test_what_sites_contacts_and_arrays_say_is_one_force(scene):
 
 
 def test_a_ball_rolls_over_seams_as_over_one_floor():
+    places = [(-0.45 + 0.1 * i, -0.15 + 0.1 * j) for i in range(10) for j in range(4)]
     tiles = "".join(
-        f'<geom type="box" size=".05 .05 .02" pos="{-0.45 + 0.1 * i:.2f} {-0.15 + 0.1 * j:.2f} -.02"/>'
-        for i in range(10)
-        for j in range(4)
+        f'<geom type="box" size=".05 .05 .02" pos="{x:.2f} {y:.2f} -.02"/>' for x, y in places
     )
     ends = []
     for floor in (tiles, '<geom type="box" size=".5 .2 .02" pos="0 0 -.02"/>'):
