@@ -13,8 +13,9 @@ namespace volcontact::adaptor {
 
 /// Near pairs of one family whose solids make one solid on each side, as far as the other reaches.
 struct JoinedPair {
-  std::vector<int> pairs;                                        ///< ascending; the first one leads
-  GeometricPair solids{Sphere({}), Sphere({}), Pose{}, Pose{}};  ///< in the frames of the pairs
+  std::vector<int> pairs;  ///< ascending; the first one leads
+  /// In the frames of the pairs.
+  GeometricPair solids{Sphere({}), Sphere({}), Pose{}, Pose{}};
   std::vector<int> site_pairs;  ///< of each site, the pair whose solids have its centroid
   std::vector<double> rows;     ///< of the sites before, where several of the pairs left some
 
