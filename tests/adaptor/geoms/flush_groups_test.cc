@@ -104,7 +104,7 @@ TEST(FlushGroups, OnlyBodiesThatCannotMoveAgainstEachOther) {
   EXPECT_EQ(tiles_with(on("", "")), 2u) << "static";
   EXPECT_EQ(tiles_with(on("", "<joint type=\"slide\"/>")), 0u);
   EXPECT_EQ(tiles_with(on("mocap=\"true\"", "")), 0u);
-  const std::string turned = "<body pos=\"0 1 0\" euler=\"0 0 90\"><body pos=\"0 -1 0\">" +
+  const std::string turned = "<body pos=\"0 1 0\" euler=\"0 0 90\"><body pos=\"-1 -1 0\">" +
                              box("b", "0 0 0") + "</body></body>";
   EXPECT_EQ(tiles_with(turned), 2u) << "by way of two bodies";
   const std::string slab = "<body pos=\"0 0 5\"><freejoint/>" + box("c", "0 0 0") +
@@ -151,7 +151,7 @@ TEST(FlushGroups, AFamilyWithAPairOfItsOwnIsNone) {
   const std::string tiles = box("a", "0 0 0") + box("b", "1 0 0");
   EXPECT_FALSE(Scene(tiles).groups.empty());
   EXPECT_TRUE(Scene(tiles,
-                    "<contact><pair geom1=\"a\" geom2=\"ball\" friction=\".1 .1 .1 0 0\"/>"
+                    "<contact><pair geom1=\"a\" geom2=\"ball\" friction=\".1 .1 .005 .0001 .0001\"/>"
                     "</contact>")
                   .groups.empty());
   const std::string masked =
