@@ -23,8 +23,10 @@ SCENE = """
 
 @pytest.fixture
 def scene():
-    model = vc.load(SCENE, material={"stiffness": 1e8, "damping": 0.0, "friction": 0.0})
-    with vc.attach(model) as contact:
+    material = {"stiffness": 1e8, "damping": 0.0, "friction": 0.0}
+    options = {"implicit": "off"}  # forces are those of the pose
+    model = vc.load(SCENE, material=material, options=options)
+    with vc.attach(model, material=material, options=options) as contact:
         yield model, mujoco.MjData(model), contact
 
 
