@@ -32,6 +32,7 @@ from case import Bounds, Case, Figure, Plot  # noqa: E402 (the path comes first)
 ORDER = (
     "static_and_impact",
     "restitution",
+    "flush_solids",
     "bouncing_ball",
     "flat_patch",
     "closed_loop",

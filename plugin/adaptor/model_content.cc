@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adaptor/model_content.h"
 
+#include <algorithm>
 #include <cstring>
+#include <set>
 
 namespace volcontact::adaptor {
 namespace {
@@ -31,7 +33,7 @@ void visit_structure(const mjModel* m, Visit visit) {
 
 template <typename Visit>
 void visit_values(const mjModel* m, const std::vector<NumericSpan>& numerics,
-                  const std::vector<int>& parts, Visit visit) {
+                  const std::vector<int>& parts, const std::vector<int>& bodies, Visit visit) {
   const auto geoms = static_cast<std::size_t>(m->ngeom);
   for (const NumericSpan& span : numerics) {
     bytes_of(m->numeric_data + span.address, static_cast<std::size_t>(span.size), visit);
@@ -47,6 +49,10 @@ void visit_values(const mjModel* m, const std::vector<NumericSpan>& numerics,
   for (const int geom : parts) {
     bytes_of(m->geom_pos + 3 * geom, 3, visit);
     bytes_of(m->geom_quat + 4 * geom, 4, visit);
+  }
+  for (const int body : bodies) {
+    bytes_of(m->body_pos + 3 * body, 3, visit);
+    bytes_of(m->body_quat + 4 * body, 4, visit);
   }
   if (!parts.empty()) bytes_of(m->tuple_objprm, static_cast<std::size_t>(m->ntupledata), visit);
   const int parent_filter = m->opt.disableflags & mjDSBL_FILTERPARENT;
@@ -91,13 +97,29 @@ std::vector<NumericSpan> merged(std::vector<NumericSpan> spans) {
 
 }  // namespace
 
-ModelContent::ModelContent(const mjModel* m, const SceneKeys& keys)
+ModelContent::ModelContent(const mjModel* m, const SceneKeys& keys,
+                           const std::vector<std::vector<int>>& flush)
     : numerics_(merged(keys.numerics)) {
   for (const ComposedGeoms& solid : keys.solids) {
     for (const ComposedGeoms::Part& part : solid.parts) parts_.push_back(part.geom);
   }
+  std::set<int> bodies;
+  for (const std::vector<int>& group : flush) {
+    const bool is_one_body = std::all_of(group.begin(), group.end(), [&](int geom) {
+      return m->geom_bodyid[geom] == m->geom_bodyid[group.front()];
+    });
+    parts_.insert(parts_.end(), group.begin(), group.end());
+    if (is_one_body) continue;
+    for (const int geom : group) {
+      for (int body = m->geom_bodyid[geom]; body != m->body_weldid[body];) {
+        bodies.insert(body);
+        body = m->body_parentid[body];
+      }
+    }
+  }
+  bodies_.assign(bodies.begin(), bodies.end());
   visit_structure(m, copy_into(structure_));
-  visit_values(m, numerics_, parts_, copy_into(values_));
+  visit_values(m, numerics_, parts_, bodies_, copy_into(values_));
 }
 
 bool ModelContent::is_same_model(const mjModel* m) const noexcept {
@@ -108,7 +130,7 @@ bool ModelContent::is_same_model(const mjModel* m) const noexcept {
 
 bool ModelContent::has_same_values(const mjModel* m) const noexcept {
   Comparison comparison(values_);
-  visit_values(m, numerics_, parts_,
+  visit_values(m, numerics_, parts_, bodies_,
                [&](const std::byte* data, std::size_t size) { comparison(data, size); });
   return comparison.equal();
 }

@@ -12,19 +12,22 @@ namespace volcontact::adaptor {
 /// by content: an address says nothing, since MuJoCo copies models (Batch) and memory is reused.
 class ModelContent {
  public:
-  ModelContent(const mjModel* m, const SceneKeys& keys);
+  /// `flush`: geoms that were found to continue each other.
+  ModelContent(const mjModel* m, const SceneKeys& keys,
+               const std::vector<std::vector<int>>& flush = {});
 
   /// Names, bodies and tuples are the same: `m` is this model or a copy of it.
   bool is_same_model(const mjModel* m) const noexcept;
 
   /// And so are the numbers that may be changed in a compiled model: our numerics, the sizes,
-  /// friction, types and masks of the geoms, and how the geoms of a composed solid stand to each
-  /// other. Only to be asked when is_same_model().
+  /// friction, types and masks of the geoms, and how the geoms of a composed solid or of flush
+  /// solids stand to each other. Only to be asked when is_same_model().
   bool has_same_values(const mjModel* m) const noexcept;
 
  private:
   std::vector<NumericSpan> numerics_;
-  std::vector<int> parts_;  // geoms of composed solids
+  std::vector<int> parts_;   // geoms of composed solids, and flush ones
+  std::vector<int> bodies_;  // bodies of flush geoms, and those that these are fixed to
   std::vector<std::byte> structure_;
   std::vector<std::byte> values_;
 };

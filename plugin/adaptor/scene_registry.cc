@@ -24,7 +24,9 @@ struct Variant {
   mutable std::atomic<bool> reported{false};
 
   Variant(const mjModel* m, std::shared_ptr<const SceneContact> made, std::string why)
-      : content(m, made->keys()), contact(std::move(made)), error(std::move(why)) {}
+      : content(m, made->keys(), made->flush().groups()),
+        contact(std::move(made)),
+        error(std::move(why)) {}
 };
 using VariantPointer = std::shared_ptr<const Variant>;
 

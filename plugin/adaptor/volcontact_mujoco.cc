@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "adaptor/auto_attach.h"
@@ -83,16 +84,16 @@ std::vector<GivenKey> given_keys(const volcontact_key* keys, int count) {
 volcontact_site record_of(const PairContact& pair, int index, const SiteReport& report) {
   volcontact_site site{};
   site.pair = index;
-  site.geom_a = pair.geoms.a;
-  site.geom_b = pair.geoms.b;
+  std::tie(site.geom_a, site.geom_b) = std::minmax(pair.geoms.a, pair.geoms.b);
+  const double sign = site.geom_a == pair.geoms.a ? 1.0 : -1.0;  // of what is told of a
   site.status = static_cast<int>(report.metrics.status);
   site.volume = report.metrics.volume;
   copy_vector(report.metrics.centroid, site.centroid);
-  copy_vector(report.normal, site.normal);
+  copy_vector(sign * report.normal, site.normal);
   site.area = report.metrics.area_vector.norm();
   site.depth = report.metrics.depth;
-  copy_vector(report.force_on_A, site.force);
-  copy_vector(report.torque_on_A, site.torque);
+  copy_vector(sign * report.force_on_A, site.force);
+  copy_vector(sign * report.torque_on_A, site.torque);
   site.normal_force = report.normal_force;
   site.slip = report.slip.norm();
   site.spin = report.spin;
@@ -122,17 +123,21 @@ void copy_channels(const ByChannel& from, double (&to)[4]) {
 
 constexpr int kMostColumns = 256;
 
-// The site of that number, with its pair, among those of the scratch; null when there are fewer.
+// The site of that number among those of the scratch, with its pair, and with the solids of that
+// where they stand for several; null when there are fewer.
 struct FoundSite {
   const PairContact* pair = nullptr;
   const VolumeMetrics* metrics = nullptr;
+  const GeometricPair* joined = nullptr;
 };
 FoundSite find_site(const SceneContact& contact, const EvaluationScratch& scratch, int site) {
   std::size_t left = static_cast<std::size_t>(site);
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const auto& sites = scratch.reports[k].sites;
     if (left < sites.size()) {
-      return {&contact.pair(scratch.cull.near[k]), &sites[left].metrics};
+      const JoinedPair* joined = scratch.joined.at(k);
+      return {&contact.pair(scratch.cull.near[k]), &sites[left].metrics,
+              joined ? &joined->solids : nullptr};
     }
     left -= sites.size();
   }
@@ -259,10 +264,10 @@ int volcontact_sites(const mjModel* m, const mjData* d, volcontact_site* sites, 
     if (!revisit(*contact, m, d, scratch)) return 0;
     int count = 0;
     for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-      const int index = scratch.cull.near[k];
-      const PairContact& pair = contact->pair(index);
-      for (const auto& report : scratch.reports[k].sites) {
-        if (count < capacity) sites[count] = record_of(pair, index, report);
+      const std::vector<volcontact::SiteReport>& reports = scratch.reports[k].sites;
+      for (std::size_t i = 0; i < reports.size(); ++i) {
+        const int index = scratch.pair_of_site(k, i);
+        if (count < capacity) sites[count] = record_of(contact->pair(index), index, reports[i]);
         ++count;
       }
     }
@@ -299,11 +304,11 @@ int volcontact_site_surface(const mjModel* m, const mjData* d, int site, int res
     if (!revisit(*contact, m, d, scratch)) return static_cast<int>(VOLCONTACT_ERROR_SCENE);
     const FoundSite found = find_site(*contact, scratch, site);
     if (!found.pair) return static_cast<int>(VOLCONTACT_ERROR_SCENE);
-    const int a = found.pair->geoms.a, b = found.pair->geoms.b;
-    const auto& solids = contact->solids();
+    const volcontact::GeometricPair& solids =
+        found.joined ? *found.joined : found.pair->model.pairs().front();
     const volcontact::OverlapSurface surface = volcontact::overlap_surface(
-        solids[static_cast<std::size_t>(a)], pose_of_geom(d, a),
-        solids[static_cast<std::size_t>(b)], pose_of_geom(d, b), *found.metrics, resolution);
+        solids.a, pose_of_geom(d, found.pair->frame_a) * solids.X_Aa, solids.b,
+        pose_of_geom(d, found.pair->frame_b) * solids.X_Bb, *found.metrics, resolution);
     *size = copy_surface(surface, columns, triangles, rim);
     return 0;
   });

@@ -89,8 +89,9 @@ class Feeling {
 
 void feel_sites(const SceneContact& contact, const EvaluationScratch& scratch, Feeling& feeling) {
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    const auto& geoms = contact.pair(scratch.cull.near[k]).geoms;
-    for (const SiteReport& site : scratch.reports[k].sites) {
+    for (std::size_t i = 0; i < scratch.reports[k].sites.size(); ++i) {
+      const SiteReport& site = scratch.reports[k].sites[i];
+      const GeomPair& geoms = contact.pair(scratch.pair_of_site(k, i)).geoms;
       feeling.add(geoms.a, geoms.b, site.force_on_A.norm(), site.torque_on_A.norm());
     }
   }

@@ -50,7 +50,8 @@ void solve_implicit(const SceneContact& contact, const mjModel* m, mjData* d,
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
       const bool is_stiff = scratch.stiff[site++] != 0;
       if (report.sites[i].normal.isZero(0.0)) continue;
-      const int a = m->geom_bodyid[pair.geoms.a], b = m->geom_bodyid[pair.geoms.b];
+      const GeomPair& geoms = contact.pair(scratch.pair_of_site(k, i)).geoms;
+      const int a = m->geom_bodyid[geoms.a], b = m->geom_bodyid[geoms.b];
       const Vec3& point = report.sites[i].metrics.centroid;
       const Twist of_a = scratch.mocaps.at(m, d, a, point),
                   of_b = scratch.mocaps.at(m, d, b, point);
@@ -130,20 +131,24 @@ void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
 }
 
 // Writes what the sites of this evaluation keep; false when there was no room for all.
-bool keep_sites(const SceneContact& contact, double* states,
-                const EvaluationScratch& scratch) noexcept {
+bool keep_sites(const SceneContact& contact, double* states, EvaluationScratch& scratch) noexcept {
   const SitePool<double> pool(states, contact.sites());
   pool.clear();
   if (contact.sites().rows == 0) return true;
+  scratch.kept.clear();
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    const int pair = scratch.cull.near[k];
-    const int size = contact.pair(pair).model.row_size();
-    const std::vector<double>& memory = scratch.reports[k].memory;
-    for (std::size_t start = 0; start < memory.size(); start += static_cast<std::size_t>(size)) {
-      if (!pool.push(pair, &memory[start], size)) return false;
+    const auto size = static_cast<std::size_t>(contact.pair(scratch.cull.near[k]).model.row_size());
+    const std::size_t numbers = scratch.reports[k].memory.size();
+    for (std::size_t site = 0; site * size < numbers; ++site) {
+      scratch.kept.emplace_back(scratch.pair_of_site(k, site), k, site * size);
     }
   }
-  return true;
+  if (!scratch.joined.empty()) std::sort(scratch.kept.begin(), scratch.kept.end());
+  return std::all_of(scratch.kept.begin(), scratch.kept.end(), [&](const auto& row) {
+    const auto& [pair, k, start] = row;
+    return pool.push(pair, &scratch.reports[k].memory[start],
+                     contact.pair(scratch.cull.near[k]).model.row_size());
+  });
 }
 
 void write_forces(const SceneContact& contact, const mjModel* m, mjData* d, bool goes_on,
@@ -162,9 +167,11 @@ void write_forces(const SceneContact& contact, const mjModel* m, mjData* d, bool
     forces.reset(m);
   }
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    const GeomPair& geoms = contact.pair(scratch.cull.near[k]).geoms;
-    const int a = m->geom_bodyid[geoms.a], b = m->geom_bodyid[geoms.b];
-    for (const SiteReport& site : scratch.reports[k].sites) {
+    const std::vector<SiteReport>& sites = scratch.reports[k].sites;
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+      const SiteReport& site = sites[i];
+      const GeomPair& geoms = contact.pair(scratch.pair_of_site(k, i)).geoms;
+      const int a = m->geom_bodyid[geoms.a], b = m->geom_bodyid[geoms.b];
       const Vec3& c = site.metrics.centroid;
       scratch.mocaps.add_load(m, d, a, c, site.force_on_A, site.torque_on_A);
       scratch.mocaps.add_load(m, d, b, c, -site.force_on_A, -site.torque_on_A);

@@ -66,17 +66,24 @@ void evaluate_one(const SceneContact& contact, const mjModel* m, const mjData* d
     const Twist driven = scratch.mocaps.at(m, d, m->geom_bodyid[geom], vec3_at(d->geom_xpos, geom));
     return Twist{own.angular + driven.angular, own.linear + driven.linear};
   };
-  const BodyMotion motion{pose_of_geom(d, pair.geoms.a), pose_of_geom(d, pair.geoms.b),
-                          twist_of(pair.geoms.a), twist_of(pair.geoms.b)};
+  const BodyMotion motion{pose_of_geom(d, pair.frame_a), pose_of_geom(d, pair.frame_b),
+                          twist_of(pair.frame_a), twist_of(pair.frame_b)};
+  JoinedPair* joined = scratch.joined.at(index);
   SiteMemory memory;
   memory.elapsed = before.elapsed;
   if (before.committed && pair.model.row_size() > 0) {
-    memory = SitePool<const double>(before.committed, contact.sites())
-                 .rows_of(pair_index, before.elapsed);
+    const SitePool<const double> pool(before.committed, contact.sites());
+    memory =
+        joined ? joined->memory(pool, before.elapsed) : pool.rows_of(pair_index, before.elapsed);
   }
   ContactReport& report = scratch.reports[index];
   report.keeps_inputs = before.keeps_inputs;
-  pair.model.evaluate(motion, memory, workspace, report);
+  if (joined) {
+    pair.model.evaluate({&joined->solids, 1}, motion, memory, workspace, report);
+    joined->place_sites(contact, motion, report);
+  } else {
+    pair.model.evaluate(motion, memory, workspace, report);
+  }
   scratch.invalid[index] =
       workspace.interference.total.status == Status::kInvalid || !is_finite(report);
   if (!scratch.invalid[index]) return;
@@ -94,6 +101,7 @@ void evaluate_one(const SceneContact& contact, const mjModel* m, const mjData* d
 void evaluate_pairs(const SceneContact& contact, const mjModel* m, const mjData* d,
                     const SitesBefore& before, EvaluationScratch& scratch) noexcept {
   contact.cull().run(d, scratch.cull);
+  scratch.joined.build(contact, d, scratch.cull.near);
   const std::vector<int>& near = scratch.cull.near;
   if (scratch.reports.size() < near.size()) {
     scratch.reports.resize(near.size());

@@ -48,7 +48,22 @@ class Kept {
  public:
   explicit Kept(const UserdataBlock& our) : our_(our) {}
 
-  /// Puts the forces of a pair into its report; false when none are kept. Ascending pairs only.
+  /// Puts the forces of the pair at a place of `near` into its report; false when none are kept.
+  /// Ascending places only.
+  bool take(std::size_t k, EvaluationScratch& scratch) {
+    ContactReport& report = scratch.reports[k];
+    const JoinedPair* joined = scratch.joined.at(k);
+    if (!joined) return take(scratch.cull.near[k], report);
+    // Another of its pairs may have led.
+    const bool taken = std::any_of(joined->pairs.begin(), joined->pairs.end(), [&](int pair) {
+      next_ = 0;
+      return take(pair, report);
+    });
+    next_ = 0;
+    return taken;
+  }
+
+ private:
   bool take(int pair, ContactReport& report) {
     while (next_ < our_.solved() && our_.solved_site(next_).pair() < pair) ++next_;
     const int first = next_;
@@ -58,7 +73,6 @@ class Kept {
     return true;
   }
 
- private:
   UserdataBlock our_;
   int next_ = 0;
 };
@@ -80,7 +94,7 @@ void keep_solved(const SceneContact& contact, const UserdataBlock& our,
 void recall_solved(const UserdataBlock& our, EvaluationScratch& scratch) noexcept {
   Kept kept(our);
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    kept.take(scratch.cull.near[k], scratch.reports[k]);
+    kept.take(k, scratch);
   }
 }
 
@@ -90,7 +104,7 @@ void hold_solved(const SceneContact& contact, const mjModel* m, mjData* d, const
   scratch.stiff.clear();
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     ContactReport& report = scratch.reports[k];
-    scratch.held[k] = kept.take(scratch.cull.near[k], report) ? 1 : 0;
+    scratch.held[k] = kept.take(k, scratch) ? 1 : 0;
     const PairContact& pair = contact.pair(scratch.cull.near[k]);
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
       const bool stiff =

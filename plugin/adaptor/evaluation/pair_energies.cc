@@ -54,12 +54,16 @@ double read_energies(const SceneContact& contact, const double* committed, doubl
     if (!report.touching()) continue;
     PairEnergy& energy = scratch.energies[k];
     const PairEnergy::Now now(report);
-    SiteMemory row;
     if (committed) {
       const SitePool<const double> pool(committed + contact.sites().size(), contact.energies());
-      row = pool.rows_of(scratch.cull.near[k], elapsed);
+      JoinedPair* joined = scratch.joined.at(k);
+      const SiteMemory rows =
+          joined ? joined->memory(pool, elapsed) : pool.rows_of(scratch.cull.near[k], elapsed);
+      if (rows.count > 0) energy = PairEnergy::from(rows.rows);
+      for (int i = 1; i < rows.count; ++i) {
+        energy += PairEnergy::from(rows.rows + std::ptrdiff_t{i} * rows.stride);
+      }
     }
-    if (row.count > 0) energy = PairEnergy::from(row.rows);
     if (!committed) {
       energy.found = now.elastic;
     } else if (is_rk4 && energy.explains(elapsed, now) &&
@@ -126,16 +130,25 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m,
 }
 
 bool keep_energies(const SceneContact& contact, double* states,
-                   const EvaluationScratch& scratch) noexcept {
+                   EvaluationScratch& scratch) noexcept {
   const SitePool<double> pool(states + contact.sites().size(), contact.energies());
   pool.clear();
+  scratch.kept.clear();
   for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
-    if (!scratch.reports[k].touching()) continue;
-    double row[PairEnergy::kNumbers];
-    scratch.energies[k].write(row);
-    if (!pool.push(scratch.cull.near[k], row, PairEnergy::kNumbers)) return false;
+    const std::vector<SiteReport>& sites = scratch.reports[k].sites;
+    if (sites.empty()) continue;
+    const auto largest = std::max_element(
+        sites.begin(), sites.end(),
+        [](const auto& x, const auto& y) { return x.metrics.volume < y.metrics.volume; });
+    const auto site = static_cast<std::size_t>(largest - sites.begin());
+    scratch.kept.emplace_back(scratch.pair_of_site(k, site), k, site);
   }
-  return true;
+  if (!scratch.joined.empty()) std::sort(scratch.kept.begin(), scratch.kept.end());
+  return std::all_of(scratch.kept.begin(), scratch.kept.end(), [&](const auto& kept) {
+    double row[PairEnergy::kNumbers];
+    scratch.energies[std::get<1>(kept)].write(row);
+    return pool.push(std::get<0>(kept), row, PairEnergy::kNumbers);
+  });
 }
 
 }  // namespace volcontact::adaptor

@@ -28,6 +28,6 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m,
 
 /// Writes the rows behind those of the sites; false when there was no room for all.
 bool keep_energies(const SceneContact& contact, double* states,
-                   const EvaluationScratch& scratch) noexcept;
+                   EvaluationScratch& scratch) noexcept;
 
 }  // namespace volcontact::adaptor

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <tuple>
 #include <vector>
 
 #include "adaptor/evaluation/body_forces.h"
+#include "adaptor/evaluation/joined_pairs.h"
 #include "adaptor/evaluation/mocap_motion.h"
 #include "adaptor/evaluation/thread_choice.h"
 #include "adaptor/geoms/pair_list.h"
@@ -16,6 +18,7 @@ namespace volcontact::adaptor {
 /// Memory of one evaluation; one per thread, reused from call to call.
 struct EvaluationScratch {
   Cull::Scratch cull;                  ///< `near`: the pairs evaluated
+  JoinedPairs joined;                  ///< those of them that stand for several
   std::vector<ContactReport> reports;  ///< of the pairs in `near`, finite numbers only
   std::vector<char> invalid;           ///< whether a report was left out, having no numbers
   std::vector<char> stiff;             ///< of all sites, whether an explicit step cannot hold it
@@ -30,6 +33,14 @@ struct EvaluationScratch {
   std::vector<double> user_qfrc, user_xfrc, known, row;
   MocapMotion mocaps;
   std::vector<double> way;  ///< of the dofs since the evaluation before
+  /// What is kept, by the pair under which it is found again: pair, place in `near`, number.
+  std::vector<std::tuple<int, std::size_t, std::size_t>> kept;
+
+  /// The pair to which a site of the pair at place k of `near` belongs: of flush solids, that in
+  /// which its centroid lies.
+  int pair_of_site(std::size_t k, std::size_t site) const {
+    return joined.pair_of_site(cull.near, k, site);
+  }
 };
 
 }  // namespace volcontact::adaptor

@@ -125,6 +125,17 @@ struct PairEnergy {
   static PairEnergy from(const double* row) noexcept {
     return {row[0], row[1], row[2], row[3], row[4], row[5], row[6]};
   }
+  /// Takes over what another pair has kept: the solids of both have become one.
+  PairEnergy& operator+=(const PairEnergy& other) noexcept {
+    stored += other.stored;
+    found += other.found;
+    most += other.most;
+    rubbed += other.rubbed;
+    force += other.force;
+    power += other.power;
+    slow += other.slow;
+    return *this;
+  }
 
   /// Work done on the contact. What it gives back at a slow exit was found; the rest of that had
   /// been dissipated, and is so no more. Steps may owe what they err by.

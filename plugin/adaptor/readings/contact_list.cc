@@ -48,10 +48,13 @@ void list_contacts(const SceneContact& contact, const mjModel* m, const mjData* 
   out.clear();
   if (revisit(contact, m, d, scratch)) {
     for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-      const auto& geoms = contact.pair(scratch.cull.near[k]).geoms;
-      for (const SiteReport& site : scratch.reports[k].sites) {
-        out.push_back({geoms.a, geoms.b, false, site.metrics.centroid, site.normal, site.force_on_A,
-                       site.torque_on_A, site.normal_force});
+      for (std::size_t i = 0; i < scratch.reports[k].sites.size(); ++i) {
+        const SiteReport& site = scratch.reports[k].sites[i];
+        const GeomPair& geoms = contact.pair(scratch.pair_of_site(k, i)).geoms;
+        const auto [a, b] = std::minmax(geoms.a, geoms.b);
+        const double sign = a == geoms.a ? 1.0 : -1.0;  // of what is told of a
+        out.push_back({a, b, false, site.metrics.centroid, sign * site.normal,
+                       sign * site.force_on_A, sign * site.torque_on_A, site.normal_force});
       }
     }
   }

@@ -126,6 +126,20 @@ void write_solids(const mjModel* m, const SceneContact& contact, JsonText& json)
   json.end_array();
 }
 
+// Those that some solid can touch together.
+void write_flush_solids(const mjModel* m, const SceneContact& contact, JsonText& json) {
+  json.name("flush_solids").begin_array();
+  if (!contact.flush().empty()) {
+    for (const std::vector<int>& group : contact.flush().groups()) {
+      json.begin_object();
+      json.name("geoms").begin_array();
+      for (const int geom : group) json.value(label(m, mjOBJ_GEOM, geom));
+      json.end_array().end_object();
+    }
+  }
+  json.end_array();
+}
+
 // Whether steps are implicit in the contact of the pair, in words.
 std::string implicit_text(const mjModel* m, const SceneContact& contact, const PairContact& pair) {
   if (contact.options().implicit == Implicit::kNever) return "off";
@@ -182,6 +196,7 @@ std::string describe(const mjModel* m, const SceneContact& contact) {
   json.end_object();
   write_materials(m, contact, json);
   write_solids(m, contact, json);
+  write_flush_solids(m, contact, json);
   json.name("pairs").begin_array();
   for (std::size_t i = 0; i < contact.pairs().size(); ++i) {
     write_pair(m, contact, static_cast<int>(i), json);

@@ -6,7 +6,7 @@
 
 namespace volcontact::adaptor {
 
-/// The contact model of one pair of geoms. Body A is the frame of geom a, body B that of geom b.
+/// The contact model of one pair of geoms.
 struct PairContact {
   GeomPair geoms;
   Engine engine;  ///< the one that will serve
@@ -19,6 +19,8 @@ struct PairContact {
   double friction_damping_rate = 0.0;   ///< and of its damping [1/s]
   bool friction_follows_patch = false;  ///< then both are 0, and each site has its own
   bool is_jointed = false;              ///< whether one of the bodies hangs on joints
+  /// Geoms whose frames are body A and body B: those of `geoms`, but of flush solids.
+  int frame_a = 0, frame_b = 0;
 };
 
 }  // namespace volcontact::adaptor

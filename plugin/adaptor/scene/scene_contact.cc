@@ -91,6 +91,7 @@ SceneContact::SceneContact(const mjModel* m, const std::vector<GivenKey>& given,
                   ? before->meshes_
                   : std::map<int, Shape>()),
       solids_(solids_of(m, keys_, geom_pairs_, meshes_)),
+      flush_(m, keys_, solids_, geom_pairs_),
       made_(geom_pairs_.size()),
       cull_(geom_pairs_, solids_) {
   warn_about_model(m);
@@ -271,7 +272,9 @@ void SceneContact::check_engine(const mjModel* m, const GeomPair& geoms) {
 
 PairContact SceneContact::make_pair(int index) const {
   const auto i = static_cast<std::size_t>(index);
-  const GeomPair& geoms = geom_pairs_[i];
+  GeomPair geoms = geom_pairs_[i];
+  const bool is_swapped = flush_.is_swapped(index);
+  if (is_swapped) std::swap(geoms.a, geoms.b);
   const LawClass& law_class = law_classes_[static_cast<std::size_t>(class_of_pair_[i])];
   const auto a = static_cast<std::size_t>(geoms.a), b = static_cast<std::size_t>(geoms.b);
   const SceneOptions& options = keys_.options;
@@ -279,13 +282,24 @@ PairContact SceneContact::make_pair(int index) const {
       options.engine != Engine::kAuto && serves(options.engine, solids_[a], solids_[b]);
   const Engine engine = is_asked ? options.engine : engine_for(solids_[a], solids_[b]);
   const int most_cells = options.engine == Engine::kOctree ? kMostCells : kMostCellsInStep;
+  const int frame_a = flush_.frame_of(geoms.a), frame_b = flush_.frame_of(geoms.b);
+  // Flush solids are taken as one: their bodies as that of the frame, a patch as large as on all.
+  const auto facts_of = [&](int geom, int frame) {
+    GeomFacts facts = facts_[static_cast<std::size_t>(frame)];
+    if (flush_.is_tile(geom)) facts.largest_face = flush_.largest_face(geom);
+    return facts;
+  };
+  const GeomFacts facts_a = facts_of(geoms.a, frame_a), facts_b = facts_of(geoms.b, frame_b);
   ContactLaws laws = law_class.laws;
-  laws.mass = reduced_mass(facts_[a], facts_[b]);
+  laws.mass = reduced_mass(facts_a, facts_b);
+  if (is_swapped) laws.share_of_a = 1.0 - laws.share_of_a;
   PairContact pair{geoms, engine,
                    ContactModel({{solids_[a], solids_[b], Pose{}, Pose{}}}, std::move(laws),
                                 {options.tolerance, engine, kInnerThreads, most_cells}),
                    law_class.stiffness};
-  set_rates(facts_[a], facts_[b], gravity_, pair);
+  pair.frame_a = frame_a;
+  pair.frame_b = frame_b;
+  set_rates(facts_a, facts_b, gravity_, pair);
   return pair;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "adaptor/geoms/flush_groups.h"
 #include "adaptor/keys/materials.h"
 #include "adaptor/keys/scene_keys.h"
 #include "adaptor/memory/side_states.h"
@@ -49,6 +50,8 @@ class SceneContact {
     return made_.get(static_cast<std::size_t>(index), [&] { return make_pair(index); });
   }
   std::size_t made_pairs() const { return made_.made(); }
+  /// The solids that continue each other.
+  const FlushGroups& flush() const { return flush_; }
   /// The laws of a pair in words, with where each number comes from.
   PairLaws laws_of(const mjModel* m, int index) const;
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -99,6 +102,7 @@ class SceneContact {
   std::vector<GeomPair> geom_pairs_;
   std::map<int, Shape> meshes_;  // by number
   std::vector<Shape> solids_;    // by geom; of geoms without a pair a placeholder
+  FlushGroups flush_;
   std::vector<LawClass> law_classes_;
   std::vector<int> class_of_pair_;
   std::vector<GeomFacts> facts_;  // by geom

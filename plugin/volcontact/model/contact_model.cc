@@ -171,8 +171,9 @@ ContactModel::ContactModel(std::vector<GeometricPair> pairs, ContactLaws laws,
   row_size_ = states_.empty() ? 0 : kSiteHead + size_of(states_);
 }
 
-void ContactModel::evaluate(const BodyMotion& motion, const SiteMemory& memory,
-                            Workspace& workspace, ContactReport& report) const noexcept {
+void ContactModel::evaluate(std::span<const GeometricPair> pairs, const BodyMotion& motion,
+                            const SiteMemory& memory, Workspace& workspace,
+                            ContactReport& report) const noexcept {
   report.sites.clear();
   report.memory.clear();
   report.p_WA = motion.X_WA.translation;
@@ -184,8 +185,8 @@ void ContactModel::evaluate(const BodyMotion& motion, const SiteMemory& memory,
   report.inputs.clear();
   report.committed.clear();
   report.elapsed = memory.elapsed;
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    interference_W(pairs_[i], motion.X_WA, motion.X_WB, options_, workspace.engines,
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    interference_W(pairs[i], motion.X_WA, motion.X_WB, options_, workspace.engines,
                    workspace.interference);
     const std::vector<VolumeMetrics>& sites_W = workspace.interference.sites;
     const int pair = static_cast<int>(i);
@@ -200,7 +201,7 @@ void ContactModel::evaluate(const BodyMotion& motion, const SiteMemory& memory,
       }
       PressureField field_W;
       const bool potential = laws_.formulation == Formulation::kPotential;
-      if (potential) field_W = field_of(pairs_[i], motion, k, workspace);
+      if (potential) field_W = field_of(pairs[i], motion, k, workspace);
       SiteInputs* inputs = report.keeps_inputs ? &report.inputs.emplace_back() : nullptr;
       if (inputs && row_size_ > 0) {
         report.committed.insert(report.committed.end(), state.committed,

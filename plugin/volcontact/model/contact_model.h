@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -81,6 +82,12 @@ class ContactModel {
   /// Evaluates all pairs. `memory` has the rows that an earlier evaluation left in its report; none
   /// for bodies that were apart. Throws nothing, allocates nothing when warm.
   void evaluate(const BodyMotion& motion, const SiteMemory& memory, Workspace& workspace,
+                ContactReport& report) const noexcept {
+    evaluate(pairs_, motion, memory, workspace, report);
+  }
+  /// The same of other pairs by the laws and options of this model, which serve them.
+  void evaluate(std::span<const GeometricPair> pairs, const BodyMotion& motion,
+                const SiteMemory& memory, Workspace& workspace,
                 ContactReport& report) const noexcept;
 
  private:

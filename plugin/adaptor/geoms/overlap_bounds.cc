@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/geoms/overlap_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace volcontact::adaptor {
+namespace {
+
+// How far a solid reaches along e, in F, where it lies in the half-space n . x <= offset: by
+// duality the least over l >= 0 of its support along e - l n, plus l times the offset. Any l gives
+// a bound.
+double reach_within(const SolidView& solid, const Pose& X_FS, const Vec3& e, const Vec3& n,
+                    double offset) {
+  const auto bound = [&](double angle) {  // e and n are perpendicular
+    const Vec3 along = std::cos(angle) * e - std::sin(angle) * n;
+    const double height = solid.support_height(solid.solid, X_FS.rotation.transpose() * along);
+    return (height + along.dot(X_FS.translation) + std::sin(angle) * offset) / std::cos(angle);
+  };
+  constexpr double kGolden = 0.6180339887498949;
+  double low = 0.0, high = 0.5 * kPi;
+  double x = high - kGolden * (high - low), y = low + kGolden * (high - low);
+  double at_x = bound(x), at_y = bound(y), least = bound(low);
+  for (int i = 0; i < 40; ++i) {
+    least = std::min({least, at_x, at_y});
+    if (at_x < at_y) {
+      high = std::exchange(y, x);
+      at_y = at_x;
+      x = high - kGolden * (high - low);
+      at_x = bound(x);
+    } else {
+      low = std::exchange(x, y);
+      at_x = at_y;
+      y = low + kGolden * (high - low);
+      at_y = bound(y);
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
+Aabb overlap_bounds(const SolidView& solid, const Pose& X_FS, const Aabb& box) {
+  Aabb overlap = box;
+  for (int i = 0; i < 3; ++i) {
+    for (const double sign : {1.0, -1.0}) {
+      double reach = kInfinity;
+      for (int j = 0; j < 3; ++j) {
+        if (j == i) continue;
+        const Vec3 e = sign * Vec3::Unit(i), n = Vec3::Unit(j);
+        reach = std::min({reach, reach_within(solid, X_FS, e, n, box.max[j]),
+                          reach_within(solid, X_FS, e, -n, -box.min[j])});
+      }
+      double& end = sign > 0.0 ? overlap.max[i] : overlap.min[i];
+      if (reach < sign * end) end = sign * reach;
+    }
+  }
+  return overlap;
+}
+
+}  // namespace volcontact::adaptor
