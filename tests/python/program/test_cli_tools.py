@@ -12,7 +12,7 @@ import pytest
 
 from volcontact.cli import main, make_parser
 from volcontact.cli.new import TEMPLATES
-from volcontact.cli.solids import SHAPES
+from volcontact.typed_solids import SHAPES
 from volcontact.simulation import simulate
 
 

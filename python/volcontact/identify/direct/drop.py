@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Drop: damping, or restitution with its floor, from bounce heights or times between bounces.
+
+A body that falls from the height h meets the plate with sqrt(2 g h) and rises to the height of what
+it keeps of that. Speeds of all bounces of a drop follow from the first by e(v), which is not
+measured itself but found with the law: so the noise of one height is that of one sample.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from volcontact.identify import regression
+from volcontact.identify.analytic.restitution import compared, damping_number, restitution_at
+from volcontact.identify.direct.sheets import Sheet, SheetError
+from volcontact.identify.direct.solids import STANDARD_GRAVITY
+from volcontact.identify.readings import LEVEL, Curve, Quantity, Reading
+from volcontact.identify.regression import Fit
+
+_Law = Callable[[np.ndarray, float], float]  # numbers of the law, speed -> restitution
+
+
+def drop(sheet: Sheet, *, level: float = LEVEL) -> Reading:
+    """Reads a drop test.
+
+    Args:
+        sheet: with `height` or `interval`, and `drop` where there are several.
+        level: of the intervals.
+
+    Returns:
+        `damping` [s/m]; `restitution` [-] with `restitution_speed_floor` [m/s] where the slowest
+        bounces tell it; the residuals of e under either law. The law that fits better is written.
+
+    Raises:
+        SheetError: the sheet does not have what the test needs.
+    """
+    bounces = _Bounces(sheet)
+    speeds, ratios = bounces.speeds()
+    guess = float(np.median(ratios))
+    middle = float(np.median(speeds))
+    number = damping_number(min(max(guess, 0.01), 0.999))
+    by_damping = bounces.fit(["damping"], [number / middle], _constant_damping)
+    by_constant = bounces.fit(["restitution"], [guess], _constant_restitution)
+    by_floor = _with_floor(bounces, guess, speeds, by_constant)
+    best = by_constant if by_floor is None else by_floor
+    is_constant = best.noise < by_damping.noise or not math.isfinite(by_damping.noise)
+    misfits = [
+        _misfit(speeds, ratios, by_damping.values, _constant_damping),
+        _misfit(speeds, ratios, best.values, _floored if by_floor else _constant_restitution),
+    ]
+    values = {
+        "damping": by_damping.quantity("damping", "s/m", level),
+        "restitution": best.quantity("restitution", "-", level),
+    }
+    written = ["restitution"] if is_constant else ["damping"]
+    findings = compared(speeds, misfits, is_constant)
+    if by_floor is not None:
+        values["restitution_speed_floor"] = best.quantity("restitution_speed_floor", "m/s", level)
+        written += ["restitution_speed_floor"] * is_constant
+    elif is_constant:
+        findings.append(
+            f"restitution_speed_floor cannot be told from these data: it lies below {speeds.min():.3g} "
+            "m/s, the slowest impact."
+        )
+    values["residual_of_damping"] = Quantity(misfits[0], "-")
+    values["residual_of_restitution"] = Quantity(misfits[1], "-")
+    chosen = best if is_constant else by_damping
+    findings += [line for line in chosen.untold() if not line.startswith("speed of")]
+    law = (_floored if by_floor else _constant_restitution) if is_constant else _constant_damping
+    grid = np.linspace(1e-3 * speeds.max(), 1.05 * float(speeds.max()), 200)
+    line = np.array([law(chosen.values, v) for v in grid])
+    title = "Restitution over speed"
+    return Reading(
+        "drop",
+        values,
+        validity=(
+            f"Impacts from {speeds.min():.3g} to {speeds.max():.3g} m/s, straight and without spin.",
+            "The weight during an impact is left out: the largest force must be far above it, "
+            "which it is where an impact lasts less than a hundredth of the flight. Air is left "
+            "out: drop small heavy parts from small heights.",
+        ),
+        findings=tuple(findings),
+        written=tuple(written),
+        curves=(Curve(title, "speed of the impact [m/s]", "e [-]", speeds, ratios, grid, line),),
+        converged=chosen.converged,
+        level=level,
+    )
+
+
+def _constant_damping(numbers: np.ndarray, speed: float) -> float:
+    return float(restitution_at(numbers[0], speed))
+
+
+def _constant_restitution(numbers: np.ndarray, speed: float) -> float:
+    return float(numbers[0])
+
+
+def _floored(numbers: np.ndarray, speed: float) -> float:
+    """Below the floor the damping is that of an impact at the floor."""
+    if speed >= numbers[1]:
+        return float(numbers[0])
+    return float(restitution_at(damping_number(float(numbers[0])) / numbers[1], speed))
+
+
+def _with_floor(
+    bounces: _Bounces, guess: float, speeds: np.ndarray, plain: Fit
+) -> Fit | None:
+    """The law with a floor, where it explains more than chance would."""
+    fits = []
+    for part in (0.1, 0.3, 0.5, 0.7):
+        floor = float(np.quantile(speeds, part)) * 1.05
+        try:
+            fits.append(
+                bounces.fit(["restitution", "restitution_speed_floor"], [guess, floor], _floored)
+            )
+        except ValueError:
+            return None
+    best = min(fits, key=lambda fit: float(fit.residuals @ fit.residuals))
+    floor = best["restitution_speed_floor"]
+    if best.freedom <= 0 or not speeds.min() < floor < speeds.max():
+        return None
+    gained = float(plain.residuals @ plain.residuals - best.residuals @ best.residuals)
+    return best if gained > 6.0 * best.noise**2 else None
+
+
+def _misfit(speeds: np.ndarray, ratios: np.ndarray, numbers: np.ndarray, law: _Law) -> float:
+    errors = [law(numbers, v) - e for v, e in zip(speeds, ratios, strict=True)]
+    return float(np.sqrt(np.mean(np.square(errors))))
+
+
+class _Bounces:
+    """Heights or intervals of all drops of a sheet."""
+
+    def __init__(self, sheet: Sheet) -> None:
+        self._gravity = sheet.number("gravity", STANDARD_GRAVITY)
+        self._touch = sheet.number("contact time", 0.0)
+        self.of_heights = sheet.has("height")
+        name = "height" if self.of_heights else "interval"
+        if self.of_heights and sheet.has("interval"):
+            raise SheetError(f"{sheet.source}: give heights or intervals, not both")
+        if not sheet.has(name):
+            raise SheetError(f"{sheet.source}: there is no column 'height' and no column 'interval'")
+        self.drops = []
+        for label, rows in sheet.groups("drop"):
+            data = sheet.columns[name][rows]
+            if not np.isfinite(data).all():
+                raise SheetError(
+                    f"{sheet.source}: drop {label!r} has an empty {name}: speeds follow from one "
+                    "bounce to the next, so end the drop there"
+                )
+            if len(data) < 2:
+                raise SheetError(
+                    f"{sheet.source}: drop {label!r} has {len(data)} {name}s; give at least two"
+                )
+            rising = np.flatnonzero(np.diff(data) >= 0.0)
+            if len(rising):
+                raise SheetError(
+                    f"{sheet.source}: in drop {label!r} {name} {rising[0] + 2} is not below the one "
+                    "before: a new drop needs a new label in the column 'drop'"
+                )
+            self.drops.append(data)
+
+    def _speed(self, measured: np.ndarray) -> np.ndarray:
+        if self.of_heights:
+            return np.sqrt(2.0 * self._gravity * measured)
+        return 0.5 * self._gravity * (measured - self._touch)
+
+    def speeds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Of impacts, and their restitutions, as they are measured."""
+        found = [self._speed(data) for data in self.drops]
+        before = np.concatenate([v[:-1] for v in found])
+        after = np.concatenate([v[1:] for v in found])
+        return before, after / before
+
+    def _predicted(self, first: float, count: int, numbers: np.ndarray, law: _Law) -> np.ndarray:
+        speeds = [first]
+        for _ in range(count - 1):
+            speeds.append(speeds[-1] * law(numbers, speeds[-1]))
+        v = np.array(speeds)
+        if self.of_heights:
+            return v**2 / (2.0 * self._gravity)
+        return 2.0 * v / self._gravity + self._touch
+
+    def fit(self, names: list[str], start: list[float], law: _Law) -> Fit:
+        """Numbers of the law, with the first speed of each drop."""
+        count = len(names)
+        firsts = [float(self._speed(data)[0]) for data in self.drops]
+
+        def residuals(x: np.ndarray) -> np.ndarray:
+            parts = [
+                self._predicted(first, len(data), x[:count], law) - data
+                for first, data in zip(x[count:], self.drops, strict=True)
+            ]
+            return np.concatenate(parts)
+
+        every = [*names, *(f"speed of drop {place + 1}" for place in range(len(firsts)))]
+        low = np.full(len(every), 1e-9)
+        high = np.full(len(every), np.inf)
+        if names[0] == "restitution":
+            high[0] = 1.0
+        return regression.fit(residuals, [*start, *firsts], every, low=low, high=high)
