@@ -182,7 +182,7 @@ def linear(matrix: np.ndarray, data: np.ndarray, names: Sequence[str]) -> Fit:
     errors = matrix @ found - data
     freedom = count - width
     noise = math.sqrt(float(errors @ errors) / freedom) if freedom > 0 else math.nan
-    covariance = covariance_of(matrix / size) / np.outer(size, size)
+    covariance = covariance_of(matrix)
     if freedom > 0:
         with np.errstate(invalid="ignore"):
             covariance = noise**2 * covariance
@@ -192,9 +192,11 @@ def linear(matrix: np.ndarray, data: np.ndarray, names: Sequence[str]) -> Fit:
 
 def covariance_of(jacobian: np.ndarray) -> np.ndarray:
     """(J^T J)^-1; infinite for parameters that lie in its null space."""
-    _, sizes, rows = np.linalg.svd(jacobian, full_matrices=False)
+    size = np.linalg.norm(jacobian, axis=0)
+    size[size == 0.0] = 1.0
+    _, sizes, rows = np.linalg.svd(jacobian / size, full_matrices=False)
     kept = sizes > _SINGULAR * sizes[0] if len(sizes) and sizes[0] > 0.0 else sizes > 0.0
-    covariance: np.ndarray = (rows[kept].T / sizes[kept] ** 2) @ rows[kept]
+    covariance: np.ndarray = (rows[kept].T / sizes[kept] ** 2) @ rows[kept] / np.outer(size, size)
     lost = np.abs(rows[~kept]).max(axis=0, initial=0.0) > 1e-6
     covariance[lost, :] = np.inf
     covariance[:, lost] = np.inf

@@ -76,13 +76,14 @@ def breakaway(
         if np.ptp(F[stuck]) > 0.0:
             slope, start = (float(c) for c in np.polyfit(F[stuck], x[stuck], 1))
         beyond = x - start - slope * F
-        above = np.flatnonzero(beyond > threshold)
-        if not len(above):
+        # From where it stays beyond: a sled that was just let go springs back at first.
+        below = np.flatnonzero(beyond <= threshold)
+        first = int(below[-1]) + 1 if len(below) else 0
+        if first >= len(t):
             raise ValueError(
                 "the record has no breakaway: the displacement never leaves the elastic line by "
                 f"{threshold:g} m; raise the load further, or lower threshold"
             )
-        first = int(above[0])
     last = first + int(np.argmax(beyond[first:] > 8.0 * threshold)) if np.any(
         beyond[first:] > 8.0 * threshold
     ) else len(t)

@@ -13,6 +13,8 @@ from volcontact.identify.readings import Curve
 from volcontact.identify.regression import Fit
 
 _LEAST = 3  # samples of a run
+_STOPPED = 0.02  # of the fastest rate: what follows is left out
+_REACH = 2  # samples to each side, of a rate
 
 
 def rates(t: np.ndarray, rate: float, linear: float, constant: float) -> np.ndarray:
@@ -75,8 +77,8 @@ class Decay:
                 raise SheetError(
                     f"{where}: time does not rise; give each run a label in the column 'run'"
                 )
-            speed = np.abs(np.gradient(data, t)) if self.of_angles and len(t) > 1 else np.abs(data)
-            slow = np.flatnonzero(speed < slowest)
+            speed = _speeds(t, data) if self.of_angles and len(t) > 1 else np.abs(data)
+            slow = np.flatnonzero(speed < max(slowest, _STOPPED * float(speed.max(initial=0.0))))
             end = int(slow[0]) if len(slow) else len(t)
             self.left_out += len(t) - end
             t, data = t[:end], data[:end]
@@ -135,8 +137,7 @@ class Decay:
     def span(self) -> tuple[float, float]:
         """Least and largest rate [rad/s]."""
         speeds = [
-            np.abs(np.gradient(data, t)) if self.of_angles else np.abs(data)
-            for t, data in self.runs
+            _speeds(t, data) if self.of_angles else np.abs(data) for t, data in self.runs
         ]
         return (min(float(v.min()) for v in speeds), max(float(v.max()) for v in speeds))
 
@@ -153,6 +154,15 @@ class Decay:
                 line = fit[f"start angle {place + 1}"] + angles(grid, rate, l, c)
             found.append(Curve(f"Run {place + 1}", "time [s]", label, t, data, grid, line))
         return found
+
+
+def _speeds(t: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Rates over a few samples, so that noise does not look like rest."""
+    reach = min(_REACH, len(t) - 1)
+    place = np.arange(len(t))
+    low, high = np.maximum(place - reach, 0), np.minimum(place + reach, len(t) - 1)
+    found: np.ndarray = np.abs((angle[high] - angle[low]) / (t[high] - t[low]))
+    return found
 
 
 def is_zero(fit: Fit, name: str) -> bool:

@@ -16,11 +16,15 @@ import numpy as np
 from volcontact.identify import regression
 from volcontact.identify.analytic.restitution import compared, damping_number, restitution_at
 from volcontact.identify.direct.sheets import Sheet, SheetError
-from volcontact.identify.direct.solids import STANDARD_GRAVITY
+from volcontact.identify.direct.solids import STANDARD_GRAVITY, solids_of
+from volcontact.identify.impacts import Impacts
+from volcontact.identify.push import Push
 from volcontact.identify.readings import LEVEL, Curve, Quantity, Reading
 from volcontact.identify.regression import Fit
 
 _Law = Callable[[np.ndarray, float], float]  # numbers of the law, speed -> restitution
+_WEIGHTS = ("a", "mass", "stiffness")  # what the correction for the weight needs
+_ROUNDS = 4  # of the correction
 
 
 def drop(sheet: Sheet, *, level: float = LEVEL) -> Reading:
@@ -48,8 +52,8 @@ def drop(sheet: Sheet, *, level: float = LEVEL) -> Reading:
     best = by_constant if by_floor is None else by_floor
     is_constant = best.noise < by_damping.noise or not math.isfinite(by_damping.noise)
     misfits = [
-        _misfit(speeds, ratios, by_damping.values, _constant_damping),
-        _misfit(speeds, ratios, best.values, _floored if by_floor else _constant_restitution),
+        bounces.misfit(by_damping, _constant_damping),
+        bounces.misfit(best, _floored if by_floor else _constant_restitution),
     ]
     values = {
         "damping": by_damping.quantity("damping", "s/m", level),
@@ -78,9 +82,8 @@ def drop(sheet: Sheet, *, level: float = LEVEL) -> Reading:
         values,
         validity=(
             f"Impacts from {speeds.min():.3g} to {speeds.max():.3g} m/s, straight and without spin.",
-            "The weight during an impact is left out: the largest force must be far above it, "
-            "which it is where an impact lasts less than a hundredth of the flight. Air is left "
-            "out: drop small heavy parts from small heights.",
+            bounces.of_weight(),
+            "Air is left out: drop small heavy parts from small heights.",
         ),
         findings=tuple(findings),
         written=tuple(written),
@@ -126,17 +129,13 @@ def _with_floor(
     return best if gained > 6.0 * best.noise**2 else None
 
 
-def _misfit(speeds: np.ndarray, ratios: np.ndarray, numbers: np.ndarray, law: _Law) -> float:
-    errors = [law(numbers, v) - e for v, e in zip(speeds, ratios, strict=True)]
-    return float(np.sqrt(np.mean(np.square(errors))))
-
-
 class _Bounces:
     """Heights or intervals of all drops of a sheet."""
 
     def __init__(self, sheet: Sheet) -> None:
         self._gravity = sheet.number("gravity", STANDARD_GRAVITY)
         self._touch = sheet.number("contact time", 0.0)
+        self._impacts = self._with_weight(sheet)
         self.of_heights = sheet.has("height")
         name = "height" if self.of_heights else "interval"
         if self.of_heights and sheet.has("interval"):
@@ -175,30 +174,83 @@ class _Bounces:
         after = np.concatenate([v[1:] for v in found])
         return before, after / before
 
-    def _predicted(self, first: float, count: int, numbers: np.ndarray, law: _Law) -> np.ndarray:
+    def _with_weight(self, sheet: Sheet) -> Impacts | None:
+        if any(name not in sheet.constants for name in _WEIGHTS):
+            return None
+        heights = sheet.columns.get("height", np.empty(0))
+        intervals = 0.125 * self._gravity * sheet.columns.get("interval", np.empty(0)) ** 2
+        highest = float(np.nanmax(np.concatenate([heights, intervals])))
+        return Impacts(
+            Push(*solids_of(sheet)),
+            sheet.number("stiffness"),
+            sheet.number("mass"),
+            self._gravity,
+            1.5 * math.sqrt(2.0 * self._gravity * highest),
+        )
+
+    def of_weight(self) -> str:
+        """What is said of the weight during an impact."""
+        if self._impacts is not None:
+            return "The weight during an impact is taken off, to first order."
+        return (
+            "The weight during an impact is left out: it lowers e by about the weight over the "
+            f"largest force of the impact. Give {', '.join(_WEIGHTS)} to have it taken off."
+        )
+
+    def _predicted(
+        self, first: float, shares: np.ndarray, numbers: np.ndarray, law: _Law
+    ) -> np.ndarray:
         speeds = [first]
-        for _ in range(count - 1):
-            speeds.append(speeds[-1] * law(numbers, speeds[-1]))
+        for share in shares:
+            speeds.append(speeds[-1] * share * law(numbers, speeds[-1]))
         v = np.array(speeds)
         if self.of_heights:
             return v**2 / (2.0 * self._gravity)
         return 2.0 * v / self._gravity + self._touch
 
+    def _shares(self, fit: Fit, count: int, law: _Law) -> list[np.ndarray]:
+        """What the weight makes of each restitution."""
+        found = []
+        for first, data in zip(fit.values[count:], self.drops, strict=True):
+            speed, shares = float(first), []
+            for _ in range(len(data) - 1):
+                e = law(fit.values[:count], speed)
+                share = 1.0
+                if self._impacts is not None:
+                    share = self._impacts.share(damping_number(e) / speed, speed)
+                shares.append(share)
+                speed *= share * e
+            found.append(np.array(shares))
+        return found
+
+    def misfit(self, fit: Fit, law: _Law) -> float:
+        """Root mean square of the errors of e, each impact at its measured speed."""
+        count = len(fit.names) - len(self.drops)
+        speeds, ratios = self.speeds()
+        shares = np.concatenate(self._shares(fit, count, law))
+        found = [share * law(fit.values, v) for share, v in zip(shares, speeds, strict=True)]
+        return float(np.sqrt(np.mean((np.array(found) - ratios) ** 2)))
+
     def fit(self, names: list[str], start: list[float], law: _Law) -> Fit:
         """Numbers of the law, with the first speed of each drop."""
         count = len(names)
         firsts = [float(self._speed(data)[0]) for data in self.drops]
-
-        def residuals(x: np.ndarray) -> np.ndarray:
-            parts = [
-                self._predicted(first, len(data), x[:count], law) - data
-                for first, data in zip(x[count:], self.drops, strict=True)
-            ]
-            return np.concatenate(parts)
-
         every = [*names, *(f"speed of drop {place + 1}" for place in range(len(firsts)))]
         low = np.full(len(every), 1e-9)
         high = np.full(len(every), np.inf)
         if names[0] == "restitution":
             high[0] = 1.0
-        return regression.fit(residuals, [*start, *firsts], every, low=low, high=high)
+        shares = [np.ones(len(data) - 1) for data in self.drops]
+
+        def residuals(x: np.ndarray) -> np.ndarray:
+            parts = [
+                self._predicted(first, share, x[:count], law) - data
+                for first, share, data in zip(x[count:], shares, self.drops, strict=True)
+            ]
+            return np.concatenate(parts)
+
+        found = regression.fit(residuals, [*start, *firsts], every, low=low, high=high)
+        for _ in range(_ROUNDS if self._impacts is not None else 0):
+            shares = self._shares(found, count, law)
+            found = regression.fit(residuals, found.values.tolist(), every, low=low, high=high)
+        return found

@@ -79,6 +79,10 @@ DROP = Layout(
     (
         _GRAVITY,
         Item("contact time", "time", "ms", "how long an impact lasts, taken off the intervals"),
+        _A,
+        _B,
+        _MASS,
+        _STIFFNESS,
     ),
     ("drop,height [mm]", "1,500", "1,321.2", "1,214.3", "1,147.6", "2,300", "2,205.6", "2,142.9"),
 )
