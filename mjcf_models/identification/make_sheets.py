@@ -38,9 +38,9 @@ def load(name: str, scene: str = "scene.xml", **numbers: float) -> tuple[Any, An
     return model, data
 
 
-def truth(name: str) -> dict[str, float]:
+def truth(name: str, scene: str = "scene.xml") -> dict[str, float]:
     """Numbers of the pair `bench` of a scene."""
-    model = mujoco.MjModel.from_xml_path(str(FOLDER / name / "scene.xml"))
+    model = mujoco.MjModel.from_xml_path(str(FOLDER / name / scene))
     found = {}
     for place in range(model.nnumeric):
         parts = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_NUMERIC, place).split("/")
@@ -127,16 +127,27 @@ def bounces(
     return found
 
 
-def drop(heights: Sequence[float] = (0.5, 0.2), count: int = 5, **numbers: float) -> str:
+def drop(
+    heights: Sequence[float] = (0.5, 0.2), count: int = 5, scene: str = "scene.xml"
+) -> str:
     """Heights of the bounces."""
     rows = []
-    for place, peaks in enumerate(bounces(heights, count, **numbers)):
+    for place, peaks in enumerate(bounces(heights, count, scene)):
         rows += [(str(place + 1), 1e3 * height) for _, height in peaks]
-    return sheet(_drop_constants(numbers), ("drop", "height [mm]"), rows)
+    return sheet(_drop_constants(), ("drop", "height [mm]"), rows)
 
 
-def _drop_constants(numbers: dict[str, float]) -> dict[str, Any]:
-    stiffness = numbers.get("stiffness", truth("drop")["stiffness"])
+def drop_times(heights: Sequence[float] = (0.5, 0.2), count: int = 6) -> str:
+    """Times from one first touch to the next; the contact time is that of the middle bounce."""
+    rows = []
+    for place, peaks in enumerate(bounces(heights, count)):
+        touched = [time for time, _ in peaks[1:]]
+        rows += [(str(place + 1), 1e3 * interval) for interval in np.diff(touched)]
+    return sheet(_drop_constants(), ("drop", "interval [ms]"), rows)
+
+
+def _drop_constants() -> dict[str, Any]:
+    stiffness = truth("drop")["stiffness"]
     return {
         "gravity [m/s^2]": GRAVITY,
         "a": "sphere:radius=0.025",
@@ -214,7 +225,7 @@ def tilt(
             while len(seen) < 2 or seen[-1][2] - seen[0][2] < 1e-3:
                 data.ctrl[0] = rate * (data.time + step - rest)
                 mujoco.mj_step(model, data)
-                seen.append((data.time, data.qpos[0], _way(data)))
+                seen.append((data.time, math.sin(data.qpos[0]), _way(data)))
             found = breakaway(*np.array(seen).T, threshold=2e-6)
             # The table stays where it is, and the sled is timed once it is quick.
             slide: list[tuple[float, float]] = []
@@ -225,7 +236,7 @@ def tilt(
         timed = np.array([one for one in slide if one[1] > 0.03])
         acceleration = 2.0 * np.polyfit(timed[:, 0] - timed[0, 0], timed[:, 1], 2)[0]
         # Noted for the angle at the breakaway: the few milliradian that the table went on count.
-        g, angle = GRAVITY, found.load
+        g, angle = GRAVITY, math.asin(found.load)
         kinetic = math.tan(held) - acceleration / (g * math.cos(held))
         at_break = g * (math.sin(angle) - kinetic * math.cos(angle))
         rows.append((found.time, math.degrees(angle), at_break))
@@ -277,18 +288,16 @@ def slip(**given: Any) -> str:
 
 
 def roll(speed: float = 1.0, duration: float = 6.0) -> str:
-    """Angles of a ball that rolls out."""
+    """Rates of a ball that rolls out."""
     model, data = load("roll")
     rows = []
-    angle = 0.0
     with vc.attach(model):
-        data.qvel[0], data.qvel[4] = speed, speed / 0.0494721
+        data.qvel[:] = speed * data.qvel
         every = round(0.1 / model.opt.timestep)
         for step in range(round(duration / model.opt.timestep) + 1):
             if step % every == 0 and data.time > 0.35:
                 rows.append((data.time, data.qvel[4]))
             mujoco.mj_step(model, data)
-            angle += model.opt.timestep * data.qvel[4]
     constants = {
         "a": "sphere:radius=0.05",
         "b": "half_space",

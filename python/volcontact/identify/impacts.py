@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from volcontact.identify.analytic.restitution import restitution_at
+from volcontact.identify.analytic.restitution import restitution_of
 from volcontact.identify.push import Push
 
 _NODES = 48
@@ -43,6 +43,8 @@ class Impacts:
             deepest *= 1.3
         depths = np.geomspace(1e-6 * deepest, deepest, _DEPTHS)
         moments = np.array([push.moment(float(depth)) for depth in depths])
+        self._per_mass = stiffness / mass
+        self._log_volumes = np.log(push.volumes(depths)[0])
         self._log_depths = np.log(depths)
         self._log_energies = np.log(stiffness / mass * moments)
         nodes, weights = np.polynomial.legendre.leggauss(_NODES)
@@ -55,12 +57,8 @@ class Impacts:
         a, v = damping, speed
         if a * v < _SLOW:
             return 1.0
-        out = float(restitution_at(a, v)) * v
-        middle, half = 0.5 * (v - out), 0.5 * (v + out)
-        at = middle + half * self._sines
-        energy = np.maximum(_integral(a, v) - _integral(a, at), 1e-300)
-        # Beyond the table a power goes on.
-        x = np.exp(np.interp(np.log(energy), self._log_energies, self._log_depths))
+        at, x, half = self._path(a, v)
+        out = restitution_of(a * v) * v
         integral = -a * half * float(np.sum(self._weights * x / (1.0 + a * at) ** 2))
         wanted = float(_integral(a, np.array(v))) + self._gravity * integral
         new = out
@@ -71,6 +69,23 @@ class Impacts:
             if abs(step) < 1e-14 * out:
                 break
         return new / out
+
+
+    def duration(self, damping: float, speed: float) -> float:
+        """How long an impact lasts, its weight left out [s]."""
+        a = max(damping, _SLOW / speed)
+        at, x, half = self._path(a, speed)
+        volumes = np.exp(np.interp(np.log(x), self._log_depths, self._log_volumes))
+        return half * float(np.sum(self._weights / (self._per_mass * volumes * (1.0 + a * at))))
+
+    def _path(self, a: float, v: float) -> tuple[np.ndarray, np.ndarray, float]:
+        """Speeds on the way, depths there, and half the range of the speeds."""
+        out = restitution_of(a * v) * v
+        middle, half = 0.5 * (v - out), 0.5 * (v + out)
+        at = middle + half * self._sines
+        energy = np.maximum(_integral(a, v) - _integral(a, at), 1e-300)
+        x = np.exp(np.interp(np.log(energy), self._log_energies, self._log_depths))
+        return at, x, half
 
 
 def _integral(a: float, v: float | np.ndarray) -> np.ndarray:

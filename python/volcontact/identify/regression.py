@@ -148,10 +148,10 @@ def fit(
         bounds=(bottom / size, top / size),
         x_scale="jac" if len(first) > 1 else 1.0,
         jac="3-point",
-        xtol=1e-14,
-        ftol=1e-15,
-        gtol=1e-15,
-        max_nfev=400,
+        xtol=1e-13,
+        ftol=1e-14,
+        gtol=1e-14,
+        max_nfev=100,
     )
     freedom = count - len(first)
     noise = math.sqrt(2.0 * found.cost / freedom) if freedom > 0 else math.nan

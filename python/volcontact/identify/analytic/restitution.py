@@ -7,6 +7,8 @@ docs/theory.md, "Restitution".
 
 from __future__ import annotations
 
+import functools
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -45,17 +47,35 @@ def restitution_at(damping: float | np.ndarray, speed: float | np.ndarray) -> np
     return found
 
 
+def restitution_of(number: float) -> float:
+    """e [-] of A = a v [-], one number: quicker than `restitution_at`."""
+    if number < _SLOW:
+        return 1.0 - 2.0 / 3.0 * number
+    wanted = number - math.log1p(number)
+    c = wanted + math.sqrt(2.0 * wanted)
+    for _ in range(50):
+        gone = -math.expm1(-c)
+        step = (c - gone - wanted) / gone
+        c -= step
+        if not step > 1e-15 * c:
+            break
+    return -math.expm1(-c) / number
+
+
+@functools.lru_cache(maxsize=256)
 def damping_number(restitution: float) -> float:
-    """A = a v [-] that gives a coefficient of restitution."""
-    if restitution >= 1.0:
+    """A = a v [-] that gives a coefficient of restitution e [-]."""
+    e = restitution
+    if e >= 1.0:
         return 0.0
-    low, high = 0.0, 1.0 / restitution
+    low, high = 0.0, 1.0 / e
     for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        if float(restitution_at(middle, 1.0)) > restitution:
-            low = middle
+        A = 0.5 * (low + high)
+        # Below the root the left side of the relation is less than the right one.
+        if e * A < 1.0 and math.log1p(A) - math.log1p(-e * A) < A * (1.0 + e):
+            low = A
         else:
-            high = middle
+            high = A
     return 0.5 * (low + high)
 
 

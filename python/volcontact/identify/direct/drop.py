@@ -14,7 +14,7 @@ from collections.abc import Callable
 import numpy as np
 
 from volcontact.identify import regression
-from volcontact.identify.analytic.restitution import compared, damping_number, restitution_at
+from volcontact.identify.analytic.restitution import compared, damping_number, restitution_of
 from volcontact.identify.direct.sheets import Sheet, SheetError
 from volcontact.identify.direct.solids import STANDARD_GRAVITY, solids_of
 from volcontact.identify.impacts import Impacts
@@ -24,7 +24,9 @@ from volcontact.identify.regression import Fit
 
 _Law = Callable[[np.ndarray, float], float]  # numbers of the law, speed -> restitution
 _WEIGHTS = ("a", "mass", "stiffness")  # what the correction for the weight needs
-_ROUNDS = 4  # of the correction
+_ROUNDS = 3  # of the correction
+_FAR = 5.0  # times the noise of the other law: no floor makes up for it
+_GAINED = 6.0  # variances that a floor must explain
 
 
 def drop(sheet: Sheet, *, level: float = LEVEL) -> Reading:
@@ -48,7 +50,9 @@ def drop(sheet: Sheet, *, level: float = LEVEL) -> Reading:
     number = damping_number(min(max(guess, 0.01), 0.999))
     by_damping = bounces.fit(["damping"], [number / middle], _constant_damping)
     by_constant = bounces.fit(["restitution"], [guess], _constant_restitution)
-    by_floor = _with_floor(bounces, guess, speeds, by_constant)
+    by_floor = None
+    if by_constant.noise < _FAR * by_damping.noise:
+        by_floor = _with_floor(bounces, guess, speeds, by_constant)
     best = by_constant if by_floor is None else by_floor
     is_constant = best.noise < by_damping.noise or not math.isfinite(by_damping.noise)
     misfits = [
@@ -71,6 +75,7 @@ def drop(sheet: Sheet, *, level: float = LEVEL) -> Reading:
         )
     values["residual_of_damping"] = Quantity(misfits[0], "-")
     values["residual_of_restitution"] = Quantity(misfits[1], "-")
+    speeds, ratios = bounces.speeds()
     chosen = best if is_constant else by_damping
     findings += [line for line in chosen.untold() if not line.startswith("speed of")]
     law = (_floored if by_floor else _constant_restitution) if is_constant else _constant_damping
@@ -94,7 +99,7 @@ def drop(sheet: Sheet, *, level: float = LEVEL) -> Reading:
 
 
 def _constant_damping(numbers: np.ndarray, speed: float) -> float:
-    return float(restitution_at(numbers[0], speed))
+    return restitution_of(float(numbers[0]) * speed)
 
 
 def _constant_restitution(numbers: np.ndarray, speed: float) -> float:
@@ -105,7 +110,7 @@ def _floored(numbers: np.ndarray, speed: float) -> float:
     """Below the floor the damping is that of an impact at the floor."""
     if speed >= numbers[1]:
         return float(numbers[0])
-    return float(restitution_at(damping_number(float(numbers[0])) / numbers[1], speed))
+    return restitution_of(damping_number(float(numbers[0])) / float(numbers[1]) * speed)
 
 
 def _with_floor(
@@ -126,7 +131,7 @@ def _with_floor(
     if best.freedom <= 0 or not speeds.min() < floor < speeds.max():
         return None
     gained = float(plain.residuals @ plain.residuals - best.residuals @ best.residuals)
-    return best if gained > 6.0 * best.noise**2 else None
+    return best if gained > _GAINED * best.noise**2 else None
 
 
 class _Bounces:
@@ -161,15 +166,22 @@ class _Bounces:
                     "before: a new drop needs a new label in the column 'drop'"
                 )
             self.drops.append(data)
+        self._touches = [np.full(len(data), self._touch) for data in self.drops]
 
-    def _speed(self, measured: np.ndarray) -> np.ndarray:
+    def _speed(self, measured: np.ndarray, touches: np.ndarray) -> np.ndarray:
         if self.of_heights:
             return np.sqrt(2.0 * self._gravity * measured)
-        return 0.5 * self._gravity * (measured - self._touch)
+        return 0.5 * self._gravity * (measured - touches)
+
+    def _measured(self) -> list[np.ndarray]:
+        return [
+            self._speed(data, touches)
+            for data, touches in zip(self.drops, self._touches, strict=True)
+        ]
 
     def speeds(self) -> tuple[np.ndarray, np.ndarray]:
         """Of impacts, and their restitutions, as they are measured."""
-        found = [self._speed(data) for data in self.drops]
+        found = self._measured()
         before = np.concatenate([v[:-1] for v in found])
         after = np.concatenate([v[1:] for v in found])
         return before, after / before
@@ -198,7 +210,12 @@ class _Bounces:
         )
 
     def _predicted(
-        self, first: float, shares: np.ndarray, numbers: np.ndarray, law: _Law
+        self,
+        first: float,
+        shares: np.ndarray,
+        touches: np.ndarray,
+        numbers: np.ndarray,
+        law: _Law,
     ) -> np.ndarray:
         speeds = [first]
         for share in shares:
@@ -206,51 +223,66 @@ class _Bounces:
         v = np.array(speeds)
         if self.of_heights:
             return v**2 / (2.0 * self._gravity)
-        return 2.0 * v / self._gravity + self._touch
+        return 2.0 * v / self._gravity + touches
 
-    def _shares(self, fit: Fit, count: int, law: _Law) -> list[np.ndarray]:
-        """What the weight makes of each restitution."""
-        found = []
+    def _weighed(
+        self, fit: Fit, count: int, law: _Law
+    ) -> tuple[list[np.ndarray], list[np.ndarray]]:
+        """What the weight makes of each restitution, and how long the impacts last."""
+        found, lasting = [], []
         for first, data in zip(fit.values[count:], self.drops, strict=True):
             speed, shares = float(first), []
+            # An interval begins with the impact before its flight; that of the first came in with
+            # about as much more as the law says.
+            touches = [self._lasting(fit.values[:count], speed / law(fit.values, speed), law)]
             for _ in range(len(data) - 1):
                 e = law(fit.values[:count], speed)
                 share = 1.0
                 if self._impacts is not None:
                     share = self._impacts.share(damping_number(e) / speed, speed)
                 shares.append(share)
+                touches.append(self._lasting(fit.values[:count], speed, law))
                 speed *= share * e
             found.append(np.array(shares))
-        return found
+            lasting.append(np.array(touches))
+        return found, lasting
+
+    def _lasting(self, numbers: np.ndarray, speed: float, law: _Law) -> float:
+        if self._impacts is None:
+            return self._touch
+        return self._impacts.duration(damping_number(law(numbers, speed)) / speed, speed)
 
     def misfit(self, fit: Fit, law: _Law) -> float:
         """Root mean square of the errors of e, each impact at its measured speed."""
         count = len(fit.names) - len(self.drops)
+        shares_of, self._touches = self._weighed(fit, count, law)
         speeds, ratios = self.speeds()
-        shares = np.concatenate(self._shares(fit, count, law))
+        shares = np.concatenate(shares_of)
         found = [share * law(fit.values, v) for share, v in zip(shares, speeds, strict=True)]
         return float(np.sqrt(np.mean((np.array(found) - ratios) ** 2)))
 
     def fit(self, names: list[str], start: list[float], law: _Law) -> Fit:
         """Numbers of the law, with the first speed of each drop."""
         count = len(names)
-        firsts = [float(self._speed(data)[0]) for data in self.drops]
+        firsts = [float(v[0]) for v in self._measured()]
         every = [*names, *(f"speed of drop {place + 1}" for place in range(len(firsts)))]
         low = np.full(len(every), 1e-9)
         high = np.full(len(every), np.inf)
         if names[0] == "restitution":
             high[0] = 1.0
         shares = [np.ones(len(data) - 1) for data in self.drops]
+        touches = [np.full(len(data), self._touch) for data in self.drops]
 
         def residuals(x: np.ndarray) -> np.ndarray:
+            rows = zip(x[count:], shares, touches, self.drops, strict=True)
             parts = [
-                self._predicted(first, share, x[:count], law) - data
-                for first, share, data in zip(x[count:], shares, self.drops, strict=True)
+                self._predicted(first, share, touch, x[:count], law) - data
+                for first, share, touch, data in rows
             ]
             return np.concatenate(parts)
 
         found = regression.fit(residuals, [*start, *firsts], every, low=low, high=high)
         for _ in range(_ROUNDS if self._impacts is not None else 0):
-            shares = self._shares(found, count, law)
+            shares, touches = self._weighed(found, count, law)
             found = regression.fit(residuals, found.values.tolist(), every, low=low, high=high)
         return found

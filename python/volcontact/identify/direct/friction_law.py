@@ -11,7 +11,6 @@ From docs/theory.md, "Bristles", with f the normal force and s(u) = exp(-u^2 / v
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,8 +19,7 @@ from volcontact.identify import regression
 from volcontact.identify.regression import Fit
 
 _LEAST = 1.57  # least of x / (1 - exp(-x^2)) over x, times sigma_1 v_s: where the bound always rules
-_TAUS = (0.1, 0.3, 0.7, 1.5)  # of the longest rest: first guesses of tau_dw
-_SPEEDS = (0.15, 0.3, 0.5, 0.7, 0.85)  # quantiles of the speeds: first guesses of v_s
+_GRID = 14  # first guesses of tau_dw and of v_s each
 _RULES = 1e-6
 
 
@@ -108,35 +106,42 @@ def fit_friction(breakaways: Breakaways, slides: Slides, damping: float = math.i
         found: np.ndarray = np.concatenate(parts) - data
         return found
 
-    best: Fit | None = None
-    for start in _starts(breakaways, slides):
-        values = [start[name] for name in names]
-        low = [-math.inf if name == "viscous_friction" else 1e-9 for name in names]
-        found = regression.fit(residuals, values, names, low=low)
-        if best is None or found.residuals @ found.residuals < best.residuals @ best.residuals:
-            best = found
-    assert best is not None
-    return best
+    start = _start(breakaways, slides)
+    low = [-math.inf if name == "viscous_friction" else 1e-9 for name in names]
+    return regression.fit(residuals, [start[name] for name in names], names, low=low)
 
 
-def _starts(breakaways: Breakaways, slides: Slides) -> list[dict[str, float]]:
-    every = np.concatenate([breakaways.friction, slides.friction])
-    low, high = float(every.min()), float(every.max())
-    taus = [float(breakaways.rest.max()) * part for part in _TAUS] if len(breakaways.rest) else [1.0]
-    speeds: Sequence[float] = [1.0]
+def _start(breakaways: Breakaways, slides: Slides) -> dict[str, float]:
+    """First guesses: at each tau_dw and v_s of a grid the rest is linear."""
+    data = np.concatenate([breakaways.friction, slides.friction])
+    taus, speeds = np.array([1.0]), np.array([1.0])
+    if len(breakaways.rest):
+        taus = np.geomspace(0.2 * breakaways.rest.min(), breakaways.rest.max(), _GRID)
     if len(slides.speed):
-        speeds = [float(np.quantile(slides.speed, part)) for part in _SPEEDS]
-        top = slides.speed >= np.quantile(slides.speed, 0.7)
-        low = float(slides.friction[top].min())
-    size = float(slides.speed.max()) if len(slides.speed) else 1.0
-    return [
-        {
-            "friction": low,
-            "static_friction": high,
-            "dwell_time": tau,
-            "stribeck_speed": speed,
-            "viscous_friction": 0.01 * low / size,
-        }
-        for tau in taus[: 1 if len(slides.speed) and len(taus) > 4 else None]
-        for speed in speeds
-    ]
+        speeds = np.geomspace(0.7 * slides.speed.min(), 0.7 * slides.speed.max(), _GRID)
+    best = math.inf
+    found = {"friction": float(data.min()), "static_friction": float(data.max())}
+    found |= {"viscous_friction": 0.0, "dwell_time": float(taus[-1])}
+    found["stribeck_speed"] = float(speeds[len(speeds) // 2])
+    still = np.zeros(len(breakaways.rest))
+    for tau in taus:
+        risen = -np.expm1(-breakaways.rest / tau)
+        for speed in speeds:
+            share = np.concatenate([risen, np.exp(-((slides.speed / speed) ** 2))])
+            matrix = np.stack(
+                [np.ones(len(data)), share, np.concatenate([still, slides.speed])], axis=1
+            )
+            if not len(slides.speed):
+                matrix = matrix[:, :2]
+            numbers = np.linalg.lstsq(matrix, data, rcond=None)[0]
+            cost = float(np.sum((matrix @ numbers - data) ** 2))
+            if cost < best and numbers[0] > 0.0 and numbers[1] > 0.0:
+                best = cost
+                found = {
+                    "friction": float(numbers[0]),
+                    "static_friction": float(numbers[0] + numbers[1]),
+                    "viscous_friction": float(numbers[2]) if len(numbers) > 2 else 0.0,
+                    "dwell_time": float(tau),
+                    "stribeck_speed": float(speed),
+                }
+    return found
