@@ -40,6 +40,18 @@ class Quantity:
         return {"value": self.value, "unit": self.unit, **known, "told": self.told}
 
 
+def scaled(known: Quantity, factor: float, unit: str) -> Quantity:
+    """A multiple of a quantity, its interval with it."""
+    return Quantity(
+        factor * known.value,
+        unit,
+        factor * known.deviation,
+        factor * known.low,
+        factor * known.high,
+        known.told,
+    )
+
+
 @dataclass(frozen=True)
 class Curve:
     """What was measured beside what the law says, for the report.

@@ -17,6 +17,8 @@ from volcontact.identify.readings import LEVEL, Quantity
 
 CORRELATED = 0.98
 _HALF = 0.5  # of the value: a wider interval tells nothing
+_REWEIGHTED = 3
+_LEAST_NOISE = 0.1  # of all samples: that of one kind is not taken for less
 _SINGULAR = 1e-10  # of the largest singular value
 
 
@@ -118,6 +120,7 @@ def fit(
     *,
     low: Sequence[float] | None = None,
     high: Sequence[float] | None = None,
+    groups: np.ndarray | None = None,
 ) -> Fit:
     """Fits a curve by least squares.
 
@@ -126,10 +129,14 @@ def fit(
         start: first guess, shape (p,), of the size that is expected.
         names: of the parameters.
         low, high: bounds; without them there are none.
+        groups: numbers of kinds of samples, shape (n,), each with a noise of its own, which is
+            estimated from the residuals.
 
     Raises:
         ValueError: there are fewer samples than parameters.
     """
+    if groups is not None and len(np.unique(groups)) > 1:
+        return _fit_groups(residuals, start, names, low, high, groups)
     from scipy import optimize
 
     first = np.asarray(start, float)
@@ -163,6 +170,36 @@ def fit(
     return Fit(
         tuple(names), found.x * size, covariance, found.fun, noise, freedom, found.status > 0
     )
+
+
+def _fit_groups(
+    residuals: Callable[[np.ndarray], np.ndarray],
+    start: Sequence[float],
+    names: Sequence[str],
+    low: Sequence[float] | None,
+    high: Sequence[float] | None,
+    groups: np.ndarray,
+) -> Fit:
+    """Weights and fit in turn."""
+    sigmas = np.ones(len(groups))
+    found = fit(residuals, start, names, low=low, high=high)
+    for _ in range(_REWEIGHTED):
+        errors = found.residuals * sigmas
+        share = max(1.0 - len(names) / len(groups), 0.1)  # of the noise that is left in residuals
+        whole = math.sqrt(float(np.mean(errors**2)) / share)
+        for group in np.unique(groups):
+            own = groups == group
+            size = math.sqrt(float(np.mean(errors[own] ** 2)) / share)
+            sigmas[own] = max(size, _LEAST_NOISE * whole, 1e-300)
+        weights = 1.0 / sigmas
+        found = fit(
+            lambda x, weights=weights: weights * residuals(x),  # type: ignore[misc]
+            found.values.tolist(),
+            names,
+            low=low,
+            high=high,
+        )
+    return found
 
 
 def linear(matrix: np.ndarray, data: np.ndarray, names: Sequence[str]) -> Fit:

@@ -14,6 +14,7 @@ from volcontact.identify.regression import Fit
 
 _LEAST = 3  # samples of a run
 _STOPPED = 0.02  # of the fastest rate: what follows is left out
+_CHANCE = 4.0  # standard deviations: below it a second part is not taken in
 _REACH = 2  # samples to each side, of a rate
 
 
@@ -165,7 +166,24 @@ def _speeds(t: np.ndarray, angle: np.ndarray) -> np.ndarray:
     return found
 
 
-def is_zero(fit: Fit, name: str) -> bool:
-    """Whether a coefficient of the decay is 0 within its interval, or below."""
-    each = fit.quantity(name, "-")
-    return not math.isfinite(each.low) or each.low <= 0.0
+def parts_told(fit: Fit) -> bool:
+    """Whether the data tell both parts of the decay, and neither is chance."""
+    return all(
+        fit.quantity(name, "-").told and fit[name] > _CHANCE * fit.deviation(name)
+        for name in ("linear", "constant")
+    )
+
+
+def fit_parts(decay: Decay, law: str) -> tuple[Fit, Fit | None]:
+    """The decay of the law alone, and that with both parts where the data are enough for it.
+
+    Args:
+        decay: of the test.
+        law: the part that the law has, "linear" or "constant".
+    """
+    alone = decay.fit(linear=law == "linear", constant=law == "constant")
+    count = sum(len(t) for t, _ in decay.runs)
+    per = 2 if decay.of_angles else 1
+    if count <= 2 + per * len(decay.runs):
+        return alone, None
+    return alone, decay.fit()

@@ -182,6 +182,7 @@ def fit_kinetic(breakaways: Breakaways, slides: Slides) -> Fit:
             [*first, tau],
             ["friction", "static_friction", "dwell_time"],
             low=[1e-9] * 3,
+            groups=np.repeat([0, 1], [len(breakaways.rest), len(slides.speed)]),
         )
         for tau in starts
     ]

@@ -13,10 +13,10 @@ from __future__ import annotations
 
 import math
 
-from volcontact.identify.direct.decay import Decay, is_zero
+from volcontact.identify.direct.decay import Decay, fit_parts, parts_told
 from volcontact.identify.direct.sheets import Sheet
 from volcontact.identify.direct.solids import load_of, pressed, solids_of
-from volcontact.identify.readings import LEVEL, Quantity, Reading
+from volcontact.identify.readings import LEVEL, Reading, scaled
 
 _LABELS = {
     "rate": "angular velocity [rad/s]",
@@ -53,16 +53,17 @@ def roll(sheet: Sheet, *, level: float = LEVEL) -> Reading:
         {"rate": False, "angle": True, "speed": False, "distance": True},
     )
     rolled = inertia + mass * arm**2
-    both = decay.fit() if _has_room(decay) else None
-    constant = both is not None and not is_zero(both, "constant")
-    fit = both if constant and both is not None else decay.fit(constant=False)
+    fit, both = fit_parts(decay, "linear")
+    constant = both is not None and parts_told(both)
+    if constant and both is not None:
+        fit = both
     slow, fast = decay.span()
     per_rate = rolled / (stiffness * contact.second_moment)
     each = fit.quantity("linear", "1/s", level)
     values = {
-        "damping": _times(each, per_rate, "s/m"),
+        "damping": scaled(each, per_rate, "s/m"),
         "decay": each,
-        "rolling_torque": _times(each, rolled, "N m s"),
+        "rolling_torque": scaled(each, rolled, "N m s"),
     }
     findings = []
     if not values["damping"].told or values["damping"].value <= 0.0:
@@ -71,7 +72,7 @@ def roll(sheet: Sheet, *, level: float = LEVEL) -> Reading:
             "Roll longer or faster, or take rolling/off."
         )
     if constant:
-        torque = _times(fit.quantity("constant", "rad/s^2", level), rolled, "N m")
+        torque = scaled(fit.quantity("constant", "rad/s^2", level), rolled, "N m")
         values["constant_torque"] = torque
         share = fit["constant"] / (fit["constant"] + fit["linear"] * 0.5 * (slow + fast))
         if share > _PART:
@@ -81,6 +82,12 @@ def roll(sheet: Sheet, *, level: float = LEVEL) -> Reading:
                 f"{torque.value:.3g} N m, a rolling resistance of {arm_of_it:.3g} m. The law has "
                 "none; add it as frictionloss of a joint, or as a torque of your own."
             )
+    elif both is not None and not both.quantity("linear", "-").told:
+        findings.append(
+            "Whether the resistance falls with the speed, as in the law, or is constant cannot be "
+            f"told from these data: the rate went from {fast:.3g} to {slow:.3g} rad/s alone. Roll "
+            "until it is a third."
+        )
     limit = contact.load * math.sqrt(2.0 * contact.second_moment * stiffness / contact.load)
     largest = values["rolling_torque"].value * fast
     if largest > limit:
@@ -107,15 +114,3 @@ def roll(sheet: Sheet, *, level: float = LEVEL) -> Reading:
         converged=fit.converged,
         level=level,
     )
-
-
-def _has_room(decay: Decay) -> bool:
-    count = sum(len(t) for t, _ in decay.runs)
-    per = 2 if decay.of_angles else 1
-    return count > 2 + per * len(decay.runs)
-
-
-def _times(known: Quantity, factor: float, unit: str) -> Quantity:
-    numbers = (known.value, known.deviation, known.low, known.high)
-    value, deviation, low, high = (factor * number for number in numbers)
-    return Quantity(value, unit, deviation, low, high, known.told)

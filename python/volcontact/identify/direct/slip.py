@@ -28,6 +28,7 @@ _HARMONICS = 3
 _ELLIPSE = 0.03  # of the first harmonic: a third one beyond is no ellipse
 _SMALL = 0.01  # of a correction: beyond, the next order counts
 _ROUNDS = 20
+_ROUNDING = 1e-12  # of K
 _SCATTER = 2.5  # of loops, in standard deviations: the law misses something
 _NAMES = ("bristle_stiffness", "sum of bristle_damping and viscous_friction", "mass")
 
@@ -41,7 +42,7 @@ class Loop:
         omega: [rad/s].
         amplitude: of the displacement [m].
         stiffness: complex, force over displacement [N/m].
-        deviation: of either part of it [N/m].
+        covariance: of its real and imaginary part, shape (2, 2) [N^2/m^2].
         third: third harmonic of the force over the first [-].
         freedom: samples less what was fitted.
     """
@@ -50,7 +51,7 @@ class Loop:
     omega: float
     amplitude: float
     stiffness: complex
-    deviation: float
+    covariance: np.ndarray
     third: float
     freedom: int
 
@@ -146,19 +147,21 @@ class _Correction:
 def _regress(
     loops: list[Loop], offsets: np.ndarray, mass: float, names: list[str]
 ) -> regression.Fit:
-    """Linear least squares of real and imaginary parts, each by its deviation."""
+    """Linear least squares of real and imaginary parts."""
     rows, data = [], []
     for loop, offset in zip(loops, offsets, strict=True):
         k = loop.stiffness - offset + mass * loop.omega**2
-        weight = 1.0 / loop.deviation
-        rows.append([weight, 0.0, -weight * loop.omega**2][: len(names)])
-        rows.append([0.0, weight * loop.omega, 0.0][: len(names)])
-        data += [weight * k.real, weight * k.imag]
-    fit = regression.linear(np.array(rows), np.array(data), names)
+        # Whitened: parts of one standard deviation that do not hang together.
+        white = np.linalg.inv(np.linalg.cholesky(loop.covariance))
+        matrix = np.array([[1.0, 0.0, -(loop.omega**2)], [0.0, loop.omega, 0.0]])[:, : len(names)]
+        rows.append(white @ matrix)
+        data.append(white @ np.array([k.real, k.imag]))
+    stacked = np.concatenate(rows)
+    fit = regression.linear(stacked, np.concatenate(data), names)
     if fit.freedom > 0 and fit.noise > _SCATTER:
         return fit
     # The noise of the samples is known from many of them, and explains the scatter of the loops.
-    covariance = regression.covariance_of(np.array(rows))
+    covariance = regression.covariance_of(stacked)
     return replace(fit, covariance=covariance, noise=1.0, freedom=sum(loop.freedom for loop in loops))
 
 
@@ -182,10 +185,15 @@ def _loop(sheet: Sheet, label: str, rows: np.ndarray) -> Loop:
     X, force = (complex(part[0], -part[1]) for part in parts)  # of exp(i w t)
     third = math.hypot(parts[1][4], parts[1][5]) / abs(force)
     K = force / X
-    one = 2.0 / len(t)  # variance of an amplitude per variance of a sample
-    deviation = math.sqrt(one * (errors[1] + abs(K) ** 2 * errors[0])) / abs(X)
-    deviation = max(deviation, 1e-13 * abs(K))
-    return Loop(label, omega, abs(X), K, deviation, third, max(len(t) - basis.shape[1], 1))
+    # K changes by (dF - K dX) / X with what noise does to the two sines.
+    shape = np.linalg.inv(basis.T @ basis)[:2, :2]
+    covariance = np.zeros((2, 2))
+    for factor, variance in ((1.0 / X, errors[1]), (-K / X, errors[0])):
+        turn = np.array([[factor.real, factor.imag], [factor.imag, -factor.real]])
+        covariance += variance * turn @ shape @ turn.T
+    covariance += (_ROUNDING * abs(K)) ** 2 * np.eye(2)
+    freedom = max(len(t) - basis.shape[1], 1)
+    return Loop(label, omega, abs(X), K, covariance, third, freedom)
 
 
 def _sines(t: np.ndarray, omega: float) -> np.ndarray:
@@ -198,8 +206,8 @@ def _sines(t: np.ndarray, omega: float) -> np.ndarray:
 
 
 def _frequency(t: np.ndarray, F: np.ndarray, where: str) -> float:
-    """Angular frequency of the force by least squares, from a scan on."""
-    from scipy import optimize
+    """Angular frequency of the force by least squares, from its periodogram on."""
+    from scipy import optimize, signal
 
     span = float(np.ptp(t))
     least = 2.0 * math.pi * _PERIODS / span
@@ -211,14 +219,12 @@ def _frequency(t: np.ndarray, F: np.ndarray, where: str) -> float:
         error = wave @ np.linalg.lstsq(wave, F, rcond=None)[0] - F
         return float(error @ error)
 
-    scan = np.arange(0.5 * least, most, 0.5 / span)
-    if not len(scan):
+    scan = np.arange(0.5 * least, most, 0.3 / span)
+    if len(scan) < 2:
         raise SheetError(f"{where}: fewer than {_PERIODS:g} periods, or too few samples in each")
-    costs = [cost(omega) for omega in scan]
-    best = float(scan[int(np.argmin(costs))])
-    found = optimize.minimize_scalar(
-        cost, bounds=(best - 0.5 / span, best + 0.5 / span), method="bounded", options={"xatol": 0.0}
-    )
+    best = float(scan[int(np.argmax(signal.lombscargle(t - t[0], F - F.mean(), scan)))])
+    ends = best - 1.0 / span, best + 1.0 / span
+    found = optimize.minimize_scalar(cost, bounds=ends, method="bounded")
     omega = float(found.x)
 
     def residual(x: np.ndarray) -> np.ndarray:

@@ -10,11 +10,10 @@ from __future__ import annotations
 
 import math
 
-from volcontact.identify.direct.decay import Decay, is_zero
-from volcontact.identify.direct.roll import _has_room, _times
+from volcontact.identify.direct.decay import Decay, fit_parts, parts_told
 from volcontact.identify.direct.sheets import Sheet
 from volcontact.identify.direct.solids import Pressed, load_of, pressed, solids_of
-from volcontact.identify.readings import LEVEL, Quantity, Reading
+from volcontact.identify.readings import LEVEL, Quantity, Reading, scaled
 
 _FAST = 3.0  # times v_s: where sticking has ended to 1e-4
 _LABELS = {"rate": "spin [rad/s]", "angle": "angle [rad]"}
@@ -32,7 +31,7 @@ def spin(sheet: Sheet, *, level: float = LEVEL) -> Reading:
     Returns:
         `spin_torque` [N m] and `lever` of the friction [m]; with `friction` given the choice of the
         coupling whose lever is nearest, without it `friction` [-] for the coupling `ellipsoid`;
-        `viscous_friction` [N s/m] where the data tell it.
+        `viscous_friction` [N s/m] where the data tell it from 0.
 
     Raises:
         ValueError: the sheet does not have what the test needs.
@@ -42,31 +41,27 @@ def spin(sheet: Sheet, *, level: float = LEVEL) -> Reading:
     contact = pressed(a, b, sheet.number("stiffness"), load_of(sheet))
     slowest = _FAST * sheet.number("stribeck speed", 0.0) / contact.gyration_radius
     decay = Decay(sheet, {"rate": 1.0, "angle": 1.0}, {"rate": False, "angle": True}, slowest)
-    both = decay.fit() if _has_room(decay) else None
-    viscous = both is not None and not is_zero(both, "linear")
-    fit = both if viscous and both is not None else decay.fit(linear=False)
-    torque = _times(fit.quantity("constant", "rad/s^2", level), inertia, "N m")
+    fit, both = fit_parts(decay, "constant")
+    viscous = both is not None and parts_told(both)
+    if viscous and both is not None:
+        fit = both
+    torque = scaled(fit.quantity("constant", "rad/s^2", level), inertia, "N m")
     values = {"spin_torque": torque}
     findings = [] if torque.told else ["spin_torque cannot be told from these data."]
     if viscous:
         factor = inertia / contact.gyration_radius**2
-        known = _times(fit.quantity("linear", "1/s", level), factor, "N s/m")
+        known = scaled(fit.quantity("linear", "1/s", level), factor, "N s/m")
         values["viscous_friction"] = known
-        if not known.told:
-            findings.append(
-                "viscous_friction cannot be told from these data: spin faster, or pull at several "
-                "speeds."
-            )
     choices: tuple[str, ...] = ()
     if "friction" in sheet.constants:
         kinetic = sheet.number("friction")
-        lever = _times(torque, 1.0 / (kinetic * contact.load), "m")
+        lever = scaled(torque, 1.0 / (kinetic * contact.load), "m")
         values["lever"] = lever
         choices, lines = _coupling(lever, contact)
         findings += lines
     else:
         factor = 1.0 / (contact.load * contact.levers["ellipsoid"])
-        values["friction"] = _times(torque, factor, "-")
+        values["friction"] = scaled(torque, factor, "-")
         other = torque.value / (contact.load * contact.levers["quadrature"])
         findings.append(
             "The coupling cannot be told without friction (mu_C) from a pull; friction is that for "
