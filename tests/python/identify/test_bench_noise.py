@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from bench_sheets import kept_sheet, noisy, read, simulations
+from bench_sheets import kept_sheet, noisy, read, repeated, simulations
 
 REPETITIONS = 200
 # What instruments of a workshop leave, standard deviations [SI].
@@ -30,6 +30,8 @@ FOUND = {
 @pytest.mark.parametrize("test", NOISE)
 def test_intervals_hold_the_truth(test):
     sheet = kept_sheet(test)
+    if test == "tilt":  # five angles alone say little of their own scatter
+        sheet = repeated(sheet, 3)
     true = simulations().truth(test) | {"lever": 0.05 * 2.0 / 3.0}
     held = dict.fromkeys(FOUND[test], 0)
     for seed in range(REPETITIONS):

@@ -26,9 +26,15 @@ def kept_sheet(test, name="sheet.csv"):
     return parse_sheet((FOLDER / test / name).read_text(), LAYOUTS[test], name)
 
 
+def repeated(sheet, times):
+    """The rows several times, for repetitions that differ by their noise."""
+    columns = {name: np.tile(column, times) for name, column in sheet.columns.items()}
+    return Sheet(sheet.test, sheet.source, columns, {}, sheet.constants)
+
+
 def noisy(sheet, noise, seed):
     """The same with normal noise on some columns [SI]."""
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng((seed, len(sheet.test)))
     columns = dict(sheet.columns)
     for name, sigma in noise.items():
         columns[name] = columns[name] + sigma * random.standard_normal(len(columns[name]))

@@ -59,12 +59,13 @@ PRESS = Layout(
     ),
     (
         "depth [mm],force [N]",
-        "0.0505,1",
-        "0.0937,5",
-        "0.1265,10",
-        "0.1885,25",
-        "0.2592,50",
-        "0.3597,100",
+        "0.357,1",
+        "0.4263,5",
+        "0.4786,10",
+        "0.5828,25",
+        "0.7001,50",
+        "0.7906,75",
+        "0.8669,100",
     ),
     {"a": "sphere:radius=0.02", "b": "half_space"},
 )
@@ -84,7 +85,18 @@ DROP = Layout(
         _MASS,
         _STIFFNESS,
     ),
-    ("drop,height [mm]", "1,500", "1,321.2", "1,214.3", "1,147.6", "2,300", "2,205.6", "2,142.9"),
+    (
+        "drop,height [mm]",
+        "1,500",
+        "1,246.7",
+        "1,146.6",
+        "1,97.4",
+        "1,69",
+        "2,200",
+        "2,124.5",
+        "2,85.2",
+        "2,61.7",
+    ),
 )
 TILT = Layout(
     "tilt",
@@ -180,7 +192,7 @@ SPIN = Layout(
         Item("rate", "angular speed", "rad/s", "of the spin"),
     ),
     (_A, _B, _INERTIA, _MASS, _LOAD, _STIFFNESS, _FRICTION, _STRIBECK, _GRAVITY),
-    ("time [s],rate [rad/s]", *_decay(60.0, 0.0, 58.3, 0.1)),
+    ("time [s],rate [rad/s]", *_decay(60.0, 0.0, 78.48, 0.08)),
     {
         "a": "cylinder:radius=0.05,half_length=0.01",
         "b": "half_space",
