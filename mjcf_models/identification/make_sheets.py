@@ -90,10 +90,11 @@ def press_ramp(speed: float = 0.02) -> str:
         steps = round(period / model.opt.timestep)
         for step in range(steps):
             data.ctrl[0] = 40.0 * (1.0 - math.cos(2.0 * math.pi * step / steps))
+            if step % (steps // 60) == 0:  # load less inertia, all of one moment
+                mujoco.mj_forward(model, data)
+                force = data.ctrl[0] - 0.5 * data.qacc[0]
+                rows.append((1e3 * data.qpos[0], force, 1e3 * data.qvel[0]))
             mujoco.mj_step(model, data)
-            if step % (steps // 60) == 0:
-                inertia = 0.5 * data.qacc[0]
-                rows.append((1e3 * data.qpos[0], data.ctrl[0] - inertia, 1e3 * data.qvel[0]))
     constants = {"a": "sphere:radius=0.02", "b": "half_space"}
     return sheet(constants, ("depth [mm]", "force [N]", "speed [mm/s]"), rows)
 

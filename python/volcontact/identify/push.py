@@ -9,7 +9,7 @@ import numpy as np
 
 import volcontact._volcontact as core
 
-_FINEST = 1e-12  # of the size of the solid: where touch is looked for
+_FINEST = 1e-15  # of the size of the solid: where touch is looked for
 _TOLERANCE = 1e-6  # of the volume
 _NEWTON = 60
 

@@ -2,6 +2,7 @@
 """Formulas for parameters: against closed forms, tables of docs/theory.md, and the laws themselves."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -105,17 +106,18 @@ def test_damping_is_that_of_the_table_of_the_theory():
 
 
 def test_law_itself_agrees_with_damping_from_restitution():
-    """`hunt_crossley` integrated over an impact of a flat face."""
+    """`hunt_crossley` integrated over an impact of a cube of 1 kg on its face."""
     a = analytic.damping_from_restitution(0.5, 1.0)["damping"]
-    law = vc.HuntCrossley(stiffness=1e6, damping=a)
-    x, v, h = 0.0, 1.0, 1e-6
-    while True:
-        force = law.evaluate(volume=x, approach_speed=v).magnitude if x > 0.0 else 0.0
-        v -= h * force
-        x += h * v
-        if x < 0.0:
-            break
-    assert -v == pytest.approx(0.5, abs=1e-3)
+    model = vc.ContactModel(
+        pairs=[vc.Pair(vc.Box(half_sizes=[0.1, 0.1, 0.1]), vc.HalfSpace())],
+        normal=vc.HuntCrossley(stiffness=1e8, damping=a),
+    )
+    pose, twist, h = np.eye(4), np.zeros(6), 2e-6
+    pose[2, 3], twist[5] = 0.1, -1.0
+    while pose[2, 3] <= 0.1:
+        twist[5] += h * model.evaluate(X_WA=pose, V_WA=twist).force_on_A[2]
+        pose[2, 3] += h * twist[5]
+    assert twist[5] == pytest.approx(0.5, abs=2e-3)
 
 
 def test_table_of_restitutions_tells_which_law_holds():
@@ -193,7 +195,7 @@ def test_tangential_over_normal_stiffness_of_equal_bodies():
 
 def test_weight_during_an_impact_is_that_of_the_equation_of_motion():
     """Integrated apart, with small steps."""
-    k, m, g, a, R = 1e8, 0.5, 9.81, 0.3, 0.025
+    k, m, g, a, R = 1e10, 0.5, 9.81, 0.3, 0.025
     impacts = Impacts(Push(vc.Sphere(radius=R), vc.HalfSpace()), k, m, g, 1.0)
 
     def rebound(gravity, v):
@@ -201,7 +203,7 @@ def test_weight_during_an_impact_is_that_of_the_equation_of_motion():
             force = k * cap(x, R) * max(0.0, 1.0 + a * v) if x > 0.0 else 0.0
             return np.array([v, gravity - force / m])
 
-        y, h = np.array([0.0, v]), 2e-6
+        y, h = np.array([0.0, v]), 1e-6
         while y[0] >= 0.0:
             k1 = rate(*y)
             k2 = rate(*(y + 0.5 * h * k1))
@@ -268,7 +270,6 @@ WRONG = {
 @pytest.mark.filterwarnings("ignore:invalid value")
 def test_wrong_numbers_are_told(case):
     call, said = WRONG[case]
-    with pytest.raises(ValueError, match="") as told:
+    with pytest.raises(ValueError, match=re.escape(said)) as told:
         call()
-    assert said in str(told.value)
     assert "\n" not in str(told.value)

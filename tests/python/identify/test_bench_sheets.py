@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Data sheets: units, constants, templates; what is wrong is told in a line."""
 
+import re
+
 import numpy as np
 import pytest
 from bench_sheets import FOLDER
@@ -77,8 +79,6 @@ WRONG = {
     "one row": ("press", "\n".join(PRESS.splitlines()[:4]), "has 1 rows"),
     "solid": ("press", PRESS.replace("radius=", "radios="), "write sphere:radius=X"),
     "no solid": ("press", PRESS.replace("# a = sphere:radius=0.02\n", ""), "'a' is missing"),
-    "too few": ("press", PRESS.replace("# offset [mm] = 0\n", "").replace("0.3,56.3\n", "")
-        .replace("0.2,25.06\n", "0.2,25.06\n"), ""),
     "rises": ("drop", "height [mm]\n300\n400\n", "height 2 is not below the one before"),
     "gap": ("drop", "height [mm],interval [ms]\n300,\n200,\n,10\n", "not both"),
     "nothing": ("drop", "drop\n1\n1\n", "there is no column 'height'"),
@@ -123,7 +123,6 @@ WRONG = {
         "time [s],displacement [um],force [N]\n" + "".join(f"{k},0,{k}\n" for k in range(20)),
         "does not change",
     ),
-    "two kinds": ("spin", direct.template("spin").replace("rate [", "angle [rad],rate ["), "cells"),
     "no inertia": (
         "spin",
         direct.template("spin").replace("# inertia [kg m^2] = 0.00125", ""),
@@ -136,15 +135,13 @@ WRONG = {
     ),
     "not a test": ("press ", PRESS, "must be one of press, drop"),
 }
-del WRONG["too few"], WRONG["two kinds"]
 
 
 @pytest.mark.parametrize("case", WRONG)
 def test_wrong_sheet_is_told(case):
     test, text, said = WRONG[case]
-    with pytest.raises(ValueError, match="") as told:
+    with pytest.raises(ValueError, match=re.escape(said)) as told:
         direct.read_bench(test, text)
-    assert said in str(told.value)
     assert "\n" not in str(told.value)
 
 
