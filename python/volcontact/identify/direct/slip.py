@@ -178,7 +178,7 @@ def _loop(sheet: Sheet, label: str, rows: np.ndarray) -> Loop:
     basis = _sines(t, omega)
     parts, errors = [], []
     for data in (x, F):
-        found = np.linalg.lstsq(basis, data, rcond=None)[0]
+        found = _solved(basis, data)
         parts.append(found)
         freedom = max(len(t) - basis.shape[1], 1)
         errors.append(float(np.sum((basis @ found - data) ** 2)) / freedom)
@@ -205,6 +205,12 @@ def _sines(t: np.ndarray, omega: float) -> np.ndarray:
     return np.stack([*columns, np.ones(len(t)), middle / np.ptp(t)], axis=1)
 
 
+def _solved(basis: np.ndarray, data: np.ndarray) -> np.ndarray:
+    """Least squares by normal equations: sines are well apart."""
+    found: np.ndarray = np.linalg.solve(basis.T @ basis, basis.T @ data)
+    return found
+
+
 def _frequency(t: np.ndarray, F: np.ndarray, where: str) -> float:
     """Angular frequency of the force by least squares, from its periodogram on."""
     from scipy import optimize, signal
@@ -213,26 +219,17 @@ def _frequency(t: np.ndarray, F: np.ndarray, where: str) -> float:
     least = 2.0 * math.pi * _PERIODS / span
     most = 0.8 * math.pi / float(np.median(np.diff(t)))
 
-    def cost(omega: float) -> float:
-        middle = t - t.mean()
-        wave = np.stack([np.cos(omega * middle), np.sin(omega * middle), np.ones(len(t))], axis=1)
-        error = wave @ np.linalg.lstsq(wave, F, rcond=None)[0] - F
-        return float(error @ error)
-
     scan = np.arange(0.5 * least, most, 0.3 / span)
     if len(scan) < 2:
         raise SheetError(f"{where}: fewer than {_PERIODS:g} periods, or too few samples in each")
     best = float(scan[int(np.argmax(signal.lombscargle(t - t[0], F - F.mean(), scan)))])
-    ends = best - 1.0 / span, best + 1.0 / span
-    found = optimize.minimize_scalar(cost, bounds=ends, method="bounded")
-    omega = float(found.x)
 
     def residual(x: np.ndarray) -> np.ndarray:
         basis = _sines(t, float(x[0]))
-        error: np.ndarray = basis @ np.linalg.lstsq(basis, F, rcond=None)[0] - F
+        error: np.ndarray = basis @ _solved(basis, F) - F
         return error
 
-    polished = optimize.least_squares(residual, [omega], x_scale=omega, xtol=1e-15, ftol=1e-15)
+    polished = optimize.least_squares(residual, [best], x_scale=best, xtol=1e-14, ftol=1e-15)
     omega = float(polished.x[0])
     if omega < least:
         raise SheetError(
