@@ -213,16 +213,17 @@ def _solved(basis: np.ndarray, data: np.ndarray) -> np.ndarray:
 
 def _frequency(t: np.ndarray, F: np.ndarray, where: str) -> float:
     """Angular frequency of the force by least squares, from its periodogram on."""
-    from scipy import optimize, signal
+    from scipy import optimize
 
     span = float(np.ptp(t))
     least = 2.0 * math.pi * _PERIODS / span
     most = 0.8 * math.pi / float(np.median(np.diff(t)))
 
-    scan = np.arange(0.5 * least, most, 0.3 / span)
+    scan = np.arange(0.5 * least, most, 1.0 / span)
     if len(scan) < 2:
         raise SheetError(f"{where}: fewer than {_PERIODS:g} periods, or too few samples in each")
-    best = float(scan[int(np.argmax(signal.lombscargle(t - t[0], F - F.mean(), scan)))])
+    power = np.abs(np.exp(1j * np.outer(scan, t - t[0])) @ (F - F.mean()))
+    best = float(scan[int(np.argmax(power))])
 
     def residual(x: np.ndarray) -> np.ndarray:
         basis = _sines(t, float(x[0]))
