@@ -169,9 +169,10 @@ class _Bounces:
         self._touches = [np.full(len(data), self._touch) for data in self.drops]
 
     def _speed(self, measured: np.ndarray, touches: np.ndarray) -> np.ndarray:
+        speeds: np.ndarray = 0.5 * self._gravity * (measured - touches)
         if self.of_heights:
-            return np.sqrt(2.0 * self._gravity * measured)
-        return 0.5 * self._gravity * (measured - touches)
+            speeds = np.sqrt(2.0 * self._gravity * measured)
+        return speeds
 
     def _measured(self) -> list[np.ndarray]:
         return [
@@ -221,9 +222,8 @@ class _Bounces:
         for share in shares:
             speeds.append(speeds[-1] * share * law(numbers, speeds[-1]))
         v = np.array(speeds)
-        if self.of_heights:
-            return v**2 / (2.0 * self._gravity)
-        return 2.0 * v / self._gravity + touches
+        intervals: np.ndarray = 2.0 * v / self._gravity + touches
+        return v**2 / (2.0 * self._gravity) if self.of_heights else intervals
 
     def _weighed(
         self, fit: Fit, count: int, law: _Law
@@ -266,8 +266,8 @@ class _Bounces:
         count = len(names)
         firsts = [float(v[0]) for v in self._measured()]
         every = [*names, *(f"speed of drop {place + 1}" for place in range(len(firsts)))]
-        low = np.full(len(every), 1e-9)
-        high = np.full(len(every), np.inf)
+        low = [1e-9] * len(every)
+        high = [math.inf] * len(every)
         if names[0] == "restitution":
             high[0] = 1.0
         shares = [np.ones(len(data) - 1) for data in self.drops]

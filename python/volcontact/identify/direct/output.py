@@ -5,9 +5,13 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from volcontact._files import appearing
 from volcontact.identify.readings import Curve, Reading
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 RESULT, SCENE, REPORT = "identified.json", "identified.xml", "report.html"
 _PAGE = Path(__file__).with_name("bench.html.jinja")
@@ -90,7 +94,7 @@ def row_of(name: str, found: Reading) -> list[str]:
     return [name, f"{each.value:.6g}", known, unit, "" if each.told else "not told by the data"]
 
 
-def _figure(curve: Curve) -> object:
+def _figure(curve: Curve) -> Figure:
     from matplotlib.figure import Figure
 
     from volcontact.report.palette import NATIVE, VOLUMETRIC

@@ -282,7 +282,7 @@ def _head(
     cells: list[str], layout: Layout, where: str
 ) -> list[tuple[Item, float]]:
     known = {each.name: each for each in layout.columns}
-    head = []
+    head: list[tuple[Item, float]] = []
     for cell in cells:
         found = _HEAD.match(cell)
         name = found["name"] if found else cell.strip()
