@@ -100,7 +100,10 @@ def press_ramp(speed: float = 0.02) -> str:
 
 
 def bounces(
-    heights: Sequence[float] = (0.5, 0.2), count: int = 5, scene: str = "scene.xml", **numbers: float
+    heights: Sequence[float] = (0.5, 0.2),
+    count: int = 5,
+    scene: str = "scene.xml",
+    **numbers: float,
 ) -> list[list[tuple[float, float]]]:
     """Times of first touch and peak heights of drops."""
     model, _ = load("drop", scene, **numbers)
@@ -128,9 +131,7 @@ def bounces(
     return found
 
 
-def drop(
-    heights: Sequence[float] = (0.5, 0.2), count: int = 5, scene: str = "scene.xml"
-) -> str:
+def drop(heights: Sequence[float] = (0.5, 0.2), count: int = 5, scene: str = "scene.xml") -> str:
     """Heights of the bounces."""
     rows = []
     for place, peaks in enumerate(bounces(heights, count, scene)):

@@ -70,7 +70,6 @@ class Impacts:
                 break
         return new / out
 
-
     def duration(self, damping: float, speed: float) -> float:
         """How long an impact lasts, its weight left out [s]."""
         a = max(damping, _SLOW / speed)

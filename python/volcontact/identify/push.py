@@ -103,7 +103,7 @@ class Push:
     def _touch(self) -> float:
         """Height at which A begins to overlap B, by bisection."""
         low_a, high_a = self._a.bounds
-        low_b, high_b = self._b.bounds
+        _, high_b = self._b.bounds
         top = float(high_b[2]) if np.isfinite(high_b[2]) else 0.0
         size = float(high_a[2] - low_a[2])
         apart = top - float(low_a[2])  # of the bounding boxes

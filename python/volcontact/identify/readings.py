@@ -123,7 +123,7 @@ class Reading:
         for name, value in self.parameters().items():
             each = self.values[name]
             unit = "" if each.unit == "-" else f" [{each.unit}]"
-            known = f" {each.low:.4g} to {each.high:.4g}" if math.isfinite(each.low) else ""
+            known = f" {each.low:.6g} to {each.high:.6g}" if math.isfinite(each.low) else ""
             note = f"  <!--{known}{unit} -->" if unit or known else ""
             data = f'data="{value:.9g}"/>'
             lines.append(f'<numeric name="volcontact/pair/{pair}/{name}" {data}{note}')

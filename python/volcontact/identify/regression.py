@@ -74,9 +74,7 @@ class Fit:
                 continue
             partner = self._partner(place)
             why = (
-                f" It and {partner} make up for each other: give one of the two."
-                if partner
-                else ""
+                f" It and {partner} make up for each other: give one of the two." if partner else ""
             )
             lines.append(f"{name} cannot be told from these data.{why}")
         if self.freedom <= 0:
@@ -128,7 +126,8 @@ def fit(
         residuals: of parameters, shape (p,) -> (n,).
         start: first guess, shape (p,), of the size that is expected.
         names: of the parameters.
-        low, high: bounds; without them there are none.
+        low: bounds of the parameters; without them there are none.
+        high: likewise.
         groups: numbers of kinds of samples, shape (n,), each with a noise of its own, which is
             estimated from the residuals.
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Formulas for parameters: against closed forms, tables of docs/theory.md, and the laws themselves."""
+"""Formulas for parameters: against closed forms, tables of docs/theory.md and the laws."""
 
 import math
 import re
@@ -222,7 +222,10 @@ WRONG = {
     "load": (lambda: analytic.hertz(-1.0, 0.01, STEEL), "load = -1 [N]"),
     "radius": (lambda: analytic.hertz(1.0, 0.0, STEEL), "radius = 0 [m]"),
     "match": (lambda: analytic.hertz(1.0, 0.1, STEEL, match="force"), "must be one of depth"),
-    "rigid": (lambda: analytic.hertz(1.0, 0.1, analytic.Elastic(math.inf)), "both bodies are rigid"),
+    "rigid": (
+        lambda: analytic.hertz(1.0, 0.1, analytic.Elastic(math.inf)),
+        "both bodies are rigid",
+    ),
     "poisson": (
         lambda: analytic.hertz(1.0, 0.1, analytic.Elastic(1e9, 0.7)),
         "poisson_ratio = 0.7 [-]",

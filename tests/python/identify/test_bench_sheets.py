@@ -68,7 +68,11 @@ WRONG = {
     "column twice": ("press", PRESS.replace("force [N]", "depth [mm]"), "stands there twice"),
     "unit unknown": ("press", PRESS.replace("[N]", "[kp]"), "'kp' is no unit of 'force'"),
     "unit missing": ("press", PRESS.replace("force [N]", "force"), "write 'force [N]'"),
-    "unit of constant": ("press", PRESS.replace("offset [mm]", "offset [N]"), "no unit of 'offset'"),
+    "unit of constant": (
+        "press",
+        PRESS.replace("offset [mm]", "offset [N]"),
+        "no unit of 'offset'",
+    ),
     "constant unknown": ("press", PRESS.replace("offset", "ofset"), "did you mean 'offset'?"),
     "nan": ("press", PRESS.replace("25.06", "nan"), "line 5: force = nan"),
     "text": ("press", PRESS.replace("25.06", "25 N"), "must be a number"),

@@ -119,7 +119,9 @@ def test_identify_hertz(run):
     found = {name: float(n) for name, n in re.findall(rf"same (\w+): ({NUMBER})", text)}
     # (9 F^2 / (16 R E*^2))^(1/3), and k_v pi d^2 (R - d/3) = F.
     depth = (9.0 * 100.0**2 / (16.0 * 0.01 * (210e9 / 0.91 / 2.0) ** 2)) ** (1.0 / 3.0)
-    assert found["depth"] == pytest.approx(100.0 / (3.14159 * depth**2 * (0.01 - depth / 3)), rel=1e-3)
+    assert found["depth"] == pytest.approx(
+        100.0 / (3.14159 * depth**2 * (0.01 - depth / 3)), rel=1e-3
+    )
     assert found["patch"] == pytest.approx(4.0 * found["depth"], rel=1e-3)
     assert "volcontact/pair/ball/damping" in text
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parameters from formulas: Hertz, force over depth, restitutions, micro-slip stiffness.
 
-    from volcontact.identify import analytic
+from volcontact.identify import analytic
 
-    found = analytic.hertz(load=100.0, radius=0.02, modulus=210e9, poisson_ratio=0.3)
-    found["stiffness"], found.mjcf("ball"), found.validity
+found = analytic.hertz(load=100.0, radius=0.02, modulus=210e9, poisson_ratio=0.3)
+found["stiffness"], found.mjcf("ball"), found.validity
 """
 
 from volcontact.identify.analytic.bristles import bristles_from_microslip, mindlin

@@ -37,7 +37,7 @@ def bristles_from_microslip(
             start. A secant is corrected to the tangent by the theory of Mindlin's partial slip.
         mass: that rings on the contact [kg].
         damping_ratio: of that ringing, over critical [-].
-        loss: loss factor of the loop [-], the imaginary over the real part of the dynamic stiffness.
+        loss: loss factor of the loop [-], imaginary over real part of the dynamic stiffness.
         frequency: of the loop [Hz].
         viscous_friction: sigma_2 [N s/m], known from sliding.
 

@@ -123,7 +123,9 @@ def _damping(found: Fit, level: float) -> tuple[Quantity, list[str]]:
         return each, []
     line = "damping cannot be told from these data: the press is too slow for it. Drop the part."
     if np.isfinite(each.high):
-        line = f"damping above {each.high:.3g} s/m is out; below it nothing can be told. {line[43:]}"
+        line = (
+            f"damping above {each.high:.3g} s/m is out; below it nothing can be told. {line[43:]}"
+        )
     return each, [line]
 
 
@@ -147,7 +149,7 @@ class _Curve:
         if self.offset is not None:
             offsets = np.array([self.offset])
         else:
-            pressed = self.x[self.F > 0.02 * self.F.max()]
+            pressed = self.x[0.02 * self.F.max() < self.F]
             span = float(self.x.max() - pressed.min())
             offsets = pressed.min() - np.linspace(-0.2, 3.0, 65) * max(span, 1e-12)
         best = (np.inf, float(offsets[0]), 1.0)
@@ -172,7 +174,8 @@ class _Curve:
         names += ["damping"] * self.has_speeds
         if len(self.x) < len(names):
             raise ValueError(
-                f"{len(self.x)} readings are too few to find {', '.join(names)}: press in more steps"
+                f"{len(self.x)} readings are too few to find {', '.join(names)}: press in more "
+                "steps"
             )
         state = np.array([k, zero, 0.0])  # k, x0, k a
         used = [0] + [1] * (self.offset is None) + [2] * self.has_speeds
@@ -221,9 +224,9 @@ class _Curve:
         return factor * V - self.F, slopes
 
     def power(self, found: Fit) -> Fit:
-        """p of F ~ V^p, from the readings with force, each weighted by its own size."""
+        """P of F ~ V^p, from the readings with force, each weighted by its own size."""
         V = self.push.volumes(self.x - self.zero(found))[0]
-        good = (V > 0.0) & (self.F > max(5.0 * found.noise, 0.02 * self.F.max()))
+        good = (V > 0.0) & (max(5.0 * found.noise, 0.02 * self.F.max()) < self.F)
         if np.count_nonzero(good) < 3:
             good = (V > 0.0) & (self.F > 0.0)
         factor = 1.0 + (found["damping"] if self.has_speeds else 0.0) * self.v[good]
@@ -239,8 +242,8 @@ class _Curve:
         if np.isfinite(power.low) and not is_law:
             lines.append(
                 f"The force grows with the power {power.value:.3g} of the volume "
-                f"({power.low:.3g} to {power.high:.3g}), that of a volume law with 1: k_v is a mean "
-                "over these depths. Press at the load of the application alone, or as deep."
+                f"({power.low:.3g} to {power.high:.3g}), that of a volume law with 1: k_v is a "
+                "mean over these depths. Press at the load of the application alone, or as deep."
             )
         V = self.push.volumes(self.x - self.zero(found))[0]
         order = np.argsort(self.x)
@@ -250,7 +253,7 @@ class _Curve:
         where = self.x[order][off & deep] - self.zero(found)
         if len(where) and not is_law:
             lines.append(
-                f"It is off by more than {100 * _TREND:g} % at {len(where)} of {len(off)} readings, "
-                f"at depths from {where.min():.3g} to {where.max():.3g} m."
+                f"It is off by more than {100 * _TREND:g} % at {len(where)} of {len(off)} "
+                f"readings, at depths from {where.min():.3g} to {where.max():.3g} m."
             )
         return lines

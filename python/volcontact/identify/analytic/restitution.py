@@ -48,7 +48,7 @@ def restitution_at(damping: float | np.ndarray, speed: float | np.ndarray) -> np
 
 
 def restitution_of(number: float) -> float:
-    """e [-] of A = a v [-], one number: quicker than `restitution_at`."""
+    """E [-] of A = a v [-], one number: quicker than `restitution_at`."""
     if number < _SLOW:
         return 1.0 - 2.0 / 3.0 * number
     wanted = number - math.log1p(number)

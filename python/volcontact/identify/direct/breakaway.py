@@ -48,8 +48,8 @@ def breakaway(
         time: [s], rising, shape (n,).
         load: force [N] or angle of a tilting table [rad], rising, shape (n,).
         displacement: of the sled against its base [m], shape (n,).
-        threshold: displacement beyond the elastic line that is clearly seen, several times the noise
-            [m]; so small that the sled is still slow against stribeck_speed there.
+        threshold: displacement beyond the elastic line that is clearly seen, several times the
+            noise [m]; so small that the sled is still slow against stribeck_speed there.
 
     Raises:
         ValueError: the record has no breakaway, or too few samples of it.
@@ -84,9 +84,11 @@ def breakaway(
                 "the record has no breakaway: the displacement never leaves the elastic line by "
                 f"{threshold:g} m; raise the load further, or lower threshold"
             )
-    last = first + int(np.argmax(beyond[first:] > 8.0 * threshold)) if np.any(
-        beyond[first:] > 8.0 * threshold
-    ) else len(t)
+    last = (
+        first + int(np.argmax(beyond[first:] > 8.0 * threshold))
+        if np.any(beyond[first:] > 8.0 * threshold)
+        else len(t)
+    )
     chosen = slice(first, last)
     if last - first < _LEAST:
         raise ValueError(

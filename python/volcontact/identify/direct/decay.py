@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from volcontact.identify import regression
@@ -34,9 +32,7 @@ def angles(t: np.ndarray, rate: float, linear: float, constant: float) -> np.nda
     small = np.abs(x) < 1e-3
     safe = np.where(small, 1.0, x)
     # (1 - exp(-x)) / x and (x - 1 + exp(-x)) / x^2, by series where they cancel.
-    first = np.where(
-        small, 1.0 - x / 2.0 + x**2 / 6.0 - x**3 / 24.0, -np.expm1(-safe) / safe
-    )
+    first = np.where(small, 1.0 - x / 2.0 + x**2 / 6.0 - x**3 / 24.0, -np.expm1(-safe) / safe)
     second = np.where(
         small,
         0.5 - x / 6.0 + x**2 / 24.0 - x**3 / 120.0,
@@ -59,7 +55,11 @@ class Decay:
     """
 
     def __init__(
-        self, sheet: Sheet, columns: dict[str, float], is_angle: dict[str, bool], slowest: float = 0.0
+        self,
+        sheet: Sheet,
+        columns: dict[str, float],
+        is_angle: dict[str, bool],
+        slowest: float = 0.0,
     ) -> None:
         used = [name for name in columns if sheet.has(name)]
         if len(used) != 1:
@@ -92,7 +92,7 @@ class Decay:
             self.runs.append((t - t[0], sign * data))
 
     def fit(self, *, linear: bool = True, constant: bool = True) -> Fit:
-        """l [1/s] and c [rad/s^2], with the rate of each run at its start, and its angle."""
+        """L [1/s] and c [rad/s^2], with the rate of each run at its start, and its angle."""
         names = ["linear"] * linear + ["constant"] * constant
         starts = []
         for t, data in self.runs:
@@ -137,9 +137,7 @@ class Decay:
 
     def span(self) -> tuple[float, float]:
         """Least and largest rate [rad/s]."""
-        speeds = [
-            _speeds(t, data) if self.of_angles else np.abs(data) for t, data in self.runs
-        ]
+        speeds = [_speeds(t, data) if self.of_angles else np.abs(data) for t, data in self.runs]
         return (min(float(v.min()) for v in speeds), max(float(v.max()) for v in speeds))
 
     def curves(self, fit: Fit, label: str) -> list[Curve]:

@@ -70,8 +70,8 @@ def drop(sheet: Sheet, *, level: float = LEVEL) -> Reading:
         written += ["restitution_speed_floor"] * is_constant
     elif is_constant:
         findings.append(
-            f"restitution_speed_floor cannot be told from these data: it lies below {speeds.min():.3g} "
-            "m/s, the slowest impact."
+            "restitution_speed_floor cannot be told from these data: it lies below "
+            f"{speeds.min():.3g} m/s, the slowest impact."
         )
     values["residual_of_damping"] = Quantity(misfits[0], "-")
     values["residual_of_restitution"] = Quantity(misfits[1], "-")
@@ -86,7 +86,7 @@ def drop(sheet: Sheet, *, level: float = LEVEL) -> Reading:
         "drop",
         values,
         validity=(
-            f"Impacts from {speeds.min():.3g} to {speeds.max():.3g} m/s, straight and without spin.",
+            f"Impacts from {speeds.min():.3g} to {speeds.max():.3g} m/s, straight, without spin.",
             bounces.of_weight(),
             "Air is left out: drop small heavy parts from small heights.",
         ),
@@ -113,9 +113,7 @@ def _floored(numbers: np.ndarray, speed: float) -> float:
     return restitution_of(damping_number(float(numbers[0])) / float(numbers[1]) * speed)
 
 
-def _with_floor(
-    bounces: _Bounces, guess: float, speeds: np.ndarray, plain: Fit
-) -> Fit | None:
+def _with_floor(bounces: _Bounces, guess: float, speeds: np.ndarray, plain: Fit) -> Fit | None:
     """The law with a floor, where it explains more than chance would."""
     fits = []
     for part in (0.1, 0.3, 0.5, 0.7):
@@ -146,7 +144,9 @@ class _Bounces:
         if self.of_heights and sheet.has("interval"):
             raise SheetError(f"{sheet.source}: give heights or intervals, not both")
         if not sheet.has(name):
-            raise SheetError(f"{sheet.source}: there is no column 'height' and no column 'interval'")
+            raise SheetError(
+                f"{sheet.source}: there is no column 'height' and no column 'interval'"
+            )
         self.drops = []
         for label, rows in sheet.groups("drop"):
             data = sheet.columns[name][rows]
@@ -162,8 +162,8 @@ class _Bounces:
             rising = np.flatnonzero(np.diff(data) >= 0.0)
             if len(rising):
                 raise SheetError(
-                    f"{sheet.source}: in drop {label!r} {name} {rising[0] + 2} is not below the one "
-                    "before: a new drop needs a new label in the column 'drop'"
+                    f"{sheet.source}: in drop {label!r} {name} {rising[0] + 2} is not below the "
+                    "one before: a new drop needs a new label in the column 'drop'"
                 )
             self.drops.append(data)
         self._touches = [np.full(len(data), self._touch) for data in self.drops]

@@ -18,7 +18,9 @@ import numpy as np
 from volcontact.identify import regression
 from volcontact.identify.regression import Fit
 
-_LEAST = 1.57  # least of x / (1 - exp(-x^2)) over x, times sigma_1 v_s: where the bound always rules
+_LEAST = (
+    1.57  # least of x / (1 - exp(-x^2)) over x, times sigma_1 v_s: where the bound always rules
+)
 _GRID = 14  # first guesses of tau_dw and of v_s each
 _RULES = 1e-6
 
@@ -50,7 +52,7 @@ class Slides:
 
 
 def held(rest: np.ndarray, kinetic: float, static: float, dwell: float) -> np.ndarray:
-    """mu at the breakaway after a rest."""
+    """Mu at the breakaway after a rest."""
     found: np.ndarray = kinetic - (static - kinetic) * np.expm1(-rest / dwell)
     return found
 
@@ -63,7 +65,7 @@ def sliding(
     viscous: float,
     damping: float = math.inf,
 ) -> np.ndarray:
-    """mu at a steady speed; viscous and damping are over the normal force [s/m]."""
+    """Mu at a steady speed; viscous and damping are over the normal force [s/m]."""
     ratio = (speed / stribeck) ** 2
     share = np.exp(-ratio)
     bound = (static - kinetic) * share

@@ -15,9 +15,10 @@ _STIFFNESS = Item("stiffness", "stiffness", "N/m^3", "k_v of the pair (press)", 
 _FRICTION = Item("friction", "number", "-", "mu_C, kinetic (pull)", above_zero=True)
 _STRIBECK = Item("stribeck speed", "speed", "m/s", "v_s (pull)", above_zero=True)
 _RUN = Item("run", "label", "", "of repetitions")
-_INERTIA = Item("inertia", "inertia", "kg m^2", "of the body about the axis of its turn", above_zero=True)
+_INERTIA = Item(
+    "inertia", "inertia", "kg m^2", "of the body about the axis of its turn", above_zero=True
+)
 _MASS = Item("mass", "mass", "kg", "of the body", above_zero=True)
-
 
 
 def _loops() -> list[str]:
@@ -27,7 +28,9 @@ def _loops() -> list[str]:
         w = 2.0 * math.pi * frequency
         stiffness = complex(1e5 - w * w, 602.0 * w)
         for sample in range(48):
-            turn = complex(math.cos(sample / 16.0 * 2.0 * math.pi), math.sin(sample / 16.0 * 2.0 * math.pi))
+            turn = complex(
+                math.cos(sample / 16.0 * 2.0 * math.pi), math.sin(sample / 16.0 * 2.0 * math.pi)
+            )
             x, force = 2e-6 * turn.imag, (2e-6 * stiffness * turn).imag
             rows.append(f"{loop},{sample / 16.0 / frequency:.6g},{1e6 * x:.5g},{force:.5g}")
     return rows
@@ -74,7 +77,13 @@ DROP = Layout(
     "damping a, or restitution e with its floor, from bounce heights or the times between bounces",
     (
         Item("drop", "label", "", "one fall with its bounces; rows follow each other"),
-        Item("height", "length", "mm", "over the height at rest: release, then each peak", above_zero=True),
+        Item(
+            "height",
+            "length",
+            "mm",
+            "over the height at rest: release, then each peak",
+            above_zero=True,
+        ),
         Item("interval", "time", "ms", "from an impact to the next", above_zero=True),
     ),
     (
@@ -102,8 +111,16 @@ TILT = Layout(
     "tilt",
     "static and kinetic friction and the dwell time, from angles at which a sled breaks away",
     (
-        Item("rest", "time", "s", "from setting down, or the end of a slide, to the breakaway", above_zero=True),
-        Item("angle", "angle", "deg", "of the table at the breakaway", needed=True, above_zero=True),
+        Item(
+            "rest",
+            "time",
+            "s",
+            "from setting down, or the end of a slide, to the breakaway",
+            above_zero=True,
+        ),
+        Item(
+            "angle", "angle", "deg", "of the table at the breakaway", needed=True, above_zero=True
+        ),
         Item("acceleration", "acceleration", "m/s^2", "of the slide, the table held at this angle"),
         _RUN,
     ),
@@ -121,9 +138,28 @@ PULL = Layout(
     "pull",
     "mu_S, mu_C, v_s, sigma_2 and tau_dw, from breakaway forces and the friction at steady speeds",
     (
-        Item("rest", "time", "s", "from the end of a slide to the breakaway; empty in rows of speeds", above_zero=True),
-        Item("speed", "speed", "mm/s", "of steady sliding; empty in rows of breakaways", above_zero=True),
-        Item("force", "force", "N", "at the breakaway, or the mean of the slide", needed=True, above_zero=True),
+        Item(
+            "rest",
+            "time",
+            "s",
+            "from the end of a slide to the breakaway; empty in rows of speeds",
+            above_zero=True,
+        ),
+        Item(
+            "speed",
+            "speed",
+            "mm/s",
+            "of steady sliding; empty in rows of breakaways",
+            above_zero=True,
+        ),
+        Item(
+            "force",
+            "force",
+            "N",
+            "at the breakaway, or the mean of the slide",
+            needed=True,
+            above_zero=True,
+        ),
         _RUN,
     ),
     (
@@ -180,7 +216,13 @@ ROLL = Layout(
     ),
     (_A, _B, _MASS, _INERTIA, _LOAD, _STIFFNESS, _GRAVITY),
     ("time [s],rate [rad/s]", *_decay(20.0, 0.05, 0.0)),
-    {"a": "sphere:radius=0.05", "b": "half_space", "mass": "1", "inertia": "0.001", "stiffness": "1e8"},
+    {
+        "a": "sphere:radius=0.05",
+        "b": "half_space",
+        "mass": "1",
+        "inertia": "0.001",
+        "stiffness": "1e8",
+    },
 )
 SPIN = Layout(
     "spin",

@@ -89,7 +89,7 @@ def _write_report(found: Reading, file: Path) -> None:
 def row_of(name: str, found: Reading) -> list[str]:
     """Name, value, interval and unit of a quantity, as they are printed."""
     each = found.values[name]
-    known = f"{each.low:.4g} to {each.high:.4g}" if each.low == each.low else ""
+    known = f"{each.low:.6g} to {each.high:.6g}" if each.low == each.low else ""
     unit = "" if each.unit == "-" else each.unit
     return [name, f"{each.value:.6g}", known, unit, "" if each.told else "not told by the data"]
 

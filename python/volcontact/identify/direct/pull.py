@@ -119,8 +119,8 @@ def _one_rest(static: np.ndarray, kinetic: np.ndarray, level: float) -> Reading:
             findings += fit.untold()
     if not len(kinetic):
         findings.append(
-            "friction (mu_C) cannot be told from breakaways alone: time how the sled slides, column "
-            "acceleration."
+            "friction (mu_C) cannot be told from breakaways alone: time how the sled slides, "
+            "column acceleration."
         )
     return Reading(
         "tilt",
@@ -142,8 +142,10 @@ def _reading(
     name: str, breakaways: Breakaways, slides: Slides, load: float, damping: float, level: float
 ) -> Reading:
     kinetic_alone = len(slides.speed) > 0 and bool(np.isinf(slides.speed).all())
-    fit = fit_kinetic(breakaways, slides) if kinetic_alone else fit_friction(
-        breakaways, slides, damping
+    fit = (
+        fit_kinetic(breakaways, slides)
+        if kinetic_alone
+        else fit_friction(breakaways, slides, damping)
     )
     values = {}
     for each in fit.names:
@@ -215,8 +217,8 @@ def _findings(
         lines.append("dwell_time cannot be told without breakaways after several rests.")
     elif breakaways.rest.max() < _STEEP * dwell.value and not len(slides.speed):
         lines.append(
-            f"The longest rest is {breakaways.rest.max():.3g} s and dwell_time {dwell.value:.3g} s: "
-            "static_friction is extrapolated. Let it rest three times as long."
+            f"The longest rest is {breakaways.rest.max():.3g} s and dwell_time {dwell.value:.3g} "
+            "s: static_friction is extrapolated. Let it rest three times as long."
         )
     stribeck = values.get("stribeck_speed")
     if stribeck is None:
@@ -241,9 +243,9 @@ def _validity(fit: Fit, breakaways: Breakaways, slides: Slides, load: float) -> 
     lines = []
     if len(breakaways.rest):
         lines.append(
-            f"Rests from {breakaways.rest.min():.3g} to {breakaways.rest.max():.3g} s, each counted "
-            "up to the breakaway, the rise of the load with it; before it a slide far faster than "
-            "stribeck_speed that stops at once."
+            f"Rests from {breakaways.rest.min():.3g} to {breakaways.rest.max():.3g} s, each "
+            "counted up to the breakaway, the rise of the load with it; before it a slide far "
+            "faster than stribeck_speed that stops at once."
         )
     if len(slides.speed) and np.isfinite(slides.speed).all():
         lines.append(

@@ -6,7 +6,7 @@ centroid of the overlap, at the arm r below the middle, where nothing slips. So
 
     (I + m r^2) dw/dt = -k_v a K w,
 
-an exponential decay. A constant part, as of rolling on dust or of hysteresis, is no part of the law.
+an exponential decay. A constant part, as of rolling on dust or of hysteresis, is none of the law.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Data sheets of bench tests: CSV with units in its head, and lines of constants before it.
 
-    # mass [kg] = 0.5
-    time [s],speed [mm/s]
-    0,102.3
+# mass [kg] = 0.5
+time [s],speed [mm/s]
+0,102.3
 """
 
 from __future__ import annotations
@@ -150,9 +150,7 @@ class Sheet:
         """Rows of each label, in the order of their first one."""
         rows = len(next(iter(self.columns.values())))
         given = self.labels.get(label, [""] * rows)
-        return [
-            (name, np.array([each == name for each in given])) for name in dict.fromkeys(given)
-        ]
+        return [(name, np.array([each == name for each in given])) for name in dict.fromkeys(given)]
 
 
 def read_sheet(
@@ -200,9 +198,7 @@ def parse_sheet(
     return Sheet(layout.test, source, columns, labels, constants)
 
 
-def _constant(
-    line: str, layout: Layout, where: str, constants: dict[str, float | str]
-) -> None:
+def _constant(line: str, layout: Layout, where: str, constants: dict[str, float | str]) -> None:
     """Reads "# name [unit] = value"; other lines are comments."""
     name, equals, value = line.lstrip(" \t#").partition("=")
     found = _HEAD.match(name)
@@ -214,8 +210,7 @@ def _constant(
         if found["unit"] is None and not difflib.get_close_matches(said, known):
             return  # prose with a sign of equality in it
         raise SheetError(
-            f"{where}: {said!r} is no constant of the test {layout.test}"
-            f"{nearest(said, known)}"
+            f"{where}: {said!r} is no constant of the test {layout.test}{nearest(said, known)}"
         )
     item = known[said]
     value = value.strip()
@@ -232,13 +227,13 @@ def _constant(
 def _given(name: str, value: float | str, layout: Layout) -> float | str:
     known = {each.name: each for each in layout.constants}
     if name not in known:
-        raise SheetError(
-            f"{name!r} is no constant of the test {layout.test}{nearest(name, known)}"
-        )
+        raise SheetError(f"{name!r} is no constant of the test {layout.test}{nearest(name, known)}")
     if known[name].kind == "text":
         return str(value)
     if isinstance(value, str):
-        raise SheetError(f"{name} = {value!r}: must be a number [{next(iter(_units(known[name])))}]")
+        raise SheetError(
+            f"{name} = {value!r}: must be a number [{next(iter(_units(known[name])))}]"
+        )
     _check_sign(known[name], float(value), "given")
     return float(value)
 
@@ -272,15 +267,11 @@ def _number(text: str, where: str) -> float:
         hint = "; write a point, not a comma" if re.fullmatch(r"-?\d+,\d+", text) else ""
         raise SheetError(f"{where} = {text!r}: must be a number{hint}") from None
     if not math.isfinite(value):
-        raise SheetError(
-            f"{where} = {text}: leave the cell empty where nothing was measured"
-        )
+        raise SheetError(f"{where} = {text}: leave the cell empty where nothing was measured")
     return value
 
 
-def _head(
-    cells: list[str], layout: Layout, where: str
-) -> list[tuple[Item, float]]:
+def _head(cells: list[str], layout: Layout, where: str) -> list[tuple[Item, float]]:
     known = {each.name: each for each in layout.columns}
     head: list[tuple[Item, float]] = []
     for cell in cells:
@@ -330,9 +321,7 @@ def _cells(
                     raise SheetError(f"{where} = {cell}: must be above 0")
                 values[item.name].append(value)
     if len(rows) < _LEAST_ROWS:
-        raise SheetError(
-            f"{source}: has {len(rows)} rows; a test needs at least {_LEAST_ROWS}"
-        )
+        raise SheetError(f"{source}: has {len(rows)} rows; a test needs at least {_LEAST_ROWS}")
     return {name: np.array(column) for name, column in values.items()}, labels
 
 

@@ -111,9 +111,7 @@ def slip(sheet: Sheet, *, level: float = LEVEL) -> Reading:
 def _less(known: Quantity, part: float) -> Quantity:
     value, half = known.value - part, 0.5 * (known.high - known.low)
     told = known.told and value > 0.0 and not half > 0.5 * value
-    return Quantity(
-        value, known.unit, known.deviation, known.low - part, known.high - part, told
-    )
+    return Quantity(value, known.unit, known.deviation, known.low - part, known.high - part, told)
 
 
 class _Correction:
@@ -162,7 +160,9 @@ def _regress(
         return fit
     # The noise of the samples is known from many of them, and explains the scatter of the loops.
     covariance = regression.covariance_of(stacked)
-    return replace(fit, covariance=covariance, noise=1.0, freedom=sum(loop.freedom for loop in loops))
+    return replace(
+        fit, covariance=covariance, noise=1.0, freedom=sum(loop.freedom for loop in loops)
+    )
 
 
 def _loop(sheet: Sheet, label: str, rows: np.ndarray) -> Loop:
@@ -171,7 +171,9 @@ def _loop(sheet: Sheet, label: str, rows: np.ndarray) -> Loop:
     if len(t) < _SAMPLES:
         raise SheetError(f"{where} has {len(t)} samples; a loop needs at least {_SAMPLES}")
     if np.any(np.diff(t) <= 0.0):
-        raise SheetError(f"{where}: time does not rise; give each loop a label in the column 'loop'")
+        raise SheetError(
+            f"{where}: time does not rise; give each loop a label in the column 'loop'"
+        )
     if not np.ptp(x) > 0.0 or not np.ptp(F) > 0.0:
         raise SheetError(f"{where}: displacement or force does not change")
     omega = _frequency(t, F, where)
@@ -286,8 +288,8 @@ def _validity(loops: list[Loop], correction: _Correction) -> list[str]:
     slow, fast = (f([loop.omega for loop in loops]) / (2.0 * math.pi) for f in (min, max))
     lines = [
         f"Amplitudes from {low:.3g} to {high:.3g} m and frequencies from {slow:.3g} to {fast:.3g} "
-        "Hz, at the normal load of the test: sigma_0 is that of the whole site, in N/m, and the law "
-        "does not let it change with the load."
+        "Hz, at the normal load of the test: sigma_0 is that of the whole site, in N/m, and the "
+        "law does not let it change with the load."
     ]
     if correction.is_given:
         lines.append("What sticking loses at these speeds is taken off, to first order.")

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Spin-down: friction against spin, and which coupling has it.
 
-A body that spins on the spot with r_g w far above v_s loses spin under the torque mu_C f l, with the
-lever l of the coupling: r_g for `ellipsoid`, the mean radius of the patch for `quadrature`, 0 for
-`none` (docs/theory.md, "Coupling of sliding and spin"). Viscous friction adds sigma_2 r_g^2 w.
+A body that spins on the spot with r_g w far above v_s loses spin under the torque mu_C f l, with
+the lever l of the coupling: r_g for `ellipsoid`, the mean radius of the patch for `quadrature`, 0
+for `none` (docs/theory.md, "Coupling of sliding and spin"). Viscous friction adds sigma_2 r_g^2 w.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ def spin(sheet: Sheet, *, level: float = LEVEL) -> Reading:
 
     Args:
         sheet: `time` and `rate` or `angle`; the constants `a`, `b`, `inertia` about the vertical,
-            `stiffness`, `mass` or `normal force`; `friction` (mu_C, of a pull) where the coupling is
-            to be found, `stribeck speed` to leave out what is too slow.
+            `stiffness`, `mass` or `normal force`; `friction` (mu_C, of a pull) where the coupling
+            is to be found, `stribeck speed` to leave out what is too slow.
         level: of the intervals.
 
     Returns:
@@ -69,8 +69,8 @@ def spin(sheet: Sheet, *, level: float = LEVEL) -> Reading:
         )
     if "stribeck speed" not in sheet.constants:
         findings.append(
-            "stribeck speed is not given: samples at which the rim turns slower than three times it "
-            "should be left out of the sheet."
+            "stribeck speed is not given: samples at which the rim turns slower than three times "
+            "it should be left out of the sheet."
         )
     slow, fast = decay.span()
     r = contact.gyration_radius
