@@ -115,8 +115,7 @@ void ImplicitStep::set_friction(double step) noexcept {
     const Vec3 at_rest = held - holds * site.drift;
     const Vec3 wanted = at_rest - holds * slip;
     const bool gives_way = (wanted + slope.viscous * slip).norm() > slope.strength;
-    const Slide slide =
-        gives_way ? slide_under(i, slope.strength, slope.viscous, step) : Slide{};
+    const Slide slide = gives_way ? slide_under(i, slope.strength, slope.viscous, step) : Slide{};
     if (slide.speed > 0.0) {
       site.held.setZero();
       site.rub = slide.force / slide.speed;
