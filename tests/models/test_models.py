@@ -22,7 +22,7 @@ MODELS = Path(__file__).parents[2] / "mjcf_models"
 
 def scenes() -> list[Any]:
     found = []
-    for file in sorted(MODELS.glob("*/expected.json")):
+    for file in sorted(MODELS.rglob("expected.json")):
         for name, expected in json.loads(file.read_text())["scenes"].items():
             for timestep in expected["timesteps"]:
                 scene = file.parent / name
@@ -171,7 +171,7 @@ def check_layers(result: Run, expected: dict[str, Any]) -> None:
 
 
 def test_every_scene_loads_and_runs_in_plain_mujoco() -> None:
-    for scene in sorted(MODELS.glob("*/scene*.xml")):
+    for scene in sorted(MODELS.rglob("scene*.xml")):
         model = mujoco.MjModel.from_xml_path(str(scene))
         data = mujoco.MjData(model)
         for _ in range(200):

@@ -61,11 +61,16 @@ void ImplicitStep::set_drift(const mjModel* m, const mjData* d, double time) noe
   }
 }
 
-// How the site slides where friction has this strength under the normal force of the last solution.
-// Slip and normal force go straight with friction, between the last solution and that without any;
-// before there is friction, by the mobility of the site alone.
-ImplicitStep::Slide ImplicitStep::slide_under(std::size_t i, double strength,
+// How the site slides where friction has this strength under the normal force of the last solution,
+// and `viscous` times the slip more. Slip and normal force go straight with friction, between the
+// last solution and that without any; before there is friction, by the mobility of the site alone.
+ImplicitStep::Slide ImplicitStep::slide_under(std::size_t i, double strength, double viscous,
                                               double step) const noexcept {
+  // From the slide under the strength alone, and how much a unit of friction slows it.
+  const auto with_viscous = [viscous](double force, double speed, double slowed) -> Slide {
+    const double left = speed > 0.0 ? speed / (1.0 + viscous * slowed) : speed;
+    return {force + viscous * std::max(0.0, left), left};
+  };
   const Site& site = this->site(i);
   const double lever = site.tangent.friction.lever;
   const double* f = &force_[i * size(kRows) + 3];
@@ -75,12 +80,14 @@ ImplicitStep::Slide ImplicitStep::slide_under(std::size_t i, double strength,
   if (borne > 0.0 && site.free_speed > speed && normal > 0.0) {
     const double mu = strength / normal, less = 1.0 - mu * (normal - site.free_normal) / borne;
     const double most = less > 0.0 ? mu * site.free_normal / less : strength;
-    return {most, speed + (site.free_speed - speed) * (1.0 - most / borne)};
+    const double slowed = (site.free_speed - speed) / borne;
+    return with_viscous(most, speed + (site.free_speed - speed) * (1.0 - most / borne), slowed);
   }
   const Vec3 direction = speed > 0.0 ? Vec3(slip / speed) : Vec3::UnitX();
   const Vec3 scaled(direction[0], direction[1], lever * direction[2]);
   const double mobility = scaled.dot(space_.mobility(i).bottomRightCorner<3, 3>() * scaled);
-  return {strength, speed - step * mobility * (strength + acting.dot(direction))};
+  const double slowed = step * mobility;
+  return with_viscous(strength, speed - slowed * (strength + acting.dot(direction)), slowed);
 }
 
 // Friction under the normal forces of the last solution and at its slip: a spring and a damper
@@ -107,8 +114,8 @@ void ImplicitStep::set_friction(double step) noexcept {
     const double holds = slope.damping + step * slope.stiffness;
     const Vec3 at_rest = held - holds * site.drift;
     const Vec3 wanted = at_rest - holds * slip;
-    const bool gives_way = wanted.norm() > slope.strength;
-    const Slide slide = gives_way ? slide_under(i, slope.strength, step) : Slide{};
+    const bool gives_way = (wanted + slope.viscous * slip).norm() > slope.strength;
+    const Slide slide = gives_way ? slide_under(i, slope.strength, slope.viscous, step) : Slide{};
     if (slide.speed > 0.0) {
       site.held.setZero();
       site.rub = slide.force / slide.speed;
@@ -147,7 +154,8 @@ ImplicitStep::Load ImplicitStep::load(std::size_t i) const noexcept {
   const Vec3 along = site.tangent.axes.leftCols<2>() * slip.head<2>();
   const FrictionSlope slope =
       site.laws.friction_slope(normal_force(i), along, velocity_[i * size(kRows) + 5]);
-  return {slope.strength, std::hypot(f[3], f[4], slope.lever > 0.0 ? f[5] / slope.lever : 0.0)};
+  return {slope.strength, slope.viscous, slope.strength + slope.viscous * slip.norm(),
+          std::hypot(f[3], f[4], slope.lever > 0.0 ? f[5] / slope.lever : 0.0)};
 }
 
 // Shortens what friction was solved to hold to what it can hold.
@@ -170,7 +178,7 @@ void ImplicitStep::damp_friction(double step) noexcept {
       const Load load = this->load(i);
       if (load.share() > kSlight) continue;
       Site& site = this->site(i);
-      const Slide slide = slide_under(i, load.most, step);
+      const Slide slide = slide_under(i, load.strength, load.viscous, step);
       site.held.setZero();
       site.rub = slide.speed > 0.0 ? slide.force / slide.speed : 0.0;
       changed = true;

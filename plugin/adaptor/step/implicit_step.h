@@ -156,7 +156,8 @@ class ImplicitStep {
   void bound_friction() noexcept;
   void damp_friction(double step) noexcept;
   struct Load {
-    double most = 0.0, borne = 0.0;
+    double strength = 0.0, viscous = 0.0;  // of the friction law
+    double most = 0.0, borne = 0.0;        // at the slip of the last solution
 
     double share() const noexcept { return borne > most ? most / borne : 1.0; }
   };
@@ -164,7 +165,7 @@ class ImplicitStep {
   struct Slide {
     double force = 0.0, speed = 0.0;  // not above 0 where it stops
   };
-  Slide slide_under(std::size_t i, double strength, double step) const noexcept;
+  Slide slide_under(std::size_t i, double strength, double viscous, double step) const noexcept;
   bool is_settled() const noexcept;
   void write_results() noexcept;
   ByChannel taken(const Site& site, std::size_t i) const noexcept;

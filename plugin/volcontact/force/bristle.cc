@@ -31,7 +31,7 @@ FrictionSlope Bristle::slope(const FrictionInput& in, const LawState& state) con
   const double dwell = state.pending[4];
   return {p_.bristle_stiffness, p_.bristle_damping + p_.viscous_friction,
           in.normal_force * (p_.friction + (p_.static_friction - p_.friction) * dwell),
-          p_.coupling == Coupling::kNone ? 0.0 : in.patch.gyration_radius};
+          p_.coupling == Coupling::kNone ? 0.0 : in.patch.gyration_radius, p_.viscous_friction};
 }
 
 FrictionOutput Bristle::evaluate(const FrictionInput& in, const LawState& state) const noexcept {

@@ -37,6 +37,7 @@ struct FrictionSlope {
   double damping = 0.0;    ///< per slip: the force that grows with the slip, over the slip [N s/m]
   double strength = 0.0;   ///< most it can hold under this normal force [N]
   double lever = 0.0;      ///< r, by which a spin is a slip; 0 for no torque [m]
+  double viscous = 0.0;    ///< the part of the damping that a slip beyond `strength` has [N s/m]
 };
 
 /// Force that resists sliding and spinning. Const once made; what lasts is in LawState.

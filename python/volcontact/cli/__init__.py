@@ -20,6 +20,7 @@ import mujoco
 import volcontact
 from volcontact import extras
 from volcontact.cli import (
+    bench,
     check,
     compare,
     completion,
@@ -49,6 +50,7 @@ _COMMANDS = (
     mesh,
     study,
     identify,
+    bench,
     fmu,
     doctor,
     completion,
@@ -67,6 +69,7 @@ examples:
   volcontact mesh check part.stl                   whether a mesh is a solid
   volcontact study run study.toml --out results    thousands of trials of a scene
   volcontact identify study.toml --out results     parameters from measured motions
+  volcontact bench press press.csv                 parameters from a bench test
   volcontact fmu scene.xml --bodies ball world     its contact for other simulators, as an FMU
   volcontact doctor                                what is installed and whether it works
 

@@ -85,7 +85,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
         return 0
     if len(what) != 2 or arguments.time is not None:
         raise ValueError("give one scene, with --time if wanted, or two solids")
-    from volcontact.cli.solids import pose, solid
+    from volcontact.typed_solids import pose, solid
 
     found = volcontact.interference(
         solid(what[0]),

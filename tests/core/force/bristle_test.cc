@@ -306,5 +306,15 @@ TEST(Bristle, RefusesStaticBelowKineticFriction) {
   EXPECT_THROW(Bristle({.friction = 0.3, .static_friction = 0.2}), std::invalid_argument);
 }
 
+TEST(Bristle, SlopeTellsWhatOfTheDampingIsViscous) {
+  const Bristle law({.bristle_damping = 500.0, .viscous_friction = 3.0});
+  const std::array<double, 5> committed{};
+  std::array<double, 5> pending{};
+  const FrictionSlope slope =
+      law.slope({.normal_force = 10.0}, {committed.data(), pending.data(), 1e-3});
+  EXPECT_EQ(slope.viscous, 3.0);
+  EXPECT_EQ(slope.damping, 503.0);
+}
+
 }  // namespace
 }  // namespace volcontact::bristle_test

@@ -264,6 +264,13 @@ def test_convergence_page_is_generated_from_the_results() -> None:
     )
 
 
+def test_bench_tests_page_has_what_its_sheets_say() -> None:
+    module = generator("make_bench_tests")
+    assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
+        "run './run python docs/generate/make_bench_tests.py'"
+    )
+
+
 def test_results_hold_no_path_and_no_name_of_a_machine() -> None:
     results = sorted((ROOT / "tests" / "benchmarks" / "results").glob("*.csv"))
     assert results

@@ -106,6 +106,26 @@ def test_identify_ball(run):
         assert float(found) == pytest.approx(float(true), rel=0.05), name
 
 
+def test_identify_press(run):
+    text = run("identify_press")
+    found = {name: numbers(rest) for name, rest in re.findall(r"(\w+): (.*) to .*", text)}
+    assert found["stiffness"][0] == pytest.approx(5e9, rel=0.01)
+    assert found["offset"][0] == pytest.approx(3e-4, rel=0.01)
+    assert 'name="volcontact/pair/pad/stiffness"' in text
+
+
+def test_identify_hertz(run):
+    text = run("identify_hertz")
+    found = {name: float(n) for name, n in re.findall(rf"same (\w+): ({NUMBER})", text)}
+    # (9 F^2 / (16 R E*^2))^(1/3), and k_v pi d^2 (R - d/3) = F.
+    depth = (9.0 * 100.0**2 / (16.0 * 0.01 * (210e9 / 0.91 / 2.0) ** 2)) ** (1.0 / 3.0)
+    assert found["depth"] == pytest.approx(
+        100.0 / (3.14159 * depth**2 * (0.01 - depth / 3)), rel=1e-3
+    )
+    assert found["patch"] == pytest.approx(4.0 * found["depth"], rel=1e-3)
+    assert "volcontact/pair/ball/damping" in text
+
+
 def test_every_example_is_tested_and_listed():
     names = {path.stem for path in EXAMPLES.glob("*.py")}
     tested = {name.removeprefix("test_") for name in globals() if name.startswith("test_")}

@@ -12,8 +12,8 @@ import pytest
 
 from volcontact.cli import main, make_parser
 from volcontact.cli.new import TEMPLATES
-from volcontact.cli.solids import SHAPES
 from volcontact.simulation import simulate
+from volcontact.typed_solids import SHAPES
 
 
 def printed(arguments, capsys):
