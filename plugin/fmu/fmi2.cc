@@ -28,8 +28,7 @@ class Instance2 final : public Instance {
 
   void log(Status status, const std::string& message) noexcept override {
     if (!callbacks_.logger) return;
-    const char* category = status == fmu::kDiscard ? "logStatusDiscard" : "logStatusError";
-    callbacks_.logger(callbacks_.environment, name_.c_str(), status, category, "%s",
+    callbacks_.logger(callbacks_.environment, name_.c_str(), status, fmu::category_of(status), "%s",
                       message.c_str());
   }
 

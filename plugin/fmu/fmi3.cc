@@ -34,8 +34,7 @@ class Instance3 final : public Instance {
 
   void log(Status status, const std::string& message) noexcept override {
     if (!callbacks.log) return;
-    const char* category = status == fmu::kDiscard ? "logStatusDiscard" : "logStatusError";
-    callbacks.log(callbacks.environment, status, category, message.c_str());
+    callbacks.log(callbacks.environment, status, fmu::category_of(status), message.c_str());
   }
 
   const Callbacks callbacks;

@@ -19,21 +19,31 @@ _TYPES = {
 
 @dataclass(frozen=True)
 class About:
-    """What the head of the file says."""
+    """What the head of the file says.
 
-    container: Container
+    Attributes:
+        text: one sentence.
+        container: what is in a unit of contact models; None of a whole scene, whose outputs depend
+            on all inputs.
+        step: time step of a whole scene [s].
+        sources: names of the files in the folder `sources`.
+    """
+
+    name: str
+    text: str
     identifier: str
     token: str
     kind: str
     version: str
     date: str
+    container: Container | None = None
+    step: float | None = None
     sources: tuple[str, ...] = ()
 
     @property
-    def text(self) -> str:
-        """One sentence."""
-        bodies = ", ".join(body.name for body in self.container.bodies)
-        return f"Volumetric contact between {bodies}, from {self.container.source}"
+    def model_count(self) -> int:
+        """How many contact models there are."""
+        return len(self.container.models) if self.container else 0
 
 
 def tag(element: str, inner: str | None = None, /, **attributes: object) -> str:
@@ -72,7 +82,7 @@ class _Writer:
     def head(self) -> dict[str, object]:
         about = self.about
         return {
-            "modelName": about.container.name,
+            "modelName": about.name,
             "description": about.text,
             "author": "volcontact",
             "version": about.version,
@@ -89,7 +99,12 @@ class _Writer:
             "\n".join(tag("Unit", tag("BaseUnit", **exponents(name)), name=name) for name in names),
         )
 
-    def categories(self, **texts: str) -> str:
+    def categories(self) -> str:
+        texts = {
+            "logStatusWarning": "what the scene warns of",
+            "logStatusDiscard": "values that cannot be used now",
+            "logStatusError": "wrong calls",
+        }
         return tag(
             "LogCategories",
             "\n".join(tag("Category", name=name, description=text) for name, text in texts.items()),
@@ -117,7 +132,7 @@ class _Writer:
         return " ".join(_text(value) for value in values)
 
     def knowns(self, group: Group) -> list[Group]:
-        """Inputs and states that a group depends on."""
+        """Inputs and states that a group depends on; of a scene that is not said."""
         if group.is_state:
             return [group] if group in self.states else []
         slots = {model: self._slots(model) for model in group.models}
@@ -130,7 +145,7 @@ class _Writer:
         ]  # fmt: skip
 
     def _slots(self, model: int) -> range:
-        models = len(self.about.container.models)
+        models = self.about.model_count
         count = 1 + max(
             (group.index for group in self.groups if group.role == "site_active"), default=-1
         )
@@ -162,13 +177,12 @@ class _Two(_Writer):
         self.places = self._places()
         parts += [
             self.units(),
-            self.categories(logStatusDiscard="values that cannot be used now",
-                            logStatusError="wrong calls"),
-            tag("DefaultExperiment", startTime=0.0, stopTime=1.0, stepSize=1e-3),
+            self.categories(),
+            tag("DefaultExperiment", startTime=0.0, stopTime=1.0, stepSize=self.about.step or 1e-3),
             tag("ModelVariables", "\n".join(self._variables())),
             tag("ModelStructure", "\n".join(self._structure())),
         ]  # fmt: skip
-        indicators = 2 * len(self.about.container.models) if exchange else None
+        indicators = 2 * self.about.model_count if exchange else None
         return tag("fmiModelDescription", "\n".join(parts), fmiVersion="2.0", **self.head(),
                    guid=self.about.token, numberOfEventIndicators=indicators)  # fmt: skip
 
@@ -216,7 +230,7 @@ class _Two(_Writer):
         return tag(name, "\n".join(rows))
 
     def _structure(self) -> Iterator[str]:
-        yield self._unknowns("Outputs", self.outputs)
+        yield self._unknowns("Outputs", self.outputs, known=self.about.container is not None)
         if self.rates:
             by_state = sorted(self.rates, key=lambda group: group.state.first if group.state else 0)
             yield self._unknowns("Derivatives", by_state)
@@ -240,12 +254,12 @@ class _Three(_Writer):
                              canHandleVariableCommunicationStepSize=True,
                              providesIntermediateUpdate=True,
                              canReturnEarlyAfterIntermediateUpdate=True,
-                             mightReturnEarlyFromDoStep=True, hasEventMode=True))  # fmt: skip
+                             mightReturnEarlyFromDoStep=True, hasEventMode=True,
+                             fixedInternalStepSize=self.about.step))  # fmt: skip
         parts += [
             self.units(),
-            self.categories(logStatusDiscard="values that cannot be used now",
-                            logStatusError="wrong calls"),
-            tag("DefaultExperiment", startTime=0.0, stopTime=1.0, stepSize=1e-3),
+            self.categories(),
+            tag("DefaultExperiment", startTime=0.0, stopTime=1.0, stepSize=self.about.step or 1e-3),
             tag("ModelVariables", "\n".join(map(self._variable, self.groups))),
             tag("ModelStructure", "\n".join(self._structure())),
         ]  # fmt: skip
@@ -279,7 +293,7 @@ class _Three(_Writer):
 
     def _structure(self) -> Iterator[str]:
         for group in self.outputs:
-            yield self._unknown("Output", group)
+            yield self._unknown("Output", group, known=self.about.container is not None)
         for group in sorted(self.rates, key=lambda group: group.state.first if group.state else 0):
             yield self._unknown("ContinuousStateDerivative", group)
         for group in self.groups:
