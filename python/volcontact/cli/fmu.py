@@ -83,6 +83,9 @@ def add_to(commands: Subparsers) -> None:
         metavar="N",
         help="contact sites with values of their own (default: %(default)s)",
     )
+    parser.add_argument(
+        "--sources", action="store_true", help="put the sources inside, for other platforms"
+    )
     parser.add_argument("--out", type=Path, metavar="FILE", help="of the FMU (default: SCENE.fmu)")
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
     add_keys(parser)
@@ -116,6 +119,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
         orientation=arguments.orientation,
         frame=arguments.frame,
         slots=arguments.slots,
+        sources=arguments.sources,
         material=dict(arguments.material),
         options=dict(arguments.option),
     )

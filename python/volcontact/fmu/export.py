@@ -15,6 +15,7 @@ from volcontact.fmu.container import Container
 from volcontact.fmu.description import About, description
 from volcontact.fmu.drawing import documentation
 from volcontact.fmu.packing import common_files, identifier_of, now, token_of, write_zip
+from volcontact.fmu.sources import build_description, source_files
 from volcontact.fmu.variables import Group, group_line, variables
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ def export_fmu(
     orientation: str = "quaternion",
     frame: str = "world",
     slots: int = 4,
+    sources: bool = False,
     material: Values | None = None,
     options: Values | None = None,
 ) -> Path:
@@ -65,6 +67,7 @@ def export_fmu(
         orientation: of the bodies, as a `quaternion` w x y z or as a `matrix` of rotation.
         frame: of twists and wrenches, `world` or `body`.
         slots: contact sites of each contact model that have values of their own, and memory.
+        sources: whether the sources are inside, for masters that compile them.
         material: as of `attach`.
         options: as of `attach`.
 
@@ -73,7 +76,7 @@ def export_fmu(
 
     Raises:
         ValueError: a body is not there, or named twice, or no two can touch; a choice is unknown.
-        RuntimeError: the package has no binary for this version of the standard.
+        RuntimeError: the package has no binary for this version of the standard, or no sources.
     """
     check_choices("export_fmu", fmi=fmi, kind=kind, orientation=orientation, frame=frame)
     if not 1 <= slots <= _MOST_SLOTS:
@@ -85,21 +88,33 @@ def export_fmu(
     groups = variables(container, kind=kind, orientation=orientation, frame=frame, slots=slots)
     out = Path(path)
     container.name = out.stem
-    files = _files(container, groups, fmi=fmi, kind=kind, frame=frame, slots=slots)
+    files = _files(
+        container, groups, fmi=fmi, kind=kind, frame=frame, slots=slots, sources=sources
+    )
     write_zip(out, files)
     return out
 
 
 def _files(
-    container: Container, groups: list[Group], *, fmi: int, kind: str, frame: str, slots: int
+    container: Container,
+    groups: list[Group],
+    *,
+    fmi: int,
+    kind: str,
+    frame: str,
+    slots: int,
+    sources: bool,
 ) -> dict[str, bytes]:
     identifier = identifier_of(container.name)
     models = {f"model_{m}.txt": model.text for m, model in enumerate(container.models)}
     body = _unit(container, groups, frame, slots)
     token = token_of(f"{fmi} {kind} {container.name}", body, *models.values())
+    inside, to_compile = source_files(fmi) if sources else ({}, [])
+    if sources and fmi == 3:
+        inside["buildDescription.xml"] = build_description(identifier, to_compile).encode()
     about = About(
         container.name, text_of(container), identifier, token, kind,
-        volcontact.__version__, now(), container=container,
+        volcontact.__version__, now(), container=container, sources=tuple(to_compile),
     )  # fmt: skip
     texts = {
         "modelDescription.xml": description(fmi, about, groups),
@@ -107,7 +122,8 @@ def _files(
         "resources/unit.txt": f"volcontact_unit 1\ntoken {token}\n{body}",
         **{f"resources/{name}": text for name, text in models.items()},
     }
-    return common_files(fmi, identifier) | {name: text.encode() for name, text in texts.items()}
+    files = common_files(fmi, identifier) | {name: text.encode() for name, text in texts.items()}
+    return files | {f"sources/{name}": content for name, content in inside.items()}
 
 
 def text_of(container: Container) -> str:
