@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdarg>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
@@ -26,11 +25,8 @@ constexpr double kPi = 3.14159265358979323846;
 
 thread_local std::string last_message;
 void log2(void*, const char*, int, const char*, const char* format, ...) {
-  EXPECT_STREQ(format, "%s");
-  va_list arguments;
-  va_start(arguments, format);
-  last_message = va_arg(arguments, const char*);
-  va_end(arguments);
+  EXPECT_EQ(std::strchr(format, '%'), nullptr);  // a text without arguments
+  last_message = format;
 }
 const Callbacks kCallbacks{&log2, nullptr, nullptr, nullptr, nullptr};
 void log3(void*, int, const char*, const char* message) { last_message = message; }

@@ -2,7 +2,6 @@
 """A whole scene as a unit: the same bits as `mj_step` in Python, in a process that has MuJoCo."""
 
 import re
-import shutil
 import sys
 import zipfile
 from pathlib import Path
@@ -91,7 +90,7 @@ def seen_in_python(model, data, contact):
     """The outputs, by an evaluation of a copy of the data."""
     seen = copied(model, data)
     mujoco.mj_forward(model, seen)
-    contact.update_touch_sensors(seen)
+    contact.update_touch(seen)
     sites, energy = contact.sites(seen), contact.energy(seen)
     sled = model.body("sled").id
     velocity = np.zeros(6)
@@ -190,10 +189,9 @@ def test_two_instances_and_another_copy_of_mujoco_do_not_meet(unit):
         other.step(1e-3)
         assert k < 5 or one.get("joint.along.position") != other.get("joint.along.position")
     assert one.get("joint.along.position") == alone.get("joint.along.position")
-    loaded = {line.split()[-1] for line in Path("/proc/self/maps").read_text().splitlines()}
-    copies = {path for path in loaded if re.search(r"/lib\w+\.so\.\d+\.\d+\.\d+$", path)}
-    assert any("libmujoco" in path for path in copies)
-    assert any(re.search(r"/lib[0-9a-f]{6}\.so\.", path) for path in copies)
+    loaded = Path("/proc/self/maps").read_text()
+    assert "/libmujoco.so" in loaded
+    assert len(set(re.findall(r"/lib[0-9a-f]{6}\.so\.\d+\.\d+\.\d+", loaded))) == 1
     for instance in (one, other, alone):
         instance.close()
 
@@ -273,11 +271,9 @@ def test_third_version_returns_early_where_bodies_touch(tmp_path):
     instance.close()
 
 
-@pytest.mark.parametrize("name", ["battery_box", "tippe_top", "hinge_and_latch"])
+@pytest.mark.parametrize("name", ["battery_box", "tippe_top"])
 def test_scenes_run_in_fmpy(tmp_path, name):
     scene = MODELS / name / "scene.xml"
-    if not scene.is_file():
-        pytest.skip(f"there is no scene {name}")
     path = vc.export_scene_fmu(scene, tmp_path / f"{name}.fmu")
     about = fmpy.read_model_description(str(path))
     step = about.defaultExperiment.stepSize
@@ -338,15 +334,12 @@ def test_wrong_arguments_are_told(tmp_path, arguments, message):
 
 def test_the_command_writes_one(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    shutil.copy(MODELS / "bouncing_ball" / "bouncing_ball.xml", tmp_path)
-    shutil.copy(MODELS / "bouncing_ball" / "scene.xml", tmp_path)
-    for file in (MODELS / "bouncing_ball").parent.glob("*.xml"):
-        shutil.copy(file, tmp_path.parent)
-    assert main(["fmu", "--scene", "scene.xml", "--contact", "ball", "world", "--out", "b.fmu"]) == 0
+    scene = str(MODELS / "bouncing_ball" / "scene.xml")
+    assert main(["fmu", "--scene", scene, "--contact", "ball", "world", "--out", "b.fmu"]) == 0
     assert "wrote b.fmu" in capsys.readouterr().out
     names = [v.name for v in fmpy.read_model_description("b.fmu").modelVariables]
     assert "pair.ball.world.volume" in names
-    assert main(["fmu", "scene.xml", "--scene", "scene.xml"]) == 1
+    assert main(["fmu", scene, "--scene", scene]) == 1
     assert "one scene at a time" in capsys.readouterr().err
     assert main(["fmu"]) == 1
     assert "name a scene" in capsys.readouterr().err
