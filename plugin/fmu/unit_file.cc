@@ -67,6 +67,8 @@ std::string content_of(const std::string& path) {
 bool read_value_line(TextReader& reader, std::string_view word, ValueFile& file) {
   if (word == "token") {
     file.token = std::string(reader.word("the token"));
+  } else if (word == "scalars") {
+    file.is_scalar = reader.count("0 or 1", 1) == 1;
   } else if (word == "group") {
     read_group(reader, file);
   } else {

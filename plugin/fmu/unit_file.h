@@ -26,7 +26,8 @@ struct Group {
 
 /// What the files of all units have.
 struct ValueFile {
-  std::string token;  ///< the modelDescription.xml that it belongs to
+  std::string token;       ///< the modelDescription.xml that it belongs to
+  bool is_scalar = false;  ///< of FMI 3: whether each number has a value reference of its own
   std::vector<Group> groups;
   std::vector<double> starts;  ///< of all values
 };
@@ -46,7 +47,7 @@ struct UnitFile : ValueFile {
 /// The content of a file. Throws std::invalid_argument where it cannot be read.
 std::string content_of(const std::string& path);
 
-/// Reads what follows the word "token" or "group"; false where the word is another.
+/// Reads what follows the word "token", "scalars" or "group"; false where the word is another.
 bool read_value_line(TextReader& reader, std::string_view word, ValueFile& file);
 
 /// Reads unit.txt and model_<i>.txt of a folder. Throws std::invalid_argument naming the file.

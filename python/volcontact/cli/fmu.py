@@ -84,6 +84,9 @@ def add_to(commands: Subparsers) -> None:
         help="contact sites with values of their own (default: %(default)s)",
     )
     parser.add_argument(
+        "--scalars", action="store_true", help="FMI 3 without arrays, for masters that know none"
+    )
+    parser.add_argument(
         "--sources", action="store_true", help="put the sources inside, for other platforms"
     )
     parser.add_argument("--out", type=Path, metavar="FILE", help="of the FMU (default: SCENE.fmu)")
@@ -119,6 +122,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
         orientation=arguments.orientation,
         frame=arguments.frame,
         slots=arguments.slots,
+        arrays=not arguments.scalars,
         sources=arguments.sources,
         material=dict(arguments.material),
         options=dict(arguments.option),
@@ -141,6 +145,7 @@ def _whole_scene(arguments: argparse.Namespace, terminal: Terminal) -> int:
         fmi=arguments.fmi,
         bodies=arguments.bodies or None,
         contacts=[(a, b) for a, b in arguments.contact],
+        arrays=not arguments.scalars,
         material=dict(arguments.material),
         options=dict(arguments.option),
     )

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
 from volcontact.fmu.container import Container
-from volcontact.fmu.units import exponents
-from volcontact.fmu.variables import Group
+from volcontact.fmu.units import exponents, quantity
+from volcontact.fmu.variables import Group, scalars
 
 _TYPES = {
     2: {"real": "Real", "integer": "Integer", "boolean": "Boolean"},
@@ -64,8 +64,10 @@ def _text(value: object) -> str:
     return repr(value) if isinstance(value, float) else str(value)
 
 
-def description(fmi: int, about: About, groups: list[Group]) -> str:
-    """The whole file."""
+def description(fmi: int, about: About, groups: list[Group], *, arrays: bool = True) -> str:
+    """The whole file; `arrays`: whether FMI 3 has them."""
+    if fmi == 3 and not arrays:
+        groups = scalars(groups)
     writer = _Two(about, groups) if fmi == 2 else _Three(about, groups)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + writer.file() + "\n"
 
@@ -99,6 +101,17 @@ class _Writer:
             "\n".join(tag("Unit", tag("BaseUnit", **exponents(name)), name=name) for name in names),
         )
 
+    def declared(self, group: Group) -> tuple[str, dict[str, object]] | None:
+        """Name and attributes of the type of a real group, where there is something to say."""
+        if group.kind != "real" or (group.unit == "-" and group.nominal is None):
+            return None
+        what = quantity(group.unit)
+        name = what or ("Number" if group.unit == "-" else group.unit)
+        if group.nominal is not None:
+            name += f" of about {group.nominal:g}"
+        unit = None if group.unit == "-" else group.unit
+        return name, {"quantity": what, "unit": unit, "nominal": group.nominal}
+
     def categories(self) -> str:
         texts = {
             "logStatusWarning": "what the scene warns of",
@@ -117,10 +130,8 @@ class _Writer:
         whole = group.kind == "integer"
         number = int if whole else float
         return {
-            "unit": None if group.unit == "-" or whole else group.unit,
             "min": None if group.low is None else number(group.low),
             "max": None if group.high is None else number(group.high),
-            "nominal": None if whole else group.nominal,
             "start": start,
         }
 
@@ -196,7 +207,10 @@ class _Two(_Writer):
                 yield self._variable(group, i, name)
 
     def _variable(self, group: Group, i: int, name: str) -> str:
-        of = self.common(group, self.start(group, group.start[i : i + 1]))
+        declared = self.declared(group)
+        of = (declared[1] if declared else {}) | self.common(
+            group, self.start(group, group.start[i : i + 1])
+        )
         if group in self.rates and group.state is not None:
             of["derivative"] = self.places[group.state.first] + i
         return tag(
@@ -258,6 +272,7 @@ class _Three(_Writer):
                              fixedInternalStepSize=self.about.step))  # fmt: skip
         parts += [
             self.units(),
+            self._types(),
             self.categories(),
             tag("DefaultExperiment", startTime=0.0, stopTime=1.0, stepSize=self.about.step or 1e-3),
             tag("ModelVariables", "\n".join(map(self._variable, self.groups))),
@@ -266,8 +281,18 @@ class _Three(_Writer):
         return tag("fmiModelDescription", "\n".join(parts), fmiVersion="3.0", **self.head(),
                    instantiationToken=self.about.token)  # fmt: skip
 
+    def _types(self) -> str:
+        """Units, quantities and nominal values, in types that the variables name."""
+        types = dict(filter(None, map(self.declared, self.groups)))
+        return tag(
+            "TypeDefinitions",
+            "\n".join(tag("Float64Type", name=name, **of) for name, of in sorted(types.items())),
+        )
+
     def _variable(self, group: Group) -> str:
         of = self.common(group, self.start(group, group.start))
+        if (declared := self.declared(group)) is not None:
+            of["declaredType"] = declared[0]
         if group in self.rates and group.state is not None:
             of["derivative"] = group.state.first
         return tag(

@@ -16,7 +16,7 @@ from volcontact.fmu.description import About, description
 from volcontact.fmu.drawing import documentation
 from volcontact.fmu.packing import common_files, identifier_of, now, token_of, write_zip
 from volcontact.fmu.sources import build_description, source_files
-from volcontact.fmu.variables import Group, group_line, variables
+from volcontact.fmu.variables import Group, group_line, scalar_line, variables
 
 if TYPE_CHECKING:
     from volcontact.given_keys import Values
@@ -52,6 +52,7 @@ def export_fmu(
     orientation: str = "quaternion",
     frame: str = "world",
     slots: int = 4,
+    arrays: bool = True,
     sources: bool = False,
     material: Values | None = None,
     options: Values | None = None,
@@ -67,6 +68,7 @@ def export_fmu(
         orientation: of the bodies, as a `quaternion` w x y z or as a `matrix` of rotation.
         frame: of twists and wrenches, `world` or `body`.
         slots: contact sites of each contact model that have values of their own, and memory.
+        arrays: of FMI 3: False gives the scalars of FMI 2, for masters that know no arrays.
         sources: whether the sources are inside, for masters that compile them.
         material: as of `attach`.
         options: as of `attach`.
@@ -89,8 +91,9 @@ def export_fmu(
     out = Path(path)
     container.name = out.stem
     files = _files(
-        container, groups, fmi=fmi, kind=kind, frame=frame, slots=slots, sources=sources
-    )
+        container, groups, fmi=fmi, kind=kind, frame=frame, slots=slots, sources=sources,
+        arrays=arrays,
+    )  # fmt: skip
     write_zip(out, files)
     return out
 
@@ -104,10 +107,11 @@ def _files(
     frame: str,
     slots: int,
     sources: bool,
+    arrays: bool,
 ) -> dict[str, bytes]:
     identifier = identifier_of(container.name)
     models = {f"model_{m}.txt": model.text for m, model in enumerate(container.models)}
-    body = _unit(container, groups, frame, slots)
+    body = _unit(container, groups, frame, slots) + scalar_line(fmi, arrays=arrays)
     token = token_of(f"{fmi} {kind} {container.name}", body, *models.values())
     inside, to_compile = source_files(fmi) if sources else ({}, [])
     if sources and fmi == 3:
@@ -117,7 +121,7 @@ def _files(
         volcontact.__version__, now(), container=container, sources=tuple(to_compile),
     )  # fmt: skip
     texts = {
-        "modelDescription.xml": description(fmi, about, groups),
+        "modelDescription.xml": description(fmi, about, groups, arrays=arrays),
         "documentation/index.html": documentation(about, groups, fmi),
         "resources/unit.txt": f"volcontact_unit 1\ntoken {token}\n{body}",
         **{f"resources/{name}": text for name, text in models.items()},

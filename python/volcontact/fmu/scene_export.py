@@ -30,7 +30,7 @@ from volcontact.fmu.packing import (
 )
 from volcontact.fmu.private_names import name_of, private_names, renamed
 from volcontact.fmu.scene_variables import Pair, scene_variables
-from volcontact.fmu.variables import Group, group_line
+from volcontact.fmu.variables import Group, group_line, scalar_line
 from volcontact.given_keys import GivenKeys
 from volcontact.scene import attach, load
 
@@ -45,6 +45,7 @@ def export_scene_fmu(
     fmi: int = 2,
     bodies: Sequence[str] | None = None,
     contacts: Sequence[tuple[str, str]] = (),
+    arrays: bool = True,
     material: Values | None = None,
     options: Values | None = None,
 ) -> Path:
@@ -58,6 +59,7 @@ def export_scene_fmu(
         fmi: the version of the standard, 2 or 3.
         bodies: those with values of their own; None for all.
         contacts: pairs of bodies or geoms whose contact has values of its own.
+        arrays: of FMI 3: False gives the scalars of FMI 2, for masters that know no arrays.
         material: as of `attach`.
         options: likewise.
 
@@ -98,7 +100,7 @@ def export_scene_fmu(
     out = Path(path)
     libraries = _libraries()
     text = _scene_text(groups, pairs, list(libraries), float(model.opt.timestep),
-                       GivenKeys(material, options))  # fmt: skip
+                       GivenKeys(material, options)) + scalar_line(fmi, arrays=arrays)  # fmt: skip
     token = token_of(f"{fmi} {out.stem}", text, binary)
     identifier = identifier_of(out.stem)
     name = "the MJCF given" if "\n" in str(scene) else Path(os.fspath(scene)).name
@@ -111,7 +113,7 @@ def export_scene_fmu(
         out,
         common_files(fmi, identifier)
         | {
-            "modelDescription.xml": description(fmi, about, groups).encode(),
+            "modelDescription.xml": description(fmi, about, groups, arrays=arrays).encode(),
             "documentation/index.html": documentation(about, groups, fmi, drawn).encode(),
             "resources/scene.txt": f"volcontact_scene 1\ntoken {token}\n{text}".encode(),
             "resources/scene.mjb": binary,

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from volcontact.fmu.container import Body, Container, Model, Parameter
@@ -134,6 +134,26 @@ def numbered(groups: list[Group]) -> list[Group]:
     for group in groups:
         group.first, first = first, first + group.count
     return groups
+
+
+def scalars(groups: list[Group]) -> list[Group]:
+    """Groups of one value each, for masters of FMI 3 that know no arrays."""
+    parts = {
+        group.first: [
+            replace(group, name=name, first=group.first + i, start=group.start[i : i + 1])
+            for i, name in enumerate(group.names())
+        ]
+        for group in groups
+    }
+    for group in groups:
+        for i, part in enumerate(parts[group.first]):
+            part.state = parts[group.state.first][i] if group.state else None
+    return [part for group in groups for part in parts[group.first]]
+
+
+def scalar_line(fmi: int, *, arrays: bool) -> str:
+    """What the binary of FMI 3 reads where its variables are scalars."""
+    return "" if arrays or fmi == 2 else "scalars 1\n"
 
 
 def group_line(group: Group) -> str:
