@@ -3,8 +3,8 @@
 
 #include <fstream>
 
-#include "fmu/contact_unit.h"
-#include "fmu/scene_unit.h"
+#include "fmu/contact/contact_unit.h"
+#include "fmu/scene/scene_unit.h"
 
 namespace volcontact::fmu {
 

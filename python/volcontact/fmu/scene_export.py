@@ -197,7 +197,7 @@ def _libraries() -> dict[str, bytes]:
 def _scene_text(
     groups: list[Group], pairs: list[Pair], libraries: list[str], timestep: float, keys: GivenKeys
 ) -> str:
-    """What the binary reads of a scene, plugin/fmu/scene_file.h."""
+    """What the binary reads of a scene, plugin/fmu/scene/scene_file.h."""
     lines = [f"adaptor {libraries[0]}", f"mujoco {libraries[1]}", f"timestep {timestep!r}"]
     lines += [
         f"key {name} {len(numbers)} {' '.join(map(repr, numbers))}" for name, numbers in keys.items()

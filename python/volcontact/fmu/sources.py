@@ -71,11 +71,15 @@ def build_description(identifier: str, names: Iterable[str]) -> str:
 """
 
 
+def _plugin_places() -> list[Path]:
+    """Where the sources may lie: in the package, or in the checkout that it runs from."""
+    package = Path(volcontact.__file__)
+    places = [library_folder() / "source", package.parent / "source"]
+    return places + [folder / "plugin" for folder in package.parents]
+
+
 def _plugin() -> Path:
-    """Where the sources lie: in the package, or in the checkout that it runs from."""
-    places = [library_folder() / "source", Path(volcontact.__file__).parent / "source"]
-    places += [folder / "plugin" for folder in Path(volcontact.__file__).parents]
-    for place in places:
+    for place in _plugin_places():
         if (place / "fmu" / "instance.cc").is_file():
             return place
     raise RuntimeError("this installation of volcontact has no sources to put into an FMU")
@@ -117,9 +121,10 @@ def _rooms(plugin: Path, fmi: int) -> dict[str, list[str]]:
         room = name.removesuffix(".cc") if name in alone else name.rpartition("/")[0]
         rooms.setdefault(f"core_{room.replace('/', '_')}.cc", []).append(f"volcontact/{name}")
     rooms["container.cc"] = [f"c_api/{path.name}" for path in sorted((plugin / "c_api").glob("*.cc"))]
-    for path in sorted((plugin / "fmu").glob("*.cc")):
+    for path in sorted((plugin / "fmu").rglob("*.cc")):
         if path.name != f"fmi{5 - fmi}.cc":
-            rooms[f"layer_{path.name}"] = [f"fmu/{path.name}"]
+            name = path.relative_to(plugin / "fmu").as_posix()
+            rooms[f"layer_{name.replace('/', '_')}"] = [f"fmu/{name}"]
     return rooms
 
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fmu/contact_unit.h"
+#include "fmu/contact/contact_unit.h"
 #include "volcontact/base/check.h"
 
 namespace volcontact::fmu {

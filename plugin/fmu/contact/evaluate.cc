@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "fmu/contact_unit.h"
+#include "fmu/contact/contact_unit.h"
 #include "volcontact/base/check.h"
 #include "volcontact/model/site_memory.h"
 

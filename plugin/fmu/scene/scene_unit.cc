@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fmu/scene_unit.h"
+#include "fmu/scene/scene_unit.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fmu/scene_file.h"
-#include "fmu/scene_library.h"
+#include "fmu/scene/scene_file.h"
+#include "fmu/scene/scene_library.h"
 
 namespace volcontact::fmu {
 namespace {

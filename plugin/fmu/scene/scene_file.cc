@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fmu/scene_file.h"
+#include "fmu/scene/scene_file.h"
 
 namespace volcontact::fmu {
 namespace {

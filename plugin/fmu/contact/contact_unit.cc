@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fmu/contact_unit.h"
+#include "fmu/contact/contact_unit.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fmu/scene_library.h"
+#include "fmu/scene/scene_library.h"
 
 #include "volcontact/base/check.h"
 

@@ -2,7 +2,7 @@
 // How the bodies of a unit stand and move, and what their contact does to them.
 #include <algorithm>
 
-#include "fmu/contact_unit.h"
+#include "fmu/contact/contact_unit.h"
 #include "volcontact/base/check.h"
 
 namespace volcontact::fmu {
