@@ -9,7 +9,8 @@
 namespace volcontact::fmu {
 namespace {
 
-constexpr double kMagic = 2804.0;  // of a serialized state: this, the mode, the count of what follows
+constexpr double kMagic =
+    2804.0;  // of a serialized state: this, the mode, the count of what follows
 constexpr std::size_t kHead = 3;
 
 const char* mode_name(Mode mode) {
@@ -38,9 +39,9 @@ const char* type_name(Instance::Type type) {
 }
 
 const Group& checked(const Group* group, unsigned reference, Instance::Type type) {
-  require(group && group->type() == type,
-          "value reference " + std::to_string(reference) + " is not that of " + type_name(type) +
-              " of this FMU; see modelDescription.xml");
+  require(group && group->type() == type, "value reference " + std::to_string(reference) +
+                                              " is not that of " + type_name(type) +
+                                              " of this FMU; see modelDescription.xml");
   return *group;
 }
 

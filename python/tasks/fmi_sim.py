@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""fmi-sim, a program in Rust that runs FMUs, in build/fmi-sim: a master that shares no code with ours."""
+"""fmi-sim, in build/fmi-sim: a master of FMUs in Rust that shares no code with ours."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def build_fmi_sim() -> None:
 
 
 def _clang() -> dict[str, str]:
-    """Where libclang is, which a crate reads headers with: that of PyPI, as the system may have none."""
+    """Where libclang is, with which a crate reads headers: that of PyPI."""
     packages = FOLDER / "packages"
     if not packages.exists():
         run(

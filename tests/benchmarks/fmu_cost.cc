@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// What a unit of FMI 2.0 costs beside the C call in it: fmu_cost BINARY RESOURCES TOKEN. Poses of the
-// first body a little beside its start, in contact; the two take turns, so that a busy machine slows
-// both. Prints JSON: microseconds and ratios, medians.
+// What a unit of FMI 2.0 costs beside the C call in it: fmu_cost BINARY RESOURCES TOKEN. Poses of
+// the first body a little beside its start, in contact; the two take turns, so that a busy machine
+// slows both. Prints JSON: microseconds and ratios, medians.
 #include <dlfcn.h>
 
 #include <algorithm>
@@ -22,9 +22,9 @@
 namespace {
 
 constexpr int kPoses = 64, kTurns = 60, kBefore = 5;
-constexpr double kStep = 1e-4;            // [s]
-constexpr double kShift = 2e-4;           // [m]
-constexpr unsigned kForce = 13;           // value reference; pose and twist come before it
+constexpr double kStep = 1e-4;   // [s]
+constexpr double kShift = 2e-4;  // [m]
+constexpr unsigned kForce = 13;  // value reference; pose and twist come before it
 constexpr std::size_t kInputs = kForce, kWrench = 6;
 
 void require(bool condition, const std::string& what) {
@@ -70,7 +70,8 @@ class Instance {
     require(fmu.find<int(void*)>("fmi2ExitInitializationMode")(c_) == 0, "no start");
     if (exchange) {
       EventInfo info;
-      require(fmu.find<int(void*, EventInfo*)>("fmi2NewDiscreteStates")(c_, &info) == 0, "no event");
+      require(fmu.find<int(void*, EventInfo*)>("fmi2NewDiscreteStates")(c_, &info) == 0,
+              "no event");
       require(fmu.find<int(void*)>("fmi2EnterContinuousTimeMode")(c_) == 0, "no time");
     }
     for (unsigned i = 0; i < kInputs; ++i) inputs_.push_back(i);
@@ -79,7 +80,9 @@ class Instance {
 
   void set(const double* values) { require(set_(c_, inputs_.data(), kInputs, values) == 0, "set"); }
   void get(double* values) { require(get_(c_, wrench_.data(), kWrench, values) == 0, "get"); }
-  void rates(std::vector<double>& out) { require(rates_(c_, out.data(), out.size()) == 0, "rates"); }
+  void rates(std::vector<double>& out) {
+    require(rates_(c_, out.data(), out.size()) == 0, "rates");
+  }
   void step() {
     require(step_(c_, time_, kStep, 1) == 0, "step");
     time_ += kStep;
@@ -194,10 +197,22 @@ struct Container {
   static void fill_pose(const double* in, double* m) {
     const double norm = std::hypot(std::hypot(in[3], in[4]), std::hypot(in[5], in[6]));
     const double w = in[3] / norm, x = in[4] / norm, y = in[5] / norm, z = in[6] / norm;
-    const double rows[] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), in[0],
-                           2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x), in[1],
-                           2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y), in[2],
-                           0, 0, 0, 1};
+    const double rows[] = {1 - 2 * (y * y + z * z),
+                           2 * (x * y - w * z),
+                           2 * (x * z + w * y),
+                           in[0],
+                           2 * (x * y + w * z),
+                           1 - 2 * (x * x + z * z),
+                           2 * (y * z - w * x),
+                           in[1],
+                           2 * (x * z - w * y),
+                           2 * (y * z + w * x),
+                           1 - 2 * (x * x + y * y),
+                           in[2],
+                           0,
+                           0,
+                           0,
+                           1};
     std::copy(std::begin(rows), std::end(rows), m);
   }
 };

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a unit costs beside the C call that it wraps, for the battery box. docs/fmu.md has the result.
+"""What a unit costs beside the C call in it, for the battery box; docs/fmu.md, "Cost".
 
-    ./run python tests/benchmarks/fmu_cost.py PROGRAM
+./run python tests/benchmarks/fmu_cost.py PROGRAM
 """
 
 import argparse
@@ -23,7 +23,7 @@ AT_REST = 1.5  # [s]
 
 
 def measure(program: str) -> dict[str, float]:
-    """Runs the program on the battery box where it stands in its cradle, and moves as it did there."""
+    """Runs the program on the battery box where it stands in its cradle, as it moves there."""
     model = vc.load(SCENE)
     data = mujoco.MjData(model)
     to_start(model, data)
@@ -46,12 +46,17 @@ def measure(program: str) -> dict[str, float]:
             words = line.split()
             if words[0] == "group" and int(words[3]) < len(start):
                 first, count = int(words[3]), int(words[4])
-                lines[i] = " ".join([*words[:7], *map(repr, map(float, start[first : first + count]))])
+                lines[i] = " ".join(
+                    [*words[:7], *map(repr, map(float, start[first : first + count]))]
+                )
         unit.write_text("\n".join(lines) + "\n")
         token = next(line.split()[1] for line in lines if line.startswith("token"))
         (binary,) = Path(folder).glob("binaries/*/box.*")
         done = subprocess.run(
-            [program, str(binary), str(resources), token], capture_output=True, text=True, check=True
+            [program, str(binary), str(resources), token],
+            capture_output=True,
+            text=True,
+            check=True,
         )
     return json.loads(done.stdout)
 

@@ -10,12 +10,12 @@ namespace volcontact::adaptor {
 /// text. MuJoCo itself would end the process, and write a file.
 class MujocoMessages {
  public:
-  /// Takes the place of MuJoCo's handlers, once for the process. On threads where no scene runs, those
-  /// that were there before are called.
+  /// Takes the place of MuJoCo's handlers, once for the process. On threads where no scene runs,
+  /// those that were there before are called.
   static void install();
 
-  /// Calls `function`; false where MuJoCo found an error, whose text is error(). `function` must hold
-  /// no object with a destructor: MuJoCo's errors leave by longjmp.
+  /// Calls `function`; false where MuJoCo found an error, whose text is error(). `function` must
+  /// hold no object with a destructor: MuJoCo's errors leave by longjmp.
   template <typename Function>
   static bool run(Function&& function) noexcept {
     std::jmp_buf here;

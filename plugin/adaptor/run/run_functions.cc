@@ -47,8 +47,8 @@ constexpr SceneRunFunctions kFunctions = {
     .destroy = [](void* scene) { delete static_cast<SceneRun*>(scene); },
     .add_pair =
         [](void* scene, const int* a, int a_count, const int* b, int b_count, char* message) {
-          return guarded(message,
-                         [&] { return run_of(scene).add_pair({a, a + a_count}, {b, b + b_count}); });
+          return guarded(
+              message, [&] { return run_of(scene).add_pair({a, a + a_count}, {b, b + b_count}); });
         },
     .count = [](const void* scene, SceneValue value,
                 int index) { return run_of(scene).count(value, index); },
@@ -87,8 +87,7 @@ constexpr SceneRunFunctions kFunctions = {
           return std::snprintf(message, kRoom, "%s", MujocoMessages::take_warnings().c_str());
         },
     .state_size = [](const void* scene) { return run_of(scene).state_size(); },
-    .get_state = [](const void* scene,
-                    double* numbers) { run_of(scene).get_state(numbers); },
+    .get_state = [](const void* scene, double* numbers) { run_of(scene).get_state(numbers); },
     .set_state =
         [](void* scene, const double* numbers, char* message) {
           return guarded(message, [&] {

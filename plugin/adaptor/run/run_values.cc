@@ -91,10 +91,9 @@ void SceneRun::require_index(SceneValue value, int index) const {
 
 void SceneRun::set(SceneValue value, int index, const double* numbers) {
   require_index(value, index);
-  const int mocap =
-      value == SceneValue::kMocapPosition || value == SceneValue::kMocapQuaternion
-          ? model_->body_mocapid[index]
-          : 0;
+  const int mocap = value == SceneValue::kMocapPosition || value == SceneValue::kMocapQuaternion
+                        ? model_->body_mocapid[index]
+                        : 0;
   switch (value) {
     case SceneValue::kCtrl:
       data_->ctrl[index] = *numbers;
@@ -200,7 +199,8 @@ int SceneRun::side_of(const Sides& pair, const volcontact_site& site) const {
 
 void SceneRun::get_contact(SceneValue value, int index, double* numbers) const {
   if (value == SceneValue::kContactPower || value == SceneValue::kContactDissipated) {
-    std::copy_n(value == SceneValue::kContactPower ? energy_.power : energy_.dissipated, 4, numbers);
+    std::copy_n(value == SceneValue::kContactPower ? energy_.power : energy_.dissipated, 4,
+                numbers);
     return;
   }
   std::fill_n(numbers, value == SceneValue::kPairForce ? 3 : 1, 0.0);

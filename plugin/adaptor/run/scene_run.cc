@@ -35,12 +35,13 @@ SceneRun::SceneRun(const char* path, const SceneRunKey* keys, int count) {
   MujocoMessages::install();
   try {
     in_mujoco([&] { model_ = mj_loadModel(path, nullptr); });
-    require(model_ != nullptr, std::string("MuJoCo ") + mj_versionString() + " cannot read " + path);
+    require(model_ != nullptr,
+            std::string("MuJoCo ") + mj_versionString() + " cannot read " + path);
     std::vector<volcontact_key> given;
     for (int i = 0; i < count; ++i) given.push_back({keys[i].name, keys[i].numbers, keys[i].count});
     char message[SceneRunFunctions::kMessageSize];
-    const int code =
-        volcontact_attach_with(model_, given.data(), count, message, static_cast<int>(sizeof message));
+    const int code = volcontact_attach_with(model_, given.data(), count, message,
+                                            static_cast<int>(sizeof message));
     require(code == 0, message);
     is_attached_ = true;
     in_mujoco([&] {

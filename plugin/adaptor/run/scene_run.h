@@ -16,8 +16,8 @@ struct RefusedValue : std::invalid_argument {
 };
 
 /// A scene with its model, its data and volumetric contact, run for a program that knows no MuJoCo.
-/// Values that follow from the state (sensors, poses, contact) are worked out on a copy of the data,
-/// when they are asked for: the run has the bits of one by mj_step alone.
+/// Values that follow from the state (sensors, poses, contact) are worked out on a copy of the
+/// data, when they are asked for: the run has the bits of one by mj_step alone.
 ///
 /// Functions throw std::invalid_argument, and std::runtime_error where MuJoCo found an error.
 class SceneRun {

@@ -95,8 +95,9 @@ void ContactUnit::analytic(const std::vector<double>& change, std::vector<double
   }
 }
 
-void ContactUnit::derivative(const unsigned* unknowns, std::size_t unknown_count, const unsigned* knowns,
-                      std::size_t known_count, const double* seed, double* sensitivity) {
+void ContactUnit::derivative(const unsigned* unknowns, std::size_t unknown_count,
+                             const unsigned* knowns, std::size_t known_count, const double* seed,
+                             double* sensitivity) {
   update();
   std::vector<double> change(memory_.values.size(), 0.0);
   bool by_inputs = true;

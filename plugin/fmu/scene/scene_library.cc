@@ -43,8 +43,8 @@ void* open(const std::string& name) {
   void* library = dlopen((own_folder() + name).c_str(), kHow);
   if (!library) {
     const char* reason = dlerror();
-    throw std::invalid_argument(std::string("cannot load ") + name + " of the FMU: " +
-                                (reason ? reason : "no reason is given"));
+    throw std::invalid_argument(std::string("cannot load ") + name +
+                                " of the FMU: " + (reason ? reason : "no reason is given"));
   }
   return library;
 }

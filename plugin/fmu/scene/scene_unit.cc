@@ -78,7 +78,8 @@ class SceneUnit final : public Unit {
     const std::vector<double> before(first, first + group.count);
     std::copy_n(numbers, count, first + offset);
     out_of_date_ = true;
-    if (group.is_input()) {  // FMI 2 sets a quaternion number by number: only the whole can be wrong
+    if (group
+            .is_input()) {  // FMI 2 sets a quaternion number by number: only the whole can be wrong
       pending_[index_of(group)] = 1;
       return;
     }
@@ -202,7 +203,8 @@ class SceneUnit final : public Unit {
   const SceneRunFunctions& run_;
   std::unique_ptr<void, void (*)(void*)> scene_;
   std::vector<double> values_;
-  std::vector<char> pending_;   ///< of each group, whether it was set since the scene has heard of it
+  std::vector<char>
+      pending_;  ///< of each group, whether it was set since the scene has heard of it
   std::vector<char> is_known_;  ///< of each first value of an output, whether it is of now
   char message_[SceneRunFunctions::kMessageSize];
   bool touching_ = false;

@@ -38,9 +38,9 @@ struct SceneRunKey {
   int count;
 };
 
-/// A library that runs scenes for a program that knows no MuJoCo: the adaptor, which is loaded while
-/// the program runs. A scene is a handle. Functions that return an int return a negative number
-/// where they fail, and write a text into `message`, which has kMessageSize characters.
+/// A library that runs scenes for a program that knows no MuJoCo: the adaptor, which is loaded
+/// while the program runs. A scene is a handle. Functions that return an int return a negative
+/// number where they fail, and write a text into `message`, which has kMessageSize characters.
 struct SceneRunFunctions {
   static constexpr int kVersion = 1;
   static constexpr int kMessageSize = 2048;

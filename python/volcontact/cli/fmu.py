@@ -35,7 +35,8 @@ def add_to(commands: Subparsers) -> None:
         "scene",
         metavar="SCENE",
         nargs="*",
-        help="MJCF file whose bodies the simulator moves; or the word merge and FMUs of one unit made on several platforms",
+        help="MJCF file whose bodies the simulator moves; or the word merge and FMUs of one unit "
+        "made on several platforms",
     )
     add_file(
         parser,
@@ -138,7 +139,9 @@ def _whole_scene(arguments: argparse.Namespace, terminal: Terminal) -> int:
     from volcontact.fmu import export_scene_fmu
 
     if arguments.scene:
-        raise ValueError(f"one scene at a time, not {' '.join([arguments.whole, *arguments.scene])}")
+        raise ValueError(
+            f"one scene at a time, not {' '.join([arguments.whole, *arguments.scene])}"
+        )
     out = export_scene_fmu(
         arguments.whole,
         arguments.out or Path(arguments.whole).with_suffix(".fmu").name,

@@ -41,12 +41,12 @@ def icon() -> bytes:
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", data) + chunk(b"IEND", b"")
 
 
-_USE_OF_CONTACT = """<p>Set pose and twist of each body; read the force and the torque on it. Torques
-are about the origin of the frame of the body. Poses map the frame of a body to the world.
+_USE_OF_CONTACT = """<p>Set pose and twist of each body; read the force and the torque on it.
+Torques are about the origin of the frame of the body. Poses map the frame of a body to the world.
 Co-Simulation: `extrapolation` says how bodies go on within a communication step. A quaternion of
 any length but 0 will do.</p>"""
-_USE_OF_SCENE = """<p>MuJoCo steps the scene, with volumetric contact. A communication step is a number
-of time steps; the inputs stay what they were at its start. The outputs are those at its end.</p>"""
+_USE_OF_SCENE = """<p>MuJoCo steps the scene, with volumetric contact. A communication step is a
+number of time steps; the inputs stay what they were at its start. The outputs are those at its end.</p>"""
 
 
 def documentation(

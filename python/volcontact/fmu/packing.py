@@ -29,8 +29,6 @@ _ICONS = """<?xml version="1.0" encoding="UTF-8"?>
 """
 
 
-
-
 def identifier_of(name: str) -> str:
     """The name as a word of C."""
     identifier = re.sub(r"[^A-Za-z0-9_]", "_", name)

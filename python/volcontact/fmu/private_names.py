@@ -19,7 +19,7 @@ _BESIDE = b"$ORIGIN"
 
 
 def private_names(libraries: Sequence[tuple[str, bytes]]) -> dict[str, str]:
-    """New names of the same length, which tell the content of all: the same libraries, the same names.
+    """New names of the same length, which tell the content of all.
 
     Args:
         libraries: name and content of each; names as `lib<word>...`.
@@ -32,7 +32,7 @@ def private_names(libraries: Sequence[tuple[str, bytes]]) -> dict[str, str]:
 
 
 def renamed(library: bytes, names: Mapping[str, str]) -> bytes:
-    """A library with other names for itself and for those that it needs, which it looks for beside it.
+    """A library with other names for itself and for those that it needs, which lie beside it.
 
     Raises:
         ValueError: it is no 64-bit ELF library, or a new name has another length.

@@ -189,7 +189,10 @@ def _libraries() -> dict[str, bytes]:
     if len(found) != 1:
         raise RuntimeError(f"expected one libmujoco.so in {package}, found {len(found)}")
     theirs = found[0].read_bytes()
-    libraries = {name_of(ours) or adaptor().path.name: ours, name_of(theirs) or found[0].name: theirs}
+    libraries = {
+        name_of(ours) or adaptor().path.name: ours,
+        name_of(theirs) or found[0].name: theirs,
+    }
     names = private_names(list(libraries.items()))
     return {names[name]: renamed(content, names) for name, content in libraries.items()}
 
@@ -200,7 +203,8 @@ def _scene_text(
     """What the binary reads of a scene, plugin/fmu/scene/scene_file.h."""
     lines = [f"adaptor {libraries[0]}", f"mujoco {libraries[1]}", f"timestep {timestep!r}"]
     lines += [
-        f"key {name} {len(numbers)} {' '.join(map(repr, numbers))}" for name, numbers in keys.items()
+        f"key {name} {len(numbers)} {' '.join(map(repr, numbers))}"
+        for name, numbers in keys.items()
     ]
     for pair in pairs:
         sides = [" ".join(map(str, (len(geoms), *geoms))) for geoms in pair.geoms]

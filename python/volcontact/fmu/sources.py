@@ -99,7 +99,7 @@ def _eigen() -> Path:
 
 @functools.cache
 def _listed(plugin: Path) -> tuple[tuple[str, ...], frozenset[str]]:
-    """Sources of the core, and those of them to be compiled by themselves, as its CMakeLists.txt says."""
+    """Sources of the core, and those to be compiled by themselves, as its CMakeLists.txt says."""
     text = (plugin / "volcontact" / "CMakeLists.txt").read_text()
 
     def files(command: str) -> list[str]:
@@ -120,7 +120,9 @@ def _rooms(plugin: Path, fmi: int) -> dict[str, list[str]]:
     for name in core:
         room = name.removesuffix(".cc") if name in alone else name.rpartition("/")[0]
         rooms.setdefault(f"core_{room.replace('/', '_')}.cc", []).append(f"volcontact/{name}")
-    rooms["container.cc"] = [f"c_api/{path.name}" for path in sorted((plugin / "c_api").glob("*.cc"))]
+    rooms["container.cc"] = [
+        f"c_api/{path.name}" for path in sorted((plugin / "c_api").glob("*.cc"))
+    ]
     for path in sorted((plugin / "fmu").rglob("*.cc")):
         if path.name != f"fmi{5 - fmi}.cc":
             name = path.relative_to(plugin / "fmu").as_posix()

@@ -12,7 +12,12 @@ from volcontact.fmu.units import limits
 
 INTEGERS = ("sites", "forgotten", "extrapolation", "pair_sites")
 BOOLEANS = ("touching", "site_active", "pair_touching")
-_INTEGRATED = ("deflection", "twist", "dwell", "stiffness")  # plugin/fmu/contact/contact_unit.cc has the same
+_INTEGRATED = (
+    "deflection",
+    "twist",
+    "dwell",
+    "stiffness",
+)  # plugin/fmu/contact/contact_unit.cc has the same
 _NOMINAL = {"dwell": 1.0, "stiffness": 1e5}  # and 1e-6 of a deflection, as evaluate.cc there
 FIXED = ("restitution",)  # a change of these changes what laws keep
 

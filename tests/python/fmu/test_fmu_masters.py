@@ -151,7 +151,8 @@ def fmi_sim(path, out, *arguments):
     """Runs an FMU in fmi-sim; the names and the last row of what it wrote."""
     built = Path(__file__).parents[3] / "build" / "fmi-sim" / "bin"
     program = shutil.which(
-        "fmi-sim", path=os.pathsep.join([str(built), os.environ["PATH"], f"{Path.home()}/.cargo/bin"])
+        "fmi-sim",
+        path=os.pathsep.join([str(built), os.environ["PATH"], f"{Path.home()}/.cargo/bin"]),
     )
     if program is None:
         pytest.skip("NOT RUN: fmi-sim is missing; VOLCONTACT_FMI_SIM=1 ./run test builds it")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Units with their sources inside: a stranger compiles them by what they say, and gets the same bits."""
+"""Sources inside: a stranger compiles them by what the unit says, and gets the same bits."""
 
 import re
 import shutil
@@ -110,7 +110,15 @@ def test_compiled_by_what_the_unit_says_it_has_the_same_bits(tmp_path):
 
     def compiled(name):
         out = name.removesuffix(".cc") + ".o"
-        words = [*compiler, *options.split(), *(f"-I{one}" for one in folders), "-c", name, "-o", out]
+        words = [
+            *compiler,
+            *options.split(),
+            *(f"-I{one}" for one in folders),
+            "-c",
+            name,
+            "-o",
+            out,
+        ]
         done = subprocess.run(words, cwd=sources, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr[:2000]
         return out

@@ -11,7 +11,7 @@ import volcontact as vc
 from volcontact.simulation import to_start
 
 pytest.importorskip("fmpy", reason="FMPy is missing: pip install fmpy")
-from fmu_master import Exchange, Master, RigidBody  # noqa: E402 - needs FMPy
+from fmu_master import Exchange, Master, RigidBody
 
 MODELS = Path(__file__).parents[3] / "mjcf_models"
 G = 9.81  # [m/s^2]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random calls of a whole scene, right and wrong ones: a status each time, and as new after a reset."""
+"""Random calls of a whole scene, right and wrong ones: as new after a reset."""
 
 import os
 import random
@@ -10,8 +10,8 @@ import pytest
 import volcontact as vc
 
 pytest.importorskip("fmpy", reason="FMPy is missing: pip install fmpy")
-from fmpy.fmi1 import FMICallException  # noqa: E402 - needs FMPy
-from scene_master import SceneInstance  # noqa: E402 - needs FMPy
+from fmpy.fmi1 import FMICallException
+from scene_master import SceneInstance
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="made on Linux")
 SEQUENCES = int(os.environ.get("FMU_FUZZ_SEQUENCES", "60"))
@@ -89,11 +89,13 @@ def test_after_any_calls_a_reset_gives_a_new_instance(tmp_path, fmi):
         chance, states = random.Random(sequence), []
         instance.reset()
         for _ in range(CALLS):
+            status = 0
             try:
                 call(instance, chance, states)
             except FMICallException as error:
-                assert error.status in (2, 3), instance.messages[-1]
-                refused += 1
+                status = error.status
+            assert status in (0, 2, 3), instance.messages[-1]  # fine, discard, error
+            refused += status > 0
         for state in states:
             instance.free(state)
         assert run(instance) == as_new, f"after sequence {sequence}"

@@ -4,7 +4,6 @@
 import shutil
 
 import fmpy
-import mujoco
 import numpy as np
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
@@ -103,7 +102,7 @@ class SceneInstance:
         self.at += length
 
     def step_until_event(self, length):
-        """FMI 3: one communication step, as far as it goes; the time and whether there is an event."""
+        """FMI 3: a communication step as far as it goes; the time, and whether there is an event."""
         event, _, early, reached = self.fmu.doStep(
             currentCommunicationPoint=self.at, communicationStepSize=length
         )
@@ -121,7 +120,7 @@ class SceneInstance:
 
     def save(self):
         """A state."""
-        return self.fmu.getFMUState() if self.is_two else self.fmu.getFMUState()
+        return self.fmu.getFMUState()
 
     def restore(self, state):
         """Goes back to a state."""
