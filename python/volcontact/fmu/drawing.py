@@ -46,7 +46,8 @@ Torques are about the origin of the frame of the body. Poses map the frame of a 
 Co-Simulation: `extrapolation` says how bodies go on within a communication step. A quaternion of
 any length but 0 will do.</p>"""
 _USE_OF_SCENE = """<p>MuJoCo steps the scene, with volumetric contact. A communication step is a
-number of time steps; the inputs stay what they were at its start. The outputs are those at its end.</p>"""
+number of time steps; the inputs stay what they were at its start. The outputs are those at its
+end.</p>"""
 
 
 def documentation(

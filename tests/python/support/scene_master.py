@@ -102,7 +102,7 @@ class SceneInstance:
         self.at += length
 
     def step_until_event(self, length):
-        """FMI 3: a communication step as far as it goes; the time, and whether there is an event."""
+        """FMI 3: a communication step as far as it goes; its end, and whether there is an event."""
         event, _, early, reached = self.fmu.doStep(
             currentCommunicationPoint=self.at, communicationStepSize=length
         )
