@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "adaptor/mujoco/mujoco_compat.h"
-#include "adaptor/run/guarded_call.h"
+#include "adaptor/run/mujoco_messages.h"
 #include "adaptor/run/scene_run.h"
 
 namespace volcontact::adaptor {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/run/guarded_call.h"
+#include "adaptor/run/mujoco_messages.h"
 
 #include <mujoco/mujoco.h>
 
