@@ -15,6 +15,7 @@ from typing import Any
 from volcontact._files import appearing
 from volcontact.fmu.container import library_folder
 from volcontact.fmu.drawing import icon
+from volcontact.fmu.private_names import is_elf, needed, renamed
 
 _EPOCH = (2020, 1, 1, 0, 0, 0)  # of all files: the same unit gives the same bytes
 _UUID = ((0, 8), (8, 12), (12, 16), (16, 20), (20, 32))
@@ -52,10 +53,13 @@ def now() -> str:
 
 def common_files(fmi: int, identifier: str) -> dict[str, bytes]:
     """Icon and binary of a unit, by their paths in it."""
+    folder = f"binaries/{platform_folder(fmi)}"
+    library = binary(fmi)
     files = {
         "model.png" if fmi == 2 else "terminalsAndIcons/icon.png": icon(),
-        f"binaries/{platform_folder(fmi)}/{identifier}{SUFFIX}": binary(fmi),
+        f"{folder}/{identifier}{SUFFIX}": beside(library),
     }
+    files |= {f"{folder}/{name}": content for name, content in brought(library).items()}
     if fmi == 3:
         files["terminalsAndIcons/terminalsAndIcons.xml"] = _ICONS.encode()
     return files
@@ -71,6 +75,25 @@ def platform_folder(fmi: int) -> str:
         return f"{machine}-{system}"
     short = {"windows": "win", "darwin": "darwin", "linux": "linux"}[system]
     return f"{short}64" if machine == "x86_64" else f"{machine}-{system}"
+
+
+def beside(library: bytes) -> bytes:
+    """A library that looks for what it needs in its own folder."""
+    return renamed(library, {}) if is_elf(library) else library
+
+
+def brought(library: bytes) -> dict[str, bytes]:
+    """What a library needs of what a wheel brought along, such as that of OpenMP, by name."""
+    folder = library_folder().parent / "volcontact.libs"  # as auditwheel names it
+    found: dict[str, bytes] = {}
+    waiting = [library] if is_elf(library) and folder.is_dir() else []
+    while waiting:
+        for name in needed(waiting.pop()):
+            if name not in found and (folder / name).is_file():
+                content = (folder / name).read_bytes()
+                found[name] = beside(content)
+                waiting.append(content)
+    return found
 
 
 def binary(fmi: int) -> bytes:

@@ -18,6 +18,11 @@ _NEEDED, _STRINGS, _NAME, _RPATH, _RUNPATH = 1, 5, 14, 15, 29
 _BESIDE = b"$ORIGIN"
 
 
+def is_elf(library: bytes) -> bool:
+    """Whether it is a 64-bit library of Linux."""
+    return library[:6] == b"\x7fELF\x02\x01"
+
+
 def private_names(libraries: Sequence[tuple[str, bytes]]) -> dict[str, str]:
     """New names of the same length, which tell the content of all.
 
@@ -37,7 +42,7 @@ def renamed(library: bytes, names: Mapping[str, str]) -> bytes:
     Raises:
         ValueError: it is no 64-bit ELF library, or a new name has another length.
     """
-    if library[:6] != b"\x7fELF\x02\x01":
+    if not is_elf(library):
         raise ValueError("private names are for 64-bit ELF libraries, those of Linux")
     out = bytearray(library)
     entries, strings = _dynamic(library)
@@ -61,12 +66,18 @@ def renamed(library: bytes, names: Mapping[str, str]) -> bytes:
 
 def name_of(library: bytes) -> str | None:
     """The name that a library gives itself."""
+    return next(iter(_strings(library, _NAME)), None)
+
+
+def needed(library: bytes) -> list[str]:
+    """The names of the libraries that a library needs."""
+    return _strings(library, _NEEDED)
+
+
+def _strings(library: bytes, wanted: int) -> list[str]:
     entries, strings = _dynamic(library)
-    for tag, value in entries:
-        if tag == _NAME:
-            at = strings + value
-            return library[at : library.index(b"\0", at)].decode()
-    return None
+    starts = [strings + value for tag, value in entries if tag == wanted]
+    return [library[at : library.index(b"\0", at)].decode() for at in starts]
 
 
 def _dynamic(library: bytes) -> tuple[list[tuple[int, int]], int]:

@@ -21,6 +21,7 @@ from volcontact.fmu.description import About, description
 from volcontact.fmu.drawing import documentation
 from volcontact.fmu.export import check_choices
 from volcontact.fmu.packing import (
+    brought,
     common_files,
     identifier_of,
     now,
@@ -182,7 +183,7 @@ def _drawn(
 
 
 def _libraries() -> dict[str, bytes]:
-    """The adaptor and MuJoCo under private names, in this order."""
+    """The adaptor and MuJoCo under private names, in this order, and what a wheel brought."""
     ours = adaptor().path.read_bytes()
     package = Path(mujoco.__file__).parent
     found = sorted(package.glob("libmujoco.so*"))
@@ -194,7 +195,8 @@ def _libraries() -> dict[str, bytes]:
         name_of(theirs) or found[0].name: theirs,
     }
     names = private_names(list(libraries.items()))
-    return {names[name]: renamed(content, names) for name, content in libraries.items()}
+    private = {names[name]: renamed(content, names) for name, content in libraries.items()}
+    return private | brought(ours)
 
 
 def _scene_text(

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A whole scene as a unit: the same bits as `mj_step` in Python, in a process that has MuJoCo."""
 
+import ctypes
 import re
+import shutil
+import subprocess
 import sys
 import zipfile
 from pathlib import Path
@@ -13,6 +16,7 @@ from scene_master import SceneInstance, copied
 
 import volcontact as vc
 from volcontact.cli import main
+from volcontact.fmu import packing
 from volcontact.fmu.private_names import name_of, private_names, renamed
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy is missing: pip install fmpy")
@@ -343,3 +347,29 @@ def test_the_command_writes_one(tmp_path, capsys, monkeypatch):
     assert "one scene at a time" in capsys.readouterr().err
     assert main(["fmu"]) == 1
     assert "name a scene" in capsys.readouterr().err
+
+
+def test_what_a_wheel_brought_along_goes_with_the_binary(tmp_path, monkeypatch):
+    """A wheel has OpenMP's library in a folder of its own, where no FMU can look."""
+    package, libs = tmp_path / "volcontact", tmp_path / "volcontact.libs"
+    package.mkdir()
+    libs.mkdir()
+    (tmp_path / "a.c").write_text("int answer(void) { return 42; }\n")
+    (tmp_path / "b.c").write_text(
+        "int answer(void);\nint fmi2GetVersion(void) { return answer(); }"
+    )
+    build = ["cc", "-shared", "-fPIC", "-o"]
+    inner, outer = libs / "libomp-12ab.so.1", package / "volcontact_fmi2.so"
+    subprocess.run([*build, inner, tmp_path / "a.c", f"-Wl,-soname,{inner.name}"], check=True)
+    looks = "-Wl,-rpath,$ORIGIN/../volcontact.libs"
+    subprocess.run([*build, outer, tmp_path / "b.c", inner, looks], check=True)
+    monkeypatch.setattr(packing, "library_folder", lambda: package)
+    for name, content in packing.common_files(2, "unit").items():
+        path = tmp_path / "fmu" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+    shutil.rmtree(libs)
+    library = ctypes.CDLL(
+        str(tmp_path / "fmu" / "binaries" / packing.platform_folder(2) / "unit.so")
+    )
+    assert library.fmi2GetVersion() == 42
