@@ -126,14 +126,19 @@ def of_scene(
             f"no two of the bodies {', '.join(names)} can touch; `volcontact check` lists the "
             "pairs of the scene"
         )
-    stem = Path(os.fspath(scene)).stem if "\n" not in str(scene) else "scene"
-    if stem == "scene" and "\n" not in str(scene):
-        stem = Path(os.fspath(scene)).resolve().parent.name
     return Container(
-        stem,
+        "scene",
         [_body(model, data, i) for i in ids],
         [Model(a, b, laws + "".join(pairs)) for (a, b, laws), pairs in models.items()],
-        f"the scene {Path(os.fspath(scene)).name if stem != 'scene' else 'given as text'}",
+        source_of(scene),
+    )
+
+
+def source_of(scene: str | os.PathLike[str]) -> str:
+    """What a scene came from, for a sentence on a unit."""
+    text = os.fspath(scene)
+    return (
+        "a scene given as text" if text.lstrip().startswith("<") else f"the scene {Path(text).name}"
     )
 
 

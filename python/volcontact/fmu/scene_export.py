@@ -16,7 +16,7 @@ import mujoco
 
 import volcontact
 from volcontact._adaptor import adaptor
-from volcontact.fmu.container import Container, of_kind, of_scene
+from volcontact.fmu.container import Container, of_kind, of_scene, source_of
 from volcontact.fmu.description import About, description
 from volcontact.fmu.drawing import documentation
 from volcontact.fmu.export import check_choices
@@ -104,9 +104,8 @@ def export_scene_fmu(
                        GivenKeys(material, options)) + scalar_line(fmi, arrays=arrays)  # fmt: skip
     token = token_of(f"{fmi} {out.stem}", text, binary)
     identifier = identifier_of(out.stem)
-    name = "the MJCF given" if "\n" in str(scene) else Path(os.fspath(scene)).name
     about = About(
-        out.stem, f"The scene {name}, with volumetric contact", identifier, token, "cs",
+        out.stem, f"MuJoCo with volumetric contact, of {source_of(scene)}", identifier, token, "cs",
         volcontact.__version__, now(), step=float(model.opt.timestep),
     )  # fmt: skip
     folder = f"binaries/{platform_folder(fmi)}"
