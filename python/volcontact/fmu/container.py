@@ -137,9 +137,9 @@ def of_scene(
 def source_of(scene: str | os.PathLike[str]) -> str:
     """What a scene came from, for a sentence on a unit."""
     text = os.fspath(scene)
-    return (
-        "a scene given as text" if text.lstrip().startswith("<") else f"the scene {Path(text).name}"
-    )
+    if text.lstrip().startswith("<"):
+        return "a scene given as text"
+    return f"the scene {Path(text).name}"
 
 
 def _ids(model: mujoco.MjModel, names: Sequence[str]) -> list[int]:
