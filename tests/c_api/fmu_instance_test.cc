@@ -119,6 +119,46 @@ TEST(FmuInstance, ContinuesFromASavedStateToTheBit) {
   EXPECT_TRUE(said("not a state of this unit"));
 }
 
+// Those that may change in a run, and one that says how much the laws keep.
+TEST(FmuInstance, AStateBringsItsParameters) {
+  constexpr unsigned kDamping = 72, kRestitution = 73;
+  const Two c = two(1);
+  EXPECT_EQ(set(c, kRestitution, 0.5), 2);  // beside damping
+  EXPECT_TRUE(said("exclude each other"));
+  ASSERT_EQ(set(c, kDamping, 0.0), 0) << last_message;
+  ASSERT_EQ(set(c, kRestitution, 0.5), 0) << last_message;
+  ASSERT_EQ(fmi2SetupExperiment(c.get(), 0, 0.0, 0.0, 0, 0.0), 0);
+  ASSERT_EQ(fmi2EnterInitializationMode(c.get()), 0);
+  ASSERT_EQ(fmi2ExitInitializationMode(c.get()), 0);
+  slide(c, 0.0, 3);
+  void* state = nullptr;
+  ASSERT_EQ(fmi2GetFMUstate(c.get(), &state), 0);
+  std::size_t size = 0;
+  ASSERT_EQ(fmi2SerializedFMUstateSize(c.get(), state, &size), 0);
+  std::vector<char> bytes(size);
+  ASSERT_EQ(fmi2SerializeFMUstate(c.get(), state, bytes.data(), size), 0);
+  const std::vector<double> straight = slide(c, 3e-3, 5);
+  ASSERT_EQ(set(c, kStiffness, 3e8), 0) << last_message;
+  ASSERT_EQ(fmi2SetFMUstate(c.get(), state), 0);
+  EXPECT_EQ(get(c, kStiffness), 1e8);
+  EXPECT_EQ(slide(c, 3e-3, 5), straight);
+  fmi2FreeFMUstate(c.get(), &state);
+
+  const Two other = started(1);  // with damping
+  void* before = nullptr;
+  ASSERT_EQ(fmi2GetFMUstate(other.get(), &before), 0);
+  const std::vector<double> damped = slide(other, 0.0, 8);
+  ASSERT_EQ(fmi2DeSerializeFMUstate(other.get(), bytes.data(), size, &state), 0) << last_message;
+  ASSERT_EQ(fmi2SetFMUstate(other.get(), state), 0) << last_message;
+  EXPECT_EQ(get(other, kRestitution), 0.5);
+  EXPECT_EQ(slide(other, 3e-3, 5), straight);
+  fmi2FreeFMUstate(other.get(), &state);
+  ASSERT_EQ(fmi2SetFMUstate(other.get(), before), 0) << last_message;
+  EXPECT_EQ(get(other, kDamping), 0.5);
+  EXPECT_EQ(slide(other, 0.0, 8), damped);
+  fmi2FreeFMUstate(other.get(), &before);
+}
+
 TEST(FmuInstance, PartsOfAStepGiveTheSameLawsAsSteps) {
   const Two parts = started(1), whole = started(1);
   ASSERT_EQ(set(parts, kInternalStep, 2.5e-4), 0) << last_message;

@@ -2,6 +2,7 @@
 #include "fmu/contact/contact_unit.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "volcontact/base/check.h"
@@ -118,7 +119,7 @@ void ContactUnit::check_layout() const {
 
 void ContactUnit::reset() {
   memory_ = {};
-  memory_.values = file_.starts;
+  memory_.values = applied_ = file_.starts;
   memory_.twists_before.assign(6 * file_.is_free.size(), 0.0);
   memory_.rows.resize(models_.size());
   for (std::size_t m = 0; m < models_.size(); ++m) build_model(m);
@@ -148,6 +149,12 @@ void ContactUnit::build_model(std::size_t m) {
   model.rates.assign(size, 0.0);
   model.sites.resize(static_cast<std::size_t>(file_.slots));
   read_numbers(model);
+  for (const Group& group : file_.groups) {
+    if (group.role != Role::kParameter || group.index != static_cast<int>(m)) continue;
+    double* const present = &applied_[static_cast<std::size_t>(group.first)];
+    std::fill_n(present, group.count, NAN);  // what is not there is set, and told
+    vc_model_get(made, group.name.c_str(), present, group.count);
+  }
 }
 
 void ContactUnit::read_numbers(Model& model) {
@@ -158,16 +165,37 @@ void ContactUnit::read_numbers(Model& model) {
   vc_model_get(model.model.get(), "bristle_stiffness", &model.bristle_stiffness, 1);
 }
 
+// Some exclude each other, such as damping and restitution: what is refused is tried again once
+// others are there.
 void ContactUnit::apply_parameters() {
+  std::vector<const Group*> left;
   for (const Group& group : file_.groups) {
-    if (group.role == Role::kParameter) apply_parameter(group);
+    if (group.role == Role::kParameter) left.push_back(&group);
+  }
+  while (!left.empty()) {
+    std::vector<const Group*> refused;
+    std::string reason;
+    for (const Group* group : left) {
+      try {
+        apply_parameter(*group);
+      } catch (const Discarded& error) {
+        refused.push_back(group);
+        reason = error.what();
+      }
+    }
+    if (refused.size() == left.size()) throw Discarded(reason);
+    left.swap(refused);
   }
 }
 
 void ContactUnit::apply_parameter(const Group& group) {
   Model& model = models_[static_cast<std::size_t>(group.index)];
-  check(vc_model_set(model.model.get(), group.name.c_str(),
-                     &memory_.values[static_cast<std::size_t>(group.first)], group.count));
+  const auto first = static_cast<std::size_t>(group.first);
+  const double* const wanted = &memory_.values[first];
+  double* const present = &applied_[first];
+  if (std::equal(wanted, wanted + group.count, present)) return;  // else the laws are made anew
+  check(vc_model_set(model.model.get(), group.name.c_str(), wanted, group.count));
+  std::copy_n(wanted, group.count, present);
   const int size = vc_model_state_size(model.model.get(), file_.slots);
   auto& rows = memory_.rows[static_cast<std::size_t>(group.index)];
   if (size != static_cast<int>(rows.size())) {  // of fixed parameters only: before the start

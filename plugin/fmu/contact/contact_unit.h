@@ -109,6 +109,7 @@ class ContactUnit final : public Unit {
   std::vector<int> states_, rates_;       ///< where the continuous states and their derivatives are
   std::vector<std::vector<int>> places_;  ///< of role and index: first value or -1
   Memory memory_;
+  std::vector<double> applied_;  ///< the parameters, of all values, that the models have
   std::vector<Body> bodies_;
   double part_at_ = 0.0;           ///< how far a communication step has come [s]
   std::vector<double> inputs_at_;  ///< of each body, how far it was when its inputs were set [s]

@@ -161,7 +161,7 @@ def _unknown(kind: str, name: str, known: list[str]) -> str:
 def _binary_model(model: mujoco.MjModel) -> bytes:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "scene.mjb"
-        mujoco.mj_saveModel(model, str(path))
+        mujoco.mj_saveModel(model, str(path), None)
         return path.read_bytes()
 
 
