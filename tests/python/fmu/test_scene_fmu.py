@@ -70,6 +70,11 @@ def unit(request, tmp_path_factory):
     return vc.export_scene_fmu(SCENE, path, fmi=request.param, contacts=CONTACTS)
 
 
+def number(model, kind, name):
+    """Of a thing in the model; MuJoCo 2.2 has no short way."""
+    return mujoco.mj_name2id(model, int(getattr(mujoco.mjtObj, f"mjOBJ_{kind.upper()}")), name)
+
+
 def inputs(k):
     """Of communication step k."""
     return {
@@ -83,7 +88,7 @@ def inputs(k):
 
 def apply(model, data, values):
     data.ctrl[0] = values["ctrl.drive"][0]
-    sled = model.body("sled").id
+    sled = number(model, "body", "sled")
     data.xfrc_applied[sled, :3] = values["body.sled.applied_force"]
     data.xfrc_applied[sled, 3:] = values["body.sled.applied_torque"]
     data.mocap_pos[0] = values["mocap.'my pusher'.position"]
@@ -96,10 +101,10 @@ def seen_in_python(model, data, contact):
     mujoco.mj_forward(model, seen)
     contact.update_touch(seen)
     sites, energy = contact.sites(seen), contact.energy(seen)
-    sled = model.body("sled").id
+    sled = number(model, "body", "sled")
     velocity = np.zeros(6)
     mujoco.mj_objectVelocity(model, seen, int(mujoco.mjtObj.mjOBJ_XBODY), sled, velocity, 0)
-    pusher = model.geom("pusher").id
+    pusher = number(model, "geom", "pusher")
     of_pusher = sites[(sites["geom_a"] == pusher) | (sites["geom_b"] == pusher)]
     force = sum((s["force"] * (1 if s["geom_a"] == pusher else -1) for s in of_pusher), np.zeros(3))
     return {
@@ -203,8 +208,8 @@ def test_two_instances_and_another_copy_of_mujoco_do_not_meet(unit):
 def test_the_timestep_and_a_material_are_parameters(unit):
     model = vc.load(SCENE)
     model.opt.timestep = 5e-4
-    number = model.numeric("volcontact/material/rubber/stiffness").id
-    model.numeric_data[model.numeric_adr[number]] = 3e8
+    stiffness = number(model, "numeric", "volcontact/material/rubber/stiffness")
+    model.numeric_data[model.numeric_adr[stiffness]] = 3e8
     data = mujoco.MjData(model)
     instance = SceneInstance(unit, start={"timestep": [5e-4],
                                           "material.rubber.stiffness": [3e8]})  # fmt: skip
