@@ -22,7 +22,7 @@ SCENE = ROOT / "mjcf_models" / "battery_box" / "scene.xml"
 AT_REST = 1.5  # [s]
 
 
-def measure(program: str) -> dict[str, float]:
+def measure(program: str, runs: int = 1) -> list[dict[str, float]]:
     """Runs the program on the battery box where it stands in its cradle, as it moves there."""
     model = vc.load(SCENE)
     data = mujoco.MjData(model)
@@ -31,7 +31,7 @@ def measure(program: str) -> dict[str, float]:
         while data.time < AT_REST:
             mujoco.mj_step(model, data)
         mujoco.mj_forward(model, data)
-    body = model.body("battery_box").id
+    body = mujoco.mj_name2id(model, int(mujoco.mjtObj.mjOBJ_BODY), "battery_box")
     velocity = np.zeros(6)
     mujoco.mj_objectVelocity(model, data, int(mujoco.mjtObj.mjOBJ_XBODY), body, velocity, 0)
     start = [*data.xpos[body], *data.xquat[body], *velocity]
@@ -52,16 +52,11 @@ def measure(program: str) -> dict[str, float]:
         unit.write_text("\n".join(lines) + "\n")
         token = next(line.split()[1] for line in lines if line.startswith("token"))
         (binary,) = Path(folder).glob("binaries/*/box.*")
-        done = subprocess.run(
-            [program, str(binary), str(resources), token],
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-    return json.loads(done.stdout)
+        command = [program, str(binary), str(resources), token]
+        return [json.loads(subprocess.check_output(command, text=True)) for _ in range(runs)]
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("program", help="the compiled fmu_cost.cc")
-    print(json.dumps(measure(parser.parse_args().program)))
+    print(json.dumps(measure(parser.parse_args().program)[0]))
