@@ -2,6 +2,7 @@
 #include "fmu/instance.h"
 
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 
 #include "volcontact/base/check.h"
@@ -10,8 +11,22 @@ namespace volcontact::fmu {
 namespace {
 
 constexpr double kMagic =
-    2804.0;  // of a serialized state: this, the mode, the count of what follows
-constexpr std::size_t kHead = 3;
+    2804.0;  // of a serialized state: this, the mode, the count of what follows, a check
+constexpr std::size_t kHead = 4;
+
+// Of a state of the unit with this token, as a whole number that a double holds: FNV-1a.
+double check_of(const std::string& token, Mode mode, const std::vector<double>& memory) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  const auto add = [&](const void* bytes, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i) {
+      hash = (hash ^ static_cast<const unsigned char*>(bytes)[i]) * 1099511628211ULL;
+    }
+  };
+  add(token.data(), token.size());
+  add(&mode, sizeof mode);
+  add(memory.data(), sizeof(double) * memory.size());
+  return static_cast<double>(hash >> 12);
+}
 
 const char* mode_name(Mode mode) {
   switch (mode) {
@@ -133,7 +148,8 @@ std::size_t Instance::saved_size(const Saved& saved) const {
 void Instance::serialize(const Saved& saved, void* bytes, std::size_t size) const {
   require(bytes && size >= saved_size(saved), "the buffer is smaller than the state");
   std::vector<double> numbers{kMagic, static_cast<double>(saved.mode),
-                              static_cast<double>(saved.memory.size())};
+                              static_cast<double>(saved.memory.size()),
+                              check_of(unit.file().token, saved.mode, saved.memory)};
   numbers.insert(numbers.end(), saved.memory.begin(), saved.memory.end());
   std::memcpy(bytes, numbers.data(), sizeof(double) * numbers.size());
 }
@@ -149,8 +165,10 @@ std::unique_ptr<Saved> Instance::deserialize(const void* bytes, std::size_t size
           wrong);
   const auto mode_bits = static_cast<unsigned>(numbers[1]);
   require((mode_bits & (mode_bits - 1)) == 0, wrong);
-  return std::make_unique<Saved>(
+  auto saved = std::make_unique<Saved>(
       Saved{{numbers.begin() + kHead, numbers.end()}, static_cast<Mode>(mode_bits)});
+  require(numbers[3] == check_of(unit.file().token, saved->mode, saved->memory), wrong);
+  return saved;
 }
 
 }  // namespace volcontact::fmu

@@ -2,6 +2,7 @@
 #include "adaptor/run/scene_run.h"
 
 #include <algorithm>
+#include <mutex>
 #include <stdexcept>
 
 #include "adaptor/mujoco/mujoco_compat.h"
@@ -20,6 +21,9 @@ void in_mujoco(Function&& function) {
     throw std::runtime_error(std::string("MuJoCo: ") + MujocoMessages::error());
   }
 }
+
+// Attaching and detaching are not at once: who leaves last takes the callback away.
+std::mutex attaching;
 
 constexpr int kBad[] = {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC};
 
@@ -40,6 +44,7 @@ SceneRun::SceneRun(const char* path, const SceneRunKey* keys, int count) {
     std::vector<volcontact_key> given;
     for (int i = 0; i < count; ++i) given.push_back({keys[i].name, keys[i].numbers, keys[i].count});
     char message[SceneRunFunctions::kMessageSize];
+    const std::lock_guard lock(attaching);
     const int code = volcontact_attach_with(model_, given.data(), count, message,
                                             static_cast<int>(sizeof message));
     require(code == 0, message);
@@ -64,7 +69,10 @@ void SceneRun::free() noexcept {
     if (seen_) mj_deleteData(seen_);
     if (data_) mj_deleteData(data_);
   });
-  if (is_attached_) volcontact_detach(model_, nullptr, 0);
+  if (is_attached_) {
+    const std::lock_guard lock(attaching);
+    volcontact_detach(model_, nullptr, 0);
+  }
   if (model_) mj_deleteModel(model_);
 }
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <thread>
 
 #include "adaptor/run/mujoco_messages.h"
 #include "adaptor/support/models.h"
@@ -83,6 +84,24 @@ TEST_F(SceneRunTest, GoesOnFromAStateToTheBit) {
   EXPECT_EQ(later(), straight);
   run_->reset();
   EXPECT_EQ(run_->time(), 0.0);
+}
+
+TEST_F(SceneRunTest, ComeAndGoOnThreadsWithTheSameBits) {
+  const auto run = [this](std::vector<double>& out) {
+    for (int again = 0; again < 10; ++again) {
+      SceneRun one(path_.c_str(), nullptr, 0);
+      for (int i = 0; i < 20; ++i) EXPECT_EQ(one.step(), 1);
+      double position[7];
+      one.get(SceneValue::kJointPosition, 0, position);
+      out.push_back(position[2]);
+    }
+  };
+  run_.reset();
+  std::vector<std::vector<double>> got(4);
+  std::vector<std::thread> threads;
+  for (auto& out : got) threads.emplace_back([&] { run(out); });
+  for (std::thread& thread : threads) thread.join();
+  for (const auto& out : got) EXPECT_EQ(out, std::vector<double>(10, got[0][0]));
 }
 
 TEST_F(SceneRunTest, KnowsWhatThereIs) {
