@@ -51,7 +51,18 @@ ROOMS = {
         "pressure",
         "picture",
     ),
-    "adaptor": ("mujoco", "keys", "geoms", "memory", "step", "scene", "evaluation", "readings", ""),
+    "adaptor": (
+        "mujoco",
+        "keys",
+        "geoms",
+        "memory",
+        "step",
+        "scene",
+        "evaluation",
+        "readings",
+        "",
+        "run",
+    ),
 }
 # Files of python/bindings; each may use those before it. `bind` stands for all bind_*.cc, which are
 # side by side.

@@ -19,6 +19,17 @@ using Type = Instance::Type;
 
 namespace {
 
+// The logger takes a format, in which # stands for references to variables. Masters in languages
+// without C's variable arguments show it as it is: so it has the text, and there are no arguments.
+std::string as_format(const std::string& message) {
+  std::string format;
+  for (const char letter : message) {
+    if (letter == '%' || letter == '#') format += letter;
+    format += letter;
+  }
+  return format;
+}
+
 class Instance2 final : public Instance {
  public:
   Instance2(Text name, Kind kind, Text token, Text resources, const Callbacks* callbacks)
@@ -28,9 +39,8 @@ class Instance2 final : public Instance {
 
   void log(Status status, const std::string& message) noexcept override {
     if (!callbacks_.logger) return;
-    const char* category = status == fmu::kDiscard ? "logStatusDiscard" : "logStatusError";
-    callbacks_.logger(callbacks_.environment, name_.c_str(), status, category, "%s",
-                      message.c_str());
+    callbacks_.logger(callbacks_.environment, name_.c_str(), status, fmu::category_of(status),
+                      as_format(message).c_str());
   }
 
  private:
@@ -96,7 +106,7 @@ FMI2_EXPORT Component fmi2Instantiate(Text name, int kind, Text token, Text reso
   const auto refuse = [&](const char* message) -> Component {
     if (callbacks->logger) {
       callbacks->logger(callbacks->environment, name ? name : "", fmu::kError, "logStatusError",
-                        "%s", message);
+                        as_format(message).c_str());
     }
     return nullptr;
   };

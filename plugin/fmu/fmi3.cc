@@ -34,8 +34,7 @@ class Instance3 final : public Instance {
 
   void log(Status status, const std::string& message) noexcept override {
     if (!callbacks.log) return;
-    const char* category = status == fmu::kDiscard ? "logStatusDiscard" : "logStatusError";
-    callbacks.log(callbacks.environment, status, category, message.c_str());
+    callbacks.log(callbacks.environment, status, fmu::category_of(status), message.c_str());
   }
 
   const Callbacks callbacks;
@@ -70,7 +69,21 @@ void same_count(std::size_t got, std::size_t wanted) {
           std::to_string(got) + " numbers are asked for and there are " + std::to_string(wanted));
 }
 
-// Calls visit(group) for each reference once it is known that all are there, with room for all.
+// What a value reference stands for: all values of a group or, in a unit of scalars, one of them.
+struct Values {
+  const Group& group;
+  int offset, count;
+};
+Values values_of(const Instance& i, Reference reference, Type type) {
+  if (!i.unit.file().is_scalar) {
+    const Group& group = i.group(reference, type);
+    return {group, 0, group.count};
+  }
+  const Group& group = i.group_of(reference, type);
+  return {group, static_cast<int>(reference) - group.first, 1};
+}
+
+// Calls visit(values) for each reference once it is known that all are there, with room for all.
 template <typename Visit>
 void for_groups(Instance& i, const Reference* references, std::size_t count, const void* values,
                 std::size_t value_count, Type type, Visit&& visit) {
@@ -78,10 +91,10 @@ void for_groups(Instance& i, const Reference* references, std::size_t count, con
   given(values, value_count);
   std::size_t wanted = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    wanted += static_cast<std::size_t>(i.group(references[k], type).count);
+    wanted += static_cast<std::size_t>(values_of(i, references[k], type).count);
   }
   same_count(value_count, wanted);
-  for (std::size_t k = 0; k < count; ++k) visit(i.group(references[k], type));
+  for (std::size_t k = 0; k < count; ++k) visit(values_of(i, references[k], type));
 }
 
 template <typename Number>
@@ -89,9 +102,9 @@ int get(Handle c, const char* name, const Reference* references, std::size_t cou
         std::size_t value_count, Type type) {
   return call(c, name, fmu::kRunning | fmu::kTerminated, [&](Instance& i) {
     Number* to = values;
-    for_groups(i, references, count, values, value_count, type, [&](const Group& group) {
-      for (int k = 0; k < group.count; ++k) {
-        *to++ = static_cast<Number>(i.get(static_cast<unsigned>(group.first + k)));
+    for_groups(i, references, count, values, value_count, type, [&](const Values& of) {
+      for (int k = of.offset; k < of.offset + of.count; ++k) {
+        *to++ = static_cast<Number>(i.get(static_cast<unsigned>(of.group.first + k)));
       }
     });
   });
@@ -102,10 +115,10 @@ int set(Handle c, const char* name, const Reference* references, std::size_t cou
         const Number* values, std::size_t value_count, Type type) {
   return call(c, name, fmu::kInstantiated | fmu::kRunning, [&](Instance& i) {
     const Number* from = values;
-    for_groups(i, references, count, values, value_count, type, [&](const Group& group) {
-      const std::vector<double> numbers(from, from + group.count);
-      from += group.count;
-      i.set(group, 0, numbers.data(), group.count);
+    for_groups(i, references, count, values, value_count, type, [&](const Values& of) {
+      const std::vector<double> numbers(from, from + of.count);
+      from += of.count;
+      i.set(of.group, of.offset, numbers.data(), of.count);
     });
   });
 }
@@ -133,10 +146,12 @@ std::vector<unsigned> single(const Instance& i, const Reference* references, std
                              bool is_known) {
   std::vector<unsigned> out;
   for (std::size_t k = 0; k < count; ++k) {
-    const Group& group = i.group(references[k], Type::kReal);
-    require(!is_known || group.is_input() || group.is_state(),
+    const Values now = values_of(i, references[k], Type::kReal);
+    require(!is_known || now.group.is_input() || now.group.is_state(),
             "value reference " + std::to_string(references[k]) + " is no input and no state");
-    for (int j = 0; j < group.count; ++j) out.push_back(static_cast<unsigned>(group.first + j));
+    for (int j = 0; j < now.count; ++j) {
+      out.push_back(static_cast<unsigned>(now.group.first + now.offset + j));
+    }
   }
   return out;
 }

@@ -2,6 +2,7 @@
 #include "fmu/instance.h"
 
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 
 #include "volcontact/base/check.h"
@@ -9,8 +10,23 @@
 namespace volcontact::fmu {
 namespace {
 
-constexpr double kMagic = 2804.0;  // of a serialized state: head, then numbers
-constexpr std::size_t kHead = 2;
+constexpr double kMagic =
+    2804.0;  // of a serialized state: this, the mode, the count of what follows, a check
+constexpr std::size_t kHead = 4;
+
+// Of a state of the unit with this token, as a whole number that a double holds: FNV-1a.
+double check_of(const std::string& token, Mode mode, const std::vector<double>& memory) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  const auto add = [&](const void* bytes, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i) {
+      hash = (hash ^ static_cast<const unsigned char*>(bytes)[i]) * 1099511628211ULL;
+    }
+  };
+  add(token.data(), token.size());
+  add(&mode, sizeof mode);
+  add(memory.data(), sizeof(double) * memory.size());
+  return static_cast<double>(hash >> 12);
+}
 
 const char* mode_name(Mode mode) {
   switch (mode) {
@@ -38,24 +54,30 @@ const char* type_name(Instance::Type type) {
 }
 
 const Group& checked(const Group* group, unsigned reference, Instance::Type type) {
-  const bool fits = group && (group->is_integer() == (type == Instance::Type::kInteger)) &&
-                    (group->is_boolean() == (type == Instance::Type::kBoolean));
-  require(fits, "value reference " + std::to_string(reference) + " is not that of " +
-                    type_name(type) + " of this FMU; see modelDescription.xml");
+  require(group && group->type() == type, "value reference " + std::to_string(reference) +
+                                              " is not that of " + type_name(type) +
+                                              " of this FMU; see modelDescription.xml");
   return *group;
 }
 
 }  // namespace
+
+const char* category_of(Status status) {
+  return status == kWarning   ? "logStatusWarning"
+         : status == kDiscard ? "logStatusDiscard"
+                              : "logStatusError";
+}
 
 std::string wrong_mode_message(const char* function, Mode mode) {
   return std::string(function) + " is not allowed in " + mode_name(mode);
 }
 
 Instance::Instance(const std::string& resources, const char* token, bool exchange)
-    : unit(resources), is_exchange(exchange) {
+    : owned(make_unit(resources)), unit(*owned), is_exchange(exchange) {
   require(token && unit.file().token == token,
           "the token of the modelDescription.xml is not that of the resources (" +
               unit.file().token + "); export the FMU again");
+  require(!is_exchange || unit.offers_exchange(), "this FMU has Co-Simulation only");
 }
 
 const Group& Instance::group(unsigned reference, Type type) const {
@@ -66,7 +88,7 @@ const Group& Instance::group_of(unsigned reference, Type type) const {
 }
 
 double Instance::get(unsigned reference) {
-  if (mode == kTerminated) return unit.memory().values[reference];
+  if (mode == kTerminated) return unit.last(reference);
   return unit.get(reference);
 }
 
@@ -120,27 +142,32 @@ void Instance::restore(const Saved& saved) {
 }
 
 std::size_t Instance::saved_size(const Saved& saved) const {
-  return sizeof(double) * (kHead + saved.memory.packed().size());
+  return sizeof(double) * (kHead + saved.memory.size());
 }
 
 void Instance::serialize(const Saved& saved, void* bytes, std::size_t size) const {
   require(bytes && size >= saved_size(saved), "the buffer is smaller than the state");
-  std::vector<double> numbers{kMagic, static_cast<double>(saved.mode)};
-  const std::vector<double> packed = saved.memory.packed();
-  numbers.insert(numbers.end(), packed.begin(), packed.end());
+  std::vector<double> numbers{kMagic, static_cast<double>(saved.mode),
+                              static_cast<double>(saved.memory.size()),
+                              check_of(unit.file().token, saved.mode, saved.memory)};
+  numbers.insert(numbers.end(), saved.memory.begin(), saved.memory.end());
   std::memcpy(bytes, numbers.data(), sizeof(double) * numbers.size());
 }
 
 std::unique_ptr<Saved> Instance::deserialize(const void* bytes, std::size_t size) const {
-  auto saved = save();
-  require(bytes && size == saved_size(*saved), "the bytes are not a state of this unit");
-  std::vector<double> numbers(size / sizeof(double));
+  const char* const wrong = "the bytes are not a state of this unit";
+  const std::size_t count = size / sizeof(double);
+  require(bytes && size % sizeof(double) == 0 && count >= kHead, wrong);
+  std::vector<double> numbers(count);
   std::memcpy(numbers.data(), bytes, size);
+  require(numbers[0] == kMagic && numbers[1] >= 1.0 && numbers[1] <= kAnyMode &&
+              numbers[2] == static_cast<double>(count - kHead),
+          wrong);
   const auto mode_bits = static_cast<unsigned>(numbers[1]);
-  require(numbers[0] == kMagic && mode_bits <= kAnyMode && (mode_bits & (mode_bits - 1)) == 0,
-          "the bytes are not a state of this unit");
-  saved->mode = static_cast<Mode>(mode_bits);
-  saved->memory.unpack(numbers.data() + kHead, numbers.size() - kHead);
+  require((mode_bits & (mode_bits - 1)) == 0, wrong);
+  auto saved = std::make_unique<Saved>(
+      Saved{{numbers.begin() + kHead, numbers.end()}, static_cast<Mode>(mode_bits)});
+  require(numbers[3] == check_of(unit.file().token, saved->mode, saved->memory), wrong);
   return saved;
 }
 

@@ -27,7 +27,7 @@ inline constexpr unsigned kAnyMode = 127;
 
 /// A state of an instance to come back to.
 struct Saved {
-  Memory memory;
+  std::vector<double> memory;
   Mode mode;
 };
 
@@ -44,11 +44,12 @@ class Instance {
   template <typename Function>
   Status run(const char* name, unsigned modes, Function&& function) noexcept;
 
-  Unit unit;
+  const std::unique_ptr<Unit> owned;
+  Unit& unit;
   const bool is_exchange;
   Mode mode = kInstantiated;
 
-  enum class Type { kReal, kInteger, kBoolean };
+  using Type = ValueType;
   /// The group that a value reference begins; throws where there is none of the type.
   const Group& group(unsigned reference, Type type) const;
   /// The group that it is of, as FMI 2 counts.
@@ -75,6 +76,9 @@ class Instance {
   bool is_unchangeable(const Group& group) const;
 };
 
+/// The category of the log for a status, as modelDescription.xml names them.
+const char* category_of(Status status);
+
 /// "volcontact: fmi2DoStep is not allowed in the mode ...".
 std::string wrong_mode_message(const char* function, Mode mode);
 
@@ -84,7 +88,10 @@ Status Instance::run(const char* name, unsigned modes, Function&& function) noex
     try {
       if (!(mode & modes)) throw std::invalid_argument(wrong_mode_message(name, mode));
       function();
-      return kOk;
+      const std::string warnings = unit.take_warnings();
+      if (warnings.empty()) return kOk;
+      log(kWarning, std::string(name) + ": " + warnings);
+      return kWarning;
     } catch (const Discarded& error) {
       log(kDiscard, std::string(name) + ": " + error.what());
       return kDiscard;
@@ -101,7 +108,7 @@ template <typename PartDone>
 double Instance::step(double now, double step, bool stop_at_touch, PartDone&& part_done) {
   check_step(now, step);
   const int parts = unit.step_parts(step);
-  const Memory before = parts > 1 ? unit.memory() : Memory{};
+  const std::vector<double> before = parts > 1 ? unit.memory() : std::vector<double>{};
   double done = 0.0;
   try {
     for (int i = 1; i <= parts; ++i) {

@@ -1,183 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fmu/unit.h"
 
-#include <algorithm>
-#include <cstring>
+#include <fstream>
 
-#include "volcontact/base/check.h"
+#include "fmu/contact/contact_unit.h"
+#include "fmu/scene/scene_unit.h"
 
 namespace volcontact::fmu {
-namespace {
 
-// What the solver integrates of what the laws keep; the rest is set once, at a touch.
-constexpr const char* kIntegrated[] = {"deflection", "twist", "dwell", "stiffness"};
-
-// Finds the numbers of a row that are continuous states; the last law's come last.
-void find_states(const vc_model* model, int& first, int& last) {
-  std::string table(static_cast<std::size_t>(vc_model_states(model, nullptr, 0)) + 1, '\0');
-  vc_model_states(model, table.data(), static_cast<int>(table.size()));
-  for (std::size_t at = 0; table[at] != '\0'; at = table.find('\n', at) + 1) {
-    const std::string line = table.substr(at, table.find('\n', at) - at);
-    const std::string name = line.substr(0, line.find('\t'));
-    const std::size_t number = line.find('\t', line.find('\t') + 1) + 1;
-    const int start = std::stoi(line.substr(number));
-    const int count = std::stoi(line.substr(line.find('\t', number) + 1));
-    if (std::find(std::begin(kIntegrated), std::end(kIntegrated), name) == std::end(kIntegrated)) {
-      continue;
-    }
-    if (first == last) first = start;
-    last = start + count;
-  }
+std::unique_ptr<Unit> make_unit(const std::string& resources) {
+  if (std::ifstream(resources + "/scene.txt").good()) return make_scene_unit(resources);
+  return std::make_unique<ContactUnit>(resources);
 }
 
-void check(int code) {
-  if (code >= 0) return;
-  if (code == VC_ERROR_ARGUMENT || code == VC_ERROR_RESULT) throw Discarded(vc_error());
-  throw std::runtime_error(vc_error());
-}
-
-}  // namespace
-
-std::vector<double> Memory::packed() const {
-  std::vector<double> out{time, step_before, touching_before, is_stepping};
-  for (const auto* list : {&values, &twists_before})
-    out.insert(out.end(), list->begin(), list->end());
-  for (const auto& list : rows) out.insert(out.end(), list.begin(), list.end());
-  return out;
-}
-
-void Memory::unpack(const double* numbers, std::size_t count) {
-  require(count == packed().size(), "the state is of another unit");
-  time = numbers[0], step_before = numbers[1], touching_before = numbers[2];
-  is_stepping = numbers[3];
-  const double* from = numbers + 4;
-  const auto take = [&](std::vector<double>& list) {
-    std::copy_n(from, list.size(), list.begin());
-    from += list.size();
-  };
-  take(values);
-  take(twists_before);
-  for (auto& list : rows) take(list);
-}
-
-Unit::Unit(const std::string& resources) : file_(read_unit(resources)) {
-  places_.resize(static_cast<std::size_t>(Role::kInternalStep) + 1);
-  for (std::size_t g = 0; g < file_.groups.size(); ++g) {
-    const Group& group = file_.groups[g];
-    group_of_.insert(group_of_.end(), static_cast<std::size_t>(group.count), static_cast<int>(g));
-    auto& places = places_[static_cast<std::size_t>(group.role)];
-    const auto index = static_cast<std::size_t>(group.index);
-    if (places.size() <= index) places.resize(index + 1, -1);
-    if (places[index] < 0) places[index] = group.first;  // the states of a slot lie in a row
-    for (int i = 0; i < group.count; ++i) {
-      if (group.is_state()) states_.push_back(group.first + i);
-    }
+void Unit::index_groups() {
+  group_of_.clear();
+  const auto& groups = file().groups;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    group_of_.insert(group_of_.end(), static_cast<std::size_t>(groups[g].count),
+                     static_cast<int>(g));
   }
-  models_.resize(file_.models.size());
-  bodies_.resize(file_.is_free.size());
-  reset();
-  check_layout();
-  for (const auto& [state, rate] :
-       {std::pair{Role::kDissipated, Role::kPower}, std::pair{Role::kState, Role::kStateRate}}) {
-    for (const Group& group : file_.groups) {
-      if (group.role != state) continue;
-      const double* to = values(rate, group.index);
-      require(to != nullptr, "unit.txt: a state has no derivative");
-      const auto shift = to - values(state, group.index);
-      for (int i = 0; i < group.count; ++i) {
-        rates_.push_back(group.first + static_cast<int>(shift) + i);
-      }
-    }
-  }
-}
-
-// The values of unit.txt are those that the models and bodies have.
-void Unit::check_layout() const {
-  for (std::size_t i = 0; i < file_.is_free.size(); ++i) {
-    if (!file_.is_free[i]) continue;
-    const int body = static_cast<int>(i);
-    require(values(Role::kPosition, body) && values(Role::kAngularVelocity, body) &&
-                values(Role::kVelocity, body) &&
-                (values(Role::kQuaternion, body) || values(Role::kRotation, body)),
-            "unit.txt: body " + std::to_string(i) + " has no pose or no twist");
-  }
-  std::vector<int> counts[2];
-  for (auto& list : counts) list.assign(models_.size() * static_cast<std::size_t>(file_.slots), 0);
-  for (const Group& group : file_.groups) {
-    if (group.role != Role::kState && group.role != Role::kStateRate) continue;
-    counts[group.role == Role::kStateRate][static_cast<std::size_t>(group.index)] += group.count;
-  }
-  for (std::size_t slot = 0; slot < counts[0].size(); ++slot) {
-    const Model& model = models_[slot / static_cast<std::size_t>(file_.slots)];
-    const int count = counts[0][slot];
-    require(count == counts[1][slot] && (count == 0 || count == model.last - model.first),
-            "unit.txt: the states of a slot are not those of its laws");
-  }
-}
-
-void Unit::reset() {
-  memory_ = {};
-  memory_.values = file_.starts;
-  memory_.twists_before.assign(6 * file_.is_free.size(), 0.0);
-  memory_.rows.resize(models_.size());
-  for (std::size_t m = 0; m < models_.size(); ++m) build_model(m);
-  for (const Group& group : file_.groups) {
-    if (group.role == Role::kParameter) apply_parameter(group);
-  }
-  inputs_at_.assign(file_.is_free.size(), 0.0);
-  part_at_ = 0.0;
-  touching_ = false;
-  out_of_date_ = true;
-}
-
-void Unit::build_model(std::size_t m) {
-  Model& model = models_[m];
-  vc_model* made = nullptr;
-  if (vc_model_create_text(file_.models[m].text.c_str(), &made) != 0) {
-    throw std::invalid_argument("model_" + std::to_string(m) + ".txt: " + vc_error());
-  }
-  model.model.reset(made);
-  vc_workspace* workspace = nullptr;
-  check(vc_workspace_create(&workspace));
-  model.workspace.reset(workspace);
-  const auto size = static_cast<std::size_t>(vc_model_state_size(made, file_.slots));
-  model.row = file_.slots > 0 ? (static_cast<int>(size) - 2) / file_.slots : 0;
-  model.first = model.last = 0;
-  if (size > 0) find_states(made, model.first, model.last);
-  memory_.rows[m].assign(size, 0.0);
-  model.next.assign(size, 0.0);
-  model.rates.assign(size, 0.0);
-  model.sites.resize(static_cast<std::size_t>(file_.slots));
-  read_numbers(model);
-}
-
-void Unit::read_numbers(Model& model) {
-  model.slip_speed = model.bristle_stiffness = 0.0;
-  for (const char* name : {"slip_speed", "stribeck_speed"}) {
-    if (vc_model_get(model.model.get(), name, &model.slip_speed, 1) == 1) break;
-  }
-  vc_model_get(model.model.get(), "bristle_stiffness", &model.bristle_stiffness, 1);
-}
-
-void Unit::apply_parameter(const Group& group) {
-  Model& model = models_[static_cast<std::size_t>(group.index)];
-  check(vc_model_set(model.model.get(), group.name.c_str(),
-                     &memory_.values[static_cast<std::size_t>(group.first)], group.count));
-  const int size = vc_model_state_size(model.model.get(), file_.slots);
-  auto& rows = memory_.rows[static_cast<std::size_t>(group.index)];
-  if (size != static_cast<int>(rows.size())) {  // of fixed parameters only: before the start
-    rows.assign(static_cast<std::size_t>(size), 0.0);
-    model.next = model.rates = rows;
-    model.row = file_.slots > 0 ? (size - 2) / file_.slots : 0;
-    model.first = model.last = 0;
-    if (size > 0) find_states(model.model.get(), model.first, model.last);
-  }
-  read_numbers(model);
 }
 
 const Group* Unit::group_around(unsigned reference) const {
   if (reference >= group_of_.size()) return nullptr;
-  return &file_.groups[static_cast<std::size_t>(group_of_[reference])];
+  return &file().groups[static_cast<std::size_t>(group_of_[reference])];
 }
 
 const Group* Unit::group(unsigned reference) const {
@@ -185,72 +32,13 @@ const Group* Unit::group(unsigned reference) const {
   return around && around->first == static_cast<int>(reference) ? around : nullptr;
 }
 
-double* Unit::values(Role role, int index) {
-  const auto& places = places_[static_cast<std::size_t>(role)];
-  const auto i = static_cast<std::size_t>(index);
-  return i < places.size() && places[i] >= 0 ? &memory_.values[static_cast<std::size_t>(places[i])]
-                                             : nullptr;
-}
-const double* Unit::values(Role role, int index) const {
-  return const_cast<Unit*>(this)->values(role, index);
-}
-
-void Unit::set_time(double time) {
-  memory_.time = time;
-  out_of_date_ = true;
-}
-
-double Unit::get(unsigned reference) {
-  const Group& group = *group_around(reference);
-  if (group.role == Role::kTime) return memory_.time;
-  if (!group.is_input() && !group.is_parameter() && !group.is_state()) update();
-  return memory_.values[reference];
-}
-
-void Unit::set(const Group& group, int offset, const double* numbers, int count) {
+void Unit::require_finite(const Group& group, int offset, const double* numbers, int count) {
   for (int i = 0; i < count; ++i) {
     if (numbers[i] - numbers[i] != 0.0) {
       throw Discarded("value reference " + std::to_string(group.first + offset + i) +
                       ": the value is no finite number");
     }
   }
-  const auto first = memory_.values.begin() + group.first + offset;
-  const std::vector<double> before(first, first + count);
-  std::copy_n(numbers, count, first);
-  try {
-    if (group.role == Role::kParameter) apply_parameter(group);
-    const double value = *numbers;
-    if (group.role == Role::kExtrapolation && (value < 0.0 || value > 2.0)) {
-      throw Discarded("extrapolation = " + std::to_string(value) + " must be 0, 1 or 2");
-    }
-    if (group.role == Role::kInternalStep && value < 0.0) {
-      throw Discarded("internal_step = " + std::to_string(value) + " [s] must be >= 0");
-    }
-  } catch (const Discarded&) {
-    std::copy(before.begin(), before.end(), first);
-    throw;
-  }
-  if (group.is_input()) inputs_at_[static_cast<std::size_t>(group.index)] = part_at_;
-  out_of_date_ = true;
-}
-
-void Unit::restore(Memory memory) {
-  memory_ = std::move(memory);
-  for (const Group& group : file_.groups) {
-    if (group.role == Role::kParameter) {
-      const auto rows = memory_.rows[static_cast<std::size_t>(group.index)];
-      apply_parameter(group);
-      memory_.rows[static_cast<std::size_t>(group.index)] = rows;
-    }
-  }
-  for (std::size_t m = 0; m < models_.size(); ++m) {
-    models_[m].next.assign(memory_.rows[m].size(), 0.0);
-    models_[m].rates = models_[m].next;
-  }
-  inputs_at_.assign(file_.is_free.size(), 0.0);
-  part_at_ = 0.0;
-  touching_ = memory_.touching_before != 0.0;
-  out_of_date_ = true;
 }
 
 }  // namespace volcontact::fmu

@@ -2,12 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "c_api/volcontact.h"
 #include "fmu/unit_file.h"
-#include "volcontact/base/types.h"
 
 namespace volcontact::fmu {
 
@@ -17,119 +16,72 @@ struct Discarded : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// All of a unit that lasts: with the same memory it goes on with the same bits.
-struct Memory {
-  double time = 0.0;
-  std::vector<double> values;             ///< of all groups
-  std::vector<std::vector<double>> rows;  ///< of each model, as vc_evaluate keeps them
-  std::vector<double> twists_before;      ///< of each body at the last communication point
-  double step_before = 0.0;               ///< [s], 0: there was none
-  double touching_before = 0.0;           ///< whether bodies touched then
-  double is_stepping = 0.0;               ///< co-simulation: laws step their states themselves
-
-  std::vector<double> packed() const;
-  /// Throws std::invalid_argument where the numbers are of another unit. `this` has its layout.
-  void unpack(const double* numbers, std::size_t count);
-};
-
-/// A contact model unit: what FMI 2 and FMI 3 have in common. Values are read and written by value
-/// reference; what depends on others is worked out when it is asked for.
+/// What FMI 2 and FMI 3 ask of a unit, whatever is in it: contact models or a whole scene. Values
+/// are read and written by value reference.
 class Unit {
  public:
-  explicit Unit(const std::string& resources);
+  virtual ~Unit() = default;
 
-  const UnitFile& file() const { return file_; }
+  virtual const ValueFile& file() const = 0;
   const Group* group(unsigned reference) const;  ///< that begins there; null: none
   const Group* group_around(unsigned reference) const;
-  double time() const { return memory_.time; }
-  void set_time(double time);
 
-  void reset();
+  virtual double time() const = 0;
+  virtual void set_time(double time) = 0;
+  virtual void reset() = 0;
 
   /// Reads a value, working out what is out of date. Throws Discarded.
-  double get(unsigned reference);
+  virtual double get(unsigned reference) = 0;
+  /// Reads it as it is.
+  virtual double last(unsigned reference) const = 0;
   /// Throws Discarded on a number that is not finite or a parameter out of range; nothing changes.
-  void set(const Group& group, int offset, const double* numbers, int count);
+  virtual void set(const Group& group, int offset, const double* numbers, int count) = 0;
 
-  // Continuous states and event indicators, as Model Exchange has them.
-  std::size_t state_count() const { return states_.size(); }
-  void get_states(double* x) const;
-  void set_states(const double* x);
-  void get_rates(double* rates);
-  void get_nominals(double* nominals) const;
-  std::size_t indicator_count() const { return 2 * models_.size(); }
-  void get_indicators(double* indicators);
-  /// Takes the sites of now over; whether an event must say that others are there.
-  bool complete_step();
-  /// Takes them over with their states; whether continuous states changed.
-  bool update_states();
-
-  /// sensitivity = d(unknown)/d(known) seed.
-  void derivative(const unsigned* unknowns, std::size_t unknown_count, const unsigned* knowns,
-                  std::size_t known_count, const double* seed, double* sensitivity);
+  /// All of it that lasts: with the same memory it goes on with the same bits.
+  virtual std::vector<double> memory() const = 0;
+  /// Throws std::invalid_argument where the memory is of another unit.
+  virtual void restore(const std::vector<double>& memory) = 0;
 
   // Co-simulation.
-  void begin();  ///< at the start time: sites that are there are old
-  int step_parts(double step) const;
+  virtual void begin() = 0;  ///< at the start time: sites that are there are old
+  virtual int step_parts(double step) const = 0;
   /// One part of a communication step that began at `start`, `from` to `to` seconds after it.
-  void step(double start, double from, double to);
-  void end_step(double step);
-  bool touching() const { return touching_; }
+  virtual void step(double start, double from, double to) = 0;
+  virtual void end_step(double step) = 0;
+  virtual bool touching() const = 0;
+  /// What to tell the author of the simulation since the last call, one a line.
+  virtual std::string take_warnings() { return {}; }
 
-  const Memory& memory() const { return memory_; }
-  void restore(Memory memory);
+  // Continuous states and event indicators, as Model Exchange has them.
+  virtual bool offers_exchange() const { return false; }
+  virtual std::size_t state_count() const { return 0; }
+  virtual void get_states(double* /*x*/) const {}
+  virtual void set_states(const double* /*x*/) {}
+  virtual void get_rates(double* /*rates*/) {}
+  virtual void get_nominals(double* /*nominals*/) const {}
+  virtual std::size_t indicator_count() const { return 0; }
+  virtual void get_indicators(double* /*indicators*/) {}
+  /// Takes the sites of now over; whether an event must say that others are there.
+  virtual bool complete_step() { return false; }
+  /// Takes them over with their states; whether continuous states changed.
+  virtual bool update_states() { return false; }
+  /// sensitivity = d(unknown)/d(known) seed.
+  virtual void derivative(const unsigned* /*unknowns*/, std::size_t /*unknown_count*/,
+                          const unsigned* /*knowns*/, std::size_t /*known_count*/,
+                          const double* /*seed*/, double* /*sensitivity*/) {}
+
+ protected:
+  /// Once the file is read.
+  void index_groups();
+
+  /// Throws Discarded where a number to be set is none.
+  static void require_finite(const Group& group, int offset, const double* numbers, int count);
 
  private:
-  struct Model {
-    std::unique_ptr<vc_model, void (*)(vc_model*)> model{nullptr, &vc_model_free};
-    std::unique_ptr<vc_workspace, void (*)(vc_workspace*)> workspace{nullptr, &vc_workspace_free};
-    int row = 0;                     ///< numbers of a row
-    int first = 0, last = 0;         ///< those of a row that are continuous states
-    double slip_speed = 0.0;         ///< from which it slides; 0: unknown
-    double bristle_stiffness = 0.0;  ///< [N/m]; 0: no bristles
-    std::vector<double> rows, next, rates;
-    std::vector<int> slot_of;  ///< of each row of `next`, the committed row it goes on from, or -1
-    vc_result result{};
-    std::vector<vc_site> sites;
-  };
-  struct Body {
-    Pose X;
-    Twist V;
-  };
-
-  void check_layout() const;
-  void build_model(std::size_t m);
-  void apply_parameter(const Group& group);
-  static void read_numbers(Model& model);
-  void book_bristles(Model& model, int mine, int committed, const double* rates);
-  Body body_at(int body, double later) const;
-  vc_motion motion_of(std::size_t m, double later) const;
-  void read_bodies();
-  void update();
-  void evaluate(std::size_t m);
-  void match(Model& model) const;
-  void put_states(std::size_t m, std::vector<double>& rows) const;
-  void publish();
-  void publish_model(std::size_t m, std::vector<Wrench>& wrenches);
-  void publish_sites(std::size_t m);
-  void publish_rates(std::size_t m);
-  void find_indicators(double* indicators) const;
-  double* values(Role role, int index);
-  const double* values(Role role, int index) const;
-  void analytic(const std::vector<double>& change, std::vector<double>& wrenches) const;
-  std::vector<double> body_change(int body, const std::vector<double>& change) const;
-
-  UnitFile file_;
-  std::vector<Model> models_;
-  std::vector<int> group_of_;             ///< of each value
-  std::vector<int> states_, rates_;       ///< where the continuous states and their derivatives are
-  std::vector<std::vector<int>> places_;  ///< of role and index: first value or -1
-  Memory memory_;
-  std::vector<Body> bodies_;
-  double part_at_ = 0.0;           ///< how far a communication step has come [s]
-  std::vector<double> inputs_at_;  ///< of each body, how far it was when its inputs were set [s]
-  bool out_of_date_ = true;
-  bool touching_ = false;
+  std::vector<int> group_of_;  ///< of each value
 };
+
+/// The unit that the resources of an FMU describe. Throws std::invalid_argument naming the file.
+std::unique_ptr<Unit> make_unit(const std::string& resources);
 
 }  // namespace volcontact::fmu

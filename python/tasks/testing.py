@@ -13,6 +13,7 @@ from pathlib import Path
 from tasks.building import CORE, build, build_core, configure
 from tasks.cgal import NoCgal, build_cgal, link_cgal
 from tasks.environments import BASELINE, Environment, NoPython, prepared
+from tasks.fmi_sim import NoFmiSim, build_fmi_sim
 from tasks.shell import BUILD, JOBS, RESULTS, ROOT, TOOLS, run, stop
 from tasks.sites import build_site
 from tasks.stages import Stages
@@ -57,6 +58,7 @@ def _test_all(stages: Stages) -> None:
     if core:
         stages.run("Core: C++ tests", lambda: ctest(CORE, "cpp-core"))
     cgal()
+    stages.run("fmi-sim, a master of FMUs", lambda: _build_fmi_sim(stages))
     for number, release in enumerate(releases):
         _test_release(stages, release, everything=number == 0)
 
@@ -73,6 +75,14 @@ def _build_cgal(stages: Stages) -> None:
         if os.environ.get("CI") == "true":
             raise
         stages.note("NOT RUN", f"TESTS WITH CGAL: {error}")
+
+
+def _build_fmi_sim(stages: Stages) -> None:
+    """The tests that run FMUs in it are skipped, and say so, where it is not to be had."""
+    try:
+        build_fmi_sim()
+    except NoFmiSim as error:
+        stages.note("NOT RUN", f"FMUS IN FMI-SIM: {error}")
 
 
 def _test_release(stages: Stages, release: str, *, everything: bool) -> None:

@@ -43,7 +43,7 @@ from volcontact._volcontact import (
 )
 from volcontact.audit import Audit
 from volcontact.convergence import Convergence, Estimate, converge
-from volcontact.fmu import export_fmu, merge_fmus
+from volcontact.fmu import export_fmu, export_scene_fmu, merge_fmus
 from volcontact.identify import identify
 from volcontact.own_laws import FrictionLaw, LawField, LawState, NormalLaw
 from volcontact.recorder import Recorder
@@ -102,6 +102,7 @@ __all__ = [
     "contact_forces",
     "converge",
     "export_fmu",
+    "export_scene_fmu",
     "identify",
     "interference",
     "layer_stiffness",

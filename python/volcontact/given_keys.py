@@ -43,6 +43,10 @@ class GivenKeys:
         """The array and its length."""
         return self._records, len(self._records)
 
+    def items(self) -> list[tuple[str, list[float]]]:
+        """Name and numbers of each key."""
+        return [(key.name.decode(), list(key.numbers[: key.count])) for key in self._records]
+
     def make_room(self, model: mujoco.MjModel) -> None:
         """Adds room in userdata where it lacks; no data of the model may exist yet."""
         library = adaptor()

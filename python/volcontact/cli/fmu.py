@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 _EXAMPLES = """\
   volcontact fmu scene.xml --bodies ball world --out ball.fmu
   volcontact fmu scene.xml --bodies lid box --fmi 3 --kind me --orientation matrix --out lid.fmu
+  volcontact fmu --scene scene.xml --contact ball floor --out scene.fmu
   volcontact fmu merge linux/ball.fmu windows/ball.fmu --out ball.fmu
 """
 _MERGE = "merge"
@@ -26,18 +27,34 @@ def add_to(commands: Subparsers) -> None:
     parser = plain_command(
         commands,
         "fmu",
-        "write the contact of some bodies as a Functional Mock-up Unit (FMI 2.0, 3.0)",
+        "write contact, or a whole scene, as a Functional Mock-up Unit (FMI 2.0, 3.0)",
         _EXAMPLES,
     )
     add_file(
         parser,
         "scene",
         metavar="SCENE",
-        nargs="+",
-        help="MJCF file; or the word merge and FMUs of one unit made on several platforms",
+        nargs="*",
+        help="MJCF file whose bodies the simulator moves; or the word merge and FMUs of one unit "
+        "made on several platforms",
+    )
+    add_file(
+        parser,
+        "--scene",
+        dest="whole",
+        metavar="SCENE",
+        help="MJCF file that the unit steps by itself, with MuJoCo in it",
     )
     parser.add_argument(
         "--bodies", nargs="+", default=[], metavar="BODY", help="their names; world is one"
+    )
+    parser.add_argument(
+        "--contact",
+        nargs=2,
+        action="append",
+        default=[],
+        metavar=("A", "B"),
+        help="with --scene: bodies or geoms whose contact has values of its own",
     )
     parser.add_argument(
         "--fmi", type=int, choices=(2, 3), default=2, help="version (default: %(default)s)"
@@ -67,6 +84,12 @@ def add_to(commands: Subparsers) -> None:
         metavar="N",
         help="contact sites with values of their own (default: %(default)s)",
     )
+    parser.add_argument(
+        "--scalars", action="store_true", help="FMI 3 without arrays, for masters that know none"
+    )
+    parser.add_argument(
+        "--sources", action="store_true", help="put the sources inside, for other platforms"
+    )
     parser.add_argument("--out", type=Path, metavar="FILE", help="of the FMU (default: SCENE.fmu)")
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
     add_keys(parser)
@@ -77,6 +100,10 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     """Runs the command and returns the exit status."""
     from volcontact.fmu import export_fmu, merge_fmus
 
+    if arguments.whole is not None:
+        return _whole_scene(arguments, terminal)
+    if not arguments.scene:
+        raise ValueError("name a scene: SCENE and --bodies, or --scene SCENE")
     first, *rest = arguments.scene
     if first == _MERGE:
         out = arguments.out or Path("merged.fmu")
@@ -96,6 +123,8 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
         orientation=arguments.orientation,
         frame=arguments.frame,
         slots=arguments.slots,
+        arrays=not arguments.scalars,
+        sources=arguments.sources,
         material=dict(arguments.material),
         options=dict(arguments.option),
     )
@@ -103,6 +132,27 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
         terminal,
         {"fmu": str(out), "fmi": arguments.fmi, "kind": arguments.kind, "bodies": arguments.bodies},
     )
+    return 0
+
+
+def _whole_scene(arguments: argparse.Namespace, terminal: Terminal) -> int:
+    from volcontact.fmu import export_scene_fmu
+
+    if arguments.scene:
+        raise ValueError(
+            f"one scene at a time, not {' '.join([arguments.whole, *arguments.scene])}"
+        )
+    out = export_scene_fmu(
+        arguments.whole,
+        arguments.out or Path(arguments.whole).with_suffix(".fmu").name,
+        fmi=arguments.fmi,
+        bodies=arguments.bodies or None,
+        contacts=[(a, b) for a, b in arguments.contact],
+        arrays=not arguments.scalars,
+        material=dict(arguments.material),
+        options=dict(arguments.option),
+    )
+    _tell(terminal, {"fmu": str(out), "fmi": arguments.fmi, "kind": "cs", "scene": arguments.whole})
     return 0
 
 

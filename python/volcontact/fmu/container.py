@@ -126,19 +126,24 @@ def of_scene(
             f"no two of the bodies {', '.join(names)} can touch; `volcontact check` lists the "
             "pairs of the scene"
         )
-    stem = Path(os.fspath(scene)).stem if "\n" not in str(scene) else "scene"
-    if stem == "scene" and "\n" not in str(scene):
-        stem = Path(os.fspath(scene)).resolve().parent.name
     return Container(
-        stem,
+        "scene",
         [_body(model, data, i) for i in ids],
         [Model(a, b, laws + "".join(pairs)) for (a, b, laws), pairs in models.items()],
-        f"the scene {Path(os.fspath(scene)).name if stem != 'scene' else 'given as text'}",
+        source_of(scene),
     )
 
 
+def source_of(scene: str | os.PathLike[str]) -> str:
+    """What a scene came from, for a sentence on a unit."""
+    text = os.fspath(scene)
+    if text.lstrip().startswith("<"):
+        return "a scene given as text"
+    return f"the scene {Path(text).name}"
+
+
 def _ids(model: mujoco.MjModel, names: Sequence[str]) -> list[int]:
-    known = [_body_name(model, i) for i in range(model.nbody)]
+    known = [of_kind(model, "body", i) for i in range(model.nbody)]
     for name in names:
         if name not in known:
             near = difflib.get_close_matches(name, known, n=1)
@@ -161,17 +166,19 @@ def _side(model: mujoco.MjModel, geom: int, ids: list[int]) -> int:
     return 0 if body not in ids and _is_fixed(model, body) else body
 
 
-def _body_name(model: mujoco.MjModel, body: int) -> str:
-    return mujoco.mj_id2name(model, int(mujoco.mjtObj.mjOBJ_BODY), body) or f"body_{body}"
+def of_kind(model: mujoco.MjModel, kind: str, i: int) -> str:
+    """The name of a body, geom, joint, ...; `body_3` where it has none."""
+    number = int(getattr(mujoco.mjtObj, f"mjOBJ_{kind.upper()}"))
+    return mujoco.mj_id2name(model, number, i) or f"{kind}_{i}"
 
 
 def _body(model: mujoco.MjModel, data: mujoco.MjData, body: int) -> Body:
     if _is_fixed(model, body):
-        return Body(_body_name(model, body), is_free=False)
+        return Body(of_kind(model, "body", body), is_free=False)
     twist = np.zeros(6)
     mujoco.mj_objectVelocity(model, data, int(mujoco.mjtObj.mjOBJ_XBODY), body, twist, 0)
     return Body(
-        _body_name(model, body),
+        of_kind(model, "body", body),
         True,
         tuple(map(float, data.xpos[body])),
         tuple(map(float, data.xquat[body])),

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
 from volcontact.fmu.container import Container
-from volcontact.fmu.units import exponents
-from volcontact.fmu.variables import Group
+from volcontact.fmu.units import exponents, quantity
+from volcontact.fmu.variables import Group, scalars
 
 _TYPES = {
     2: {"real": "Real", "integer": "Integer", "boolean": "Boolean"},
@@ -19,21 +19,31 @@ _TYPES = {
 
 @dataclass(frozen=True)
 class About:
-    """What the head of the file says."""
+    """What the head of the file says.
 
-    container: Container
+    Attributes:
+        text: one sentence.
+        container: what is in a unit of contact models; None of a whole scene, whose outputs depend
+            on all inputs.
+        step: time step of a whole scene [s].
+        sources: names of the files in the folder `sources`.
+    """
+
+    name: str
+    text: str
     identifier: str
     token: str
     kind: str
     version: str
     date: str
+    container: Container | None = None
+    step: float | None = None
     sources: tuple[str, ...] = ()
 
     @property
-    def text(self) -> str:
-        """One sentence."""
-        bodies = ", ".join(body.name for body in self.container.bodies)
-        return f"Volumetric contact between {bodies}, from {self.container.source}"
+    def model_count(self) -> int:
+        """How many contact models there are."""
+        return len(self.container.models) if self.container else 0
 
 
 def tag(element: str, inner: str | None = None, /, **attributes: object) -> str:
@@ -54,8 +64,10 @@ def _text(value: object) -> str:
     return repr(value) if isinstance(value, float) else str(value)
 
 
-def description(fmi: int, about: About, groups: list[Group]) -> str:
-    """The whole file."""
+def description(fmi: int, about: About, groups: list[Group], *, arrays: bool = True) -> str:
+    """The whole file; `arrays`: whether FMI 3 has them."""
+    if fmi == 3 and not arrays:
+        groups = scalars(groups)
     writer = _Two(about, groups) if fmi == 2 else _Three(about, groups)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + writer.file() + "\n"
 
@@ -72,7 +84,7 @@ class _Writer:
     def head(self) -> dict[str, object]:
         about = self.about
         return {
-            "modelName": about.container.name,
+            "modelName": about.name,
             "description": about.text,
             "author": "volcontact",
             "version": about.version,
@@ -89,7 +101,23 @@ class _Writer:
             "\n".join(tag("Unit", tag("BaseUnit", **exponents(name)), name=name) for name in names),
         )
 
-    def categories(self, **texts: str) -> str:
+    def declared(self, group: Group) -> tuple[str, dict[str, object]] | None:
+        """Name and attributes of the type of a real group, where there is something to say."""
+        if group.kind != "real" or (group.unit == "-" and group.nominal is None):
+            return None
+        what = quantity(group.unit)
+        name = what or ("Number" if group.unit == "-" else group.unit)
+        if group.nominal is not None:
+            name += f" of about {group.nominal:g}"
+        unit = None if group.unit == "-" else group.unit
+        return name, {"quantity": what, "unit": unit, "nominal": group.nominal}
+
+    def categories(self) -> str:
+        texts = {
+            "logStatusWarning": "what the scene warns of",
+            "logStatusDiscard": "values that cannot be used now",
+            "logStatusError": "wrong calls",
+        }
         return tag(
             "LogCategories",
             "\n".join(tag("Category", name=name, description=text) for name, text in texts.items()),
@@ -102,10 +130,8 @@ class _Writer:
         whole = group.kind == "integer"
         number = int if whole else float
         return {
-            "unit": None if group.unit == "-" or whole else group.unit,
             "min": None if group.low is None else number(group.low),
             "max": None if group.high is None else number(group.high),
-            "nominal": None if whole else group.nominal,
             "start": start,
         }
 
@@ -117,7 +143,7 @@ class _Writer:
         return " ".join(_text(value) for value in values)
 
     def knowns(self, group: Group) -> list[Group]:
-        """Inputs and states that a group depends on."""
+        """Inputs and states that a group depends on; of a scene that is not said."""
         if group.is_state:
             return [group] if group in self.states else []
         slots = {model: self._slots(model) for model in group.models}
@@ -130,7 +156,7 @@ class _Writer:
         ]  # fmt: skip
 
     def _slots(self, model: int) -> range:
-        models = len(self.about.container.models)
+        models = self.about.model_count
         count = 1 + max(
             (group.index for group in self.groups if group.role == "site_active"), default=-1
         )
@@ -162,13 +188,12 @@ class _Two(_Writer):
         self.places = self._places()
         parts += [
             self.units(),
-            self.categories(logStatusDiscard="values that cannot be used now",
-                            logStatusError="wrong calls"),
-            tag("DefaultExperiment", startTime=0.0, stopTime=1.0, stepSize=1e-3),
+            self.categories(),
+            tag("DefaultExperiment", startTime=0.0, stopTime=1.0, stepSize=self.about.step or 1e-3),
             tag("ModelVariables", "\n".join(self._variables())),
             tag("ModelStructure", "\n".join(self._structure())),
         ]  # fmt: skip
-        indicators = 2 * len(self.about.container.models) if exchange else None
+        indicators = 2 * self.about.model_count if exchange else None
         return tag("fmiModelDescription", "\n".join(parts), fmiVersion="2.0", **self.head(),
                    guid=self.about.token, numberOfEventIndicators=indicators)  # fmt: skip
 
@@ -182,7 +207,10 @@ class _Two(_Writer):
                 yield self._variable(group, i, name)
 
     def _variable(self, group: Group, i: int, name: str) -> str:
-        of = self.common(group, self.start(group, group.start[i : i + 1]))
+        declared = self.declared(group)
+        of = (declared[1] if declared else {}) | self.common(
+            group, self.start(group, group.start[i : i + 1])
+        )
         if group in self.rates and group.state is not None:
             of["derivative"] = self.places[group.state.first] + i
         return tag(
@@ -216,7 +244,7 @@ class _Two(_Writer):
         return tag(name, "\n".join(rows))
 
     def _structure(self) -> Iterator[str]:
-        yield self._unknowns("Outputs", self.outputs)
+        yield self._unknowns("Outputs", self.outputs, known=self.about.container is not None)
         if self.rates:
             by_state = sorted(self.rates, key=lambda group: group.state.first if group.state else 0)
             yield self._unknowns("Derivatives", by_state)
@@ -240,20 +268,31 @@ class _Three(_Writer):
                              canHandleVariableCommunicationStepSize=True,
                              providesIntermediateUpdate=True,
                              canReturnEarlyAfterIntermediateUpdate=True,
-                             mightReturnEarlyFromDoStep=True, hasEventMode=True))  # fmt: skip
+                             mightReturnEarlyFromDoStep=True, hasEventMode=True,
+                             fixedInternalStepSize=self.about.step))  # fmt: skip
         parts += [
             self.units(),
-            self.categories(logStatusDiscard="values that cannot be used now",
-                            logStatusError="wrong calls"),
-            tag("DefaultExperiment", startTime=0.0, stopTime=1.0, stepSize=1e-3),
+            self._types(),
+            self.categories(),
+            tag("DefaultExperiment", startTime=0.0, stopTime=1.0, stepSize=self.about.step or 1e-3),
             tag("ModelVariables", "\n".join(map(self._variable, self.groups))),
             tag("ModelStructure", "\n".join(self._structure())),
         ]  # fmt: skip
         return tag("fmiModelDescription", "\n".join(parts), fmiVersion="3.0", **self.head(),
                    instantiationToken=self.about.token)  # fmt: skip
 
+    def _types(self) -> str:
+        """Units, quantities and nominal values, in types that the variables name."""
+        types = dict(filter(None, map(self.declared, self.groups)))
+        return tag(
+            "TypeDefinitions",
+            "\n".join(tag("Float64Type", name=name, **of) for name, of in sorted(types.items())),
+        )
+
     def _variable(self, group: Group) -> str:
         of = self.common(group, self.start(group, group.start))
+        if (declared := self.declared(group)) is not None:
+            of["declaredType"] = declared[0]
         if group in self.rates and group.state is not None:
             of["derivative"] = group.state.first
         return tag(
@@ -279,7 +318,7 @@ class _Three(_Writer):
 
     def _structure(self) -> Iterator[str]:
         for group in self.outputs:
-            yield self._unknown("Output", group)
+            yield self._unknown("Output", group, known=self.about.container is not None)
         for group in sorted(self.rates, key=lambda group: group.state.first if group.state else 0):
             yield self._unknown("ContinuousStateDerivative", group)
         for group in self.groups:

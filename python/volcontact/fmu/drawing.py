@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from volcontact.fmu.container import Container
     from volcontact.fmu.description import About
     from volcontact.fmu.variables import Group
 
@@ -40,8 +41,19 @@ def icon() -> bytes:
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", data) + chunk(b"IEND", b"")
 
 
-def documentation(about: About, groups: list[Group], fmi: int) -> str:
-    """index.html."""
+_USE_OF_CONTACT = """<p>Set pose and twist of each body; read the force and the torque on it.
+Torques are about the origin of the frame of the body. Poses map the frame of a body to the world.
+Co-Simulation: `extrapolation` says how bodies go on within a communication step. A quaternion of
+any length but 0 will do.</p>"""
+_USE_OF_SCENE = """<p>MuJoCo steps the scene, with volumetric contact. A communication step is a
+number of time steps; the inputs stay what they were at its start. The outputs are those at its
+end.</p>"""
+
+
+def documentation(
+    about: About, groups: list[Group], fmi: int, container: Container | None = None
+) -> str:
+    """index.html; `container`: what to draw of a whole scene."""
     rows = "\n".join(
         f"<tr><td>{escape(group.name)}</td><td>{group.count if group.count > 1 else ''}</td>"
         f"<td>{escape(group.unit)}</td><td>{group.causality}</td>"
@@ -49,7 +61,7 @@ def documentation(about: About, groups: list[Group], fmi: int) -> str:
         for group in groups
     )
     kinds = {"me": "Model Exchange", "cs": "Co-Simulation", "both": "both kinds"}[about.kind]
-    title = escape(about.container.name)
+    title = escape(about.name)
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>{title}</title><style>
 body {{ font: 15px/1.5 sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1em }}
@@ -57,31 +69,30 @@ table {{ border-collapse: collapse }} td, th {{ border: 1px solid #ccc; padding:
 </style></head><body>
 <h1>{title}</h1>
 <p>{escape(about.text)}. FMI {fmi}.0, {kinds}. Made by volcontact {escape(about.version)}.</p>
-<p>Set pose and twist of each body; read the force and the torque on it. Torques are about the
-origin of the frame of the body. Poses map the frame of a body to the world. Co-Simulation:
-`extrapolation` says how bodies go on within a communication step. A quaternion of any length but 0
-will do.</p>
-{_picture(about)}
+{_USE_OF_SCENE if about.step else _USE_OF_CONTACT}
+{picture(container or about.container)}
 <h2>Variables</h2>
 <table><tr><th>name</th><th>numbers</th><th>unit</th><th>causality</th><th>meaning</th></tr>
 {rows}
 </table>
 <h2>Licence</h2>
-<p>The binary is under the Apache License 2.0. It holds Eigen, under the Mozilla Public License
-2.0.</p>
+<p>The binaries are under the Apache License 2.0{", as MuJoCo is" if about.step else ""}. They hold
+Eigen, under the Mozilla Public License 2.0.</p>
 </body></html>
 """
 
 
-def _picture(about: About) -> str:
+def picture(container: Container | None) -> str:
     """The solids of each body where it starts, seen from the side (x to the right, z up)."""
+    if container is None:
+        return ""
     outlines: list[tuple[int, np.ndarray]] = []
     endless: list[tuple[int, np.ndarray]] = []
-    for model in about.container.models:
+    for model in container.models:
         sides = (model.body_a, model.body_b)
         for place, (pose, words) in enumerate(_solids(model.text)):
             body = sides[place % 2]
-            start = about.container.bodies[body]
+            start = container.bodies[body]
             X = _pose(start.position, start.quaternion) @ pose
             for inner, points in _points(words):
                 target = endless if points is None else outlines
@@ -96,7 +107,7 @@ def _picture(about: About) -> str:
     legend = "".join(
         f'<text x="8" y="{18 + 18 * i}" fill="{_COLOURS[i % len(_COLOURS)]}">'
         f"{escape(body.name)}</text>"
-        for i, body in enumerate(about.container.bodies)
+        for i, body in enumerate(container.bodies)
     )
     shapes = "\n".join(dict.fromkeys(part for part in parts if part))
     return (

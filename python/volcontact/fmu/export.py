@@ -3,25 +3,20 @@
 
 from __future__ import annotations
 
-import datetime
-import hashlib
 import os
-import platform
-import re
-import sys
-import zipfile
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import volcontact
 from volcontact import _volcontact
-from volcontact._files import appearing
 from volcontact.fmu import container as containers
 from volcontact.fmu.container import Container
 from volcontact.fmu.description import About, description
-from volcontact.fmu.drawing import documentation, icon
-from volcontact.fmu.variables import Group, variables
+from volcontact.fmu.drawing import documentation
+from volcontact.fmu.packing import common_files, identifier_of, now, token_of, write_zip
+from volcontact.fmu.sources import build_description, source_files
+from volcontact.fmu.variables import Group, group_line, scalar_line, variables
 
 if TYPE_CHECKING:
     from volcontact.given_keys import Values
@@ -33,7 +28,18 @@ _CHOICES: dict[str, tuple[object, ...]] = {
     "frame": ("world", "body"),
 }
 _MOST_SLOTS = 64
-_EPOCH = (2020, 1, 1, 0, 0, 0)  # of all files: the same unit gives the same bytes
+
+
+def check_choices(function: str, **given: object) -> None:
+    """Raises where an argument is none of the words it may be.
+
+    Raises:
+        ValueError: naming the words.
+    """
+    for name, value in given.items():
+        if value not in _CHOICES[name]:
+            known = ", ".join(map(str, _CHOICES[name]))
+            raise ValueError(f"{function}: {name} = {value!r} is none of {known}")
 
 
 def export_fmu(
@@ -46,6 +52,8 @@ def export_fmu(
     orientation: str = "quaternion",
     frame: str = "world",
     slots: int = 4,
+    arrays: bool = True,
+    sources: bool = False,
     material: Values | None = None,
     options: Values | None = None,
 ) -> Path:
@@ -60,6 +68,8 @@ def export_fmu(
         orientation: of the bodies, as a `quaternion` w x y z or as a `matrix` of rotation.
         frame: of twists and wrenches, `world` or `body`.
         slots: contact sites of each contact model that have values of their own, and memory.
+        arrays: of FMI 3: False gives the scalars of FMI 2, for masters that know no arrays.
+        sources: whether the sources are inside, for masters that compile them.
         material: as of `attach`.
         options: as of `attach`.
 
@@ -68,13 +78,9 @@ def export_fmu(
 
     Raises:
         ValueError: a body is not there, or named twice, or no two can touch; a choice is unknown.
-        RuntimeError: the package has no binary for this version of the standard.
+        RuntimeError: the package has no binary for this version of the standard, or no sources.
     """
-    given = {"fmi": fmi, "kind": kind, "orientation": orientation, "frame": frame}
-    for name, value in given.items():
-        if value not in _CHOICES[name]:
-            known = ", ".join(map(str, _CHOICES[name]))
-            raise ValueError(f"export_fmu: {name} = {value!r} is none of {known}")
+    check_choices("export_fmu", fmi=fmi, kind=kind, orientation=orientation, frame=frame)
     if not 1 <= slots <= _MOST_SLOTS:
         raise ValueError(f"export_fmu: slots = {slots} must be 1 to {_MOST_SLOTS}")
     if isinstance(scene, _volcontact.ContactModel):
@@ -84,48 +90,50 @@ def export_fmu(
     groups = variables(container, kind=kind, orientation=orientation, frame=frame, slots=slots)
     out = Path(path)
     container.name = out.stem
-    files = _files(container, groups, fmi=fmi, kind=kind, frame=frame, slots=slots)
+    files = _files(
+        container, groups, fmi=fmi, kind=kind, frame=frame, slots=slots, sources=sources,
+        arrays=arrays,
+    )  # fmt: skip
     write_zip(out, files)
     return out
 
 
 def _files(
-    container: Container, groups: list[Group], *, fmi: int, kind: str, frame: str, slots: int
+    container: Container,
+    groups: list[Group],
+    *,
+    fmi: int,
+    kind: str,
+    frame: str,
+    slots: int,
+    sources: bool,
+    arrays: bool,
 ) -> dict[str, bytes]:
-    identifier = re.sub(r"[^A-Za-z0-9_]", "_", container.name)
-    if not re.match(r"[A-Za-z_]", identifier):
-        identifier = "_" + identifier
+    identifier = identifier_of(container.name)
     models = {f"model_{m}.txt": model.text for m, model in enumerate(container.models)}
-    body = _unit(container, groups, frame, slots)
-    key = "\n".join([f"{fmi} {kind} {container.name}", body, *models.values()])
-    digest = hashlib.sha256(key.encode()).hexdigest()
-    token = "{" + "-".join(digest[a:b] for a, b in _UUID) + "}"
-    now = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
-    about = About(container, identifier, token, kind, volcontact.__version__, now)
+    body = _unit(container, groups, frame, slots) + scalar_line(fmi, arrays=arrays)
+    token = token_of(f"{fmi} {kind} {container.name}", body, *models.values())
+    inside, to_compile = source_files(fmi) if sources else ({}, [])
+    if sources and fmi == 3:
+        inside["buildDescription.xml"] = build_description(identifier, to_compile).encode()
+    about = About(
+        container.name, text_of(container), identifier, token, kind,
+        volcontact.__version__, now(), container=container, sources=tuple(to_compile),
+    )  # fmt: skip
     texts = {
-        "modelDescription.xml": description(fmi, about, groups),
+        "modelDescription.xml": description(fmi, about, groups, arrays=arrays),
         "documentation/index.html": documentation(about, groups, fmi),
         "resources/unit.txt": f"volcontact_unit 1\ntoken {token}\n{body}",
         **{f"resources/{name}": text for name, text in models.items()},
     }
-    files = {name: text.encode() for name, text in texts.items()}
-    files["model.png" if fmi == 2 else "terminalsAndIcons/icon.png"] = icon()
-    if fmi == 3:
-        files["terminalsAndIcons/terminalsAndIcons.xml"] = _ICONS.encode()
-    files[f"binaries/{platform_folder(fmi)}/{identifier}{_SUFFIX}"] = _binary(fmi)
-    return files
+    files = common_files(fmi, identifier) | {name: text.encode() for name, text in texts.items()}
+    return files | {f"sources/{name}": content for name, content in inside.items()}
 
 
-_UUID = ((0, 8), (8, 12), (12, 16), (16, 20), (20, 32))
-_SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
-_ICONS = """<?xml version="1.0" encoding="UTF-8"?>
-<fmiTerminalsAndIcons fmiVersion="3.0">
-<GraphicalRepresentation>
-<CoordinateSystem x1="-100" y1="-100" x2="100" y2="100" suggestedScalingFactorTo_mm="0.1"/>
-<Icon x1="-100" y1="-100" x2="100" y2="100"/>
-</GraphicalRepresentation>
-</fmiTerminalsAndIcons>
-"""
+def text_of(container: Container) -> str:
+    """One sentence on a unit."""
+    bodies = ", ".join(body.name for body in container.bodies)
+    return f"Volumetric contact between {bodies}, from {container.source}"
 
 
 def _unit(container: Container, groups: list[Group], frame: str, slots: int) -> str:
@@ -133,43 +141,5 @@ def _unit(container: Container, groups: list[Group], frame: str, slots: int) -> 
     lines = [f"slots {slots}", f"frame {frame}"]
     lines += [f"body {'free' if body.is_free else 'fixed'}" for body in container.bodies]
     lines += [f"model {model.body_a} {model.body_b}" for model in container.models]
-    for group in groups:
-        starts = " ".join(repr(float(value)) for value in group.start)
-        tunable = int(group.variability == "tunable")
-        lines.append(
-            f"group {group.role} {group.index} {group.first} {group.count} {tunable} {group.key} "
-            f"{starts}"
-        )
+    lines += map(group_line, groups)
     return "\n".join(lines) + "\n"
-
-
-def platform_folder(fmi: int) -> str:
-    """The folder of binaries for this machine, as the standards name it."""
-    system = {"win32": "windows", "darwin": "darwin"}.get(sys.platform, "linux")
-    machine = {"amd64": "x86_64", "arm64": "aarch64"}.get(
-        platform.machine().lower(), platform.machine().lower()
-    )
-    if fmi == 3:
-        return f"{machine}-{system}"
-    short = {"windows": "win", "darwin": "darwin", "linux": "linux"}[system]
-    return f"{short}64" if machine == "x86_64" else f"{machine}-{system}"
-
-
-def _binary(fmi: int) -> bytes:
-    path = containers.library_folder() / f"volcontact_fmi{fmi}{_SUFFIX}"
-    if not path.is_file():
-        raise RuntimeError(f"the package has no {path.name}; build it again")
-    return path.read_bytes()
-
-
-def write_zip(path: Path, files: dict[str, Any]) -> None:
-    """Writes an FMU; the file appears whole or not at all."""
-    with (
-        appearing(path) as part,
-        zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as out,
-    ):
-        for name in sorted(files, key=lambda name: (name != "modelDescription.xml", name)):
-            info = zipfile.ZipInfo(name, _EPOCH)
-            info.compress_type = zipfile.ZIP_DEFLATED
-            info.external_attr = (0o755 if name.startswith("binaries/") else 0o644) << 16
-            out.writestr(info, files[name])

@@ -9,7 +9,7 @@ import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from volcontact.fmu.export import write_zip
+from volcontact.fmu.packing import write_zip
 
 _DATE = re.compile(rb' generationDateAndTime="[^"]*"')
 

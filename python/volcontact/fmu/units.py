@@ -16,6 +16,19 @@ _BASE = {
     "W": {"kg": 1, "m": 2, "s": -3},
 }
 
+# Names of physical quantities by their units, as far as a unit tells.
+_QUANTITIES = {
+    "m": "Length", "m^2": "Area", "m^3": "Volume", "m^5": "SecondMomentOfVolume", "s": "Time",
+    "m/s": "Velocity", "m/s^2": "Acceleration", "rad": "Angle", "rad/s": "AngularVelocity",
+    "rad/s^2": "AngularAcceleration", "N": "Force", "N m": "Torque", "J": "Energy", "W": "Power",
+    "N/m": "Stiffness", "N s/m": "Damping", "N/m^3": "VolumetricStiffness", "N/m^2": "Pressure",
+}  # fmt: skip
+
+
+def quantity(unit: str) -> str | None:
+    """The physical quantity that has a unit; None where that is not clear."""
+    return _QUANTITIES.get(unit)
+
 
 def exponents(unit: str) -> dict[str, int]:
     """Of the base units, in a unit such as "N s/m^3".

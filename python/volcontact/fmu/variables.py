@@ -4,16 +4,22 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from volcontact.fmu.container import Body, Container, Model, Parameter
 from volcontact.fmu.units import limits
 
-INTEGERS, BOOLEANS = ("sites", "forgotten", "extrapolation"), ("touching", "site_active")
-_INTEGRATED = ("deflection", "twist", "dwell", "stiffness")  # plugin/fmu/unit.cc has the same
-_NOMINAL = {"dwell": 1.0, "stiffness": 1e5}  # and 1e-6 of a deflection, as unit_evaluate.cc
-_FIXED = ("restitution",)  # a change of these changes what laws keep
+INTEGERS = ("sites", "forgotten", "extrapolation", "pair_sites")
+BOOLEANS = ("touching", "site_active", "pair_touching")
+_INTEGRATED = (
+    "deflection",
+    "twist",
+    "dwell",
+    "stiffness",
+)  # plugin/fmu/contact/contact_unit.cc has the same
+_NOMINAL = {"dwell": 1.0, "stiffness": 1e5}  # and 1e-6 of a deflection, as evaluate.cc there
+FIXED = ("restitution",)  # a change of these changes what laws keep
 
 
 @dataclass
@@ -124,10 +130,45 @@ def variables(
     if kind != "me":
         groups += _step_parameters()
     groups.append(Group("time", "time", "time", "s", "independent"))
+    return numbered(groups)
+
+
+def numbered(groups: list[Group]) -> list[Group]:
+    """The groups with their value references: one value after the other."""
     first = 0
     for group in groups:
         group.first, first = first, first + group.count
     return groups
+
+
+def scalars(groups: list[Group]) -> list[Group]:
+    """Groups of one value each, for masters of FMI 3 that know no arrays."""
+    parts = {
+        group.first: [
+            replace(group, name=name, first=group.first + i, start=group.start[i : i + 1])
+            for i, name in enumerate(group.names())
+        ]
+        for group in groups
+    }
+    for group in groups:
+        for i, part in enumerate(parts[group.first]):
+            part.state = parts[group.state.first][i] if group.state else None
+    return [part for group in groups for part in parts[group.first]]
+
+
+def scalar_line(fmi: int, *, arrays: bool) -> str:
+    """What the binary of FMI 3 reads where its variables are scalars."""
+    return "" if arrays or fmi == 2 else "scalars 1\n"
+
+
+def group_line(group: Group) -> str:
+    """A group as the binary reads it, plugin/fmu/unit_file.h."""
+    starts = " ".join(repr(float(value)) for value in group.start)
+    tunable = int(group.variability == "tunable")
+    return (
+        f"group {group.role} {group.index} {group.first} {group.count} {tunable} {group.key} "
+        f"{starts}"
+    )
 
 
 def _inputs(body: Body, i: int, orientation: str, frame: str) -> list[Group]:
@@ -282,7 +323,7 @@ def _parameter(parameter: Parameter, m: int, name: str) -> Group:
     low, high = limits(parameter.range)
     return Group(
         "parameter", name, f"of the law; {parameter.range}", parameter.unit, "parameter",
-        "fixed" if parameter.name in _FIXED else "tunable",
+        "fixed" if parameter.name in FIXED else "tunable",
         m, start=list(parameter.values), key=parameter.name, low=low, high=high,
     )  # fmt: skip
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "fmu/unit.h"
+#include "fmu/contact/contact_unit.h"
 #include "volcontact/base/check.h"
 #include "volcontact/model/site_memory.h"
 
@@ -37,7 +37,7 @@ void check(int code) {
 
 }  // namespace
 
-void Unit::update() {
+void ContactUnit::update() {
   if (!out_of_date_ || memory_.is_stepping != 0.0) return;
   read_bodies();
   for (std::size_t m = 0; m < models_.size(); ++m) evaluate(m);
@@ -46,7 +46,7 @@ void Unit::update() {
   out_of_date_ = false;
 }
 
-void Unit::put_states(std::size_t m, std::vector<double>& rows) const {
+void ContactUnit::put_states(std::size_t m, std::vector<double>& rows) const {
   const Model& model = models_[m];
   for (int k = 0; k < file_.slots && model.last > model.first; ++k) {
     const double* x = values(Role::kState, static_cast<int>(m) * file_.slots + k);
@@ -56,7 +56,7 @@ void Unit::put_states(std::size_t m, std::vector<double>& rows) const {
   }
 }
 
-void Unit::evaluate(std::size_t m) {
+void ContactUnit::evaluate(std::size_t m) {
   Model& model = models_[m];
   const vc_motion motion = motion_of(m, 0.0);
   if (model.row == 0) {
@@ -73,7 +73,7 @@ void Unit::evaluate(std::size_t m) {
 }
 
 // Which committed row each row of now goes on from: the nearest, each once.
-void Unit::match(Model& model) const {
+void ContactUnit::match(Model& model) const {
   const int now = static_cast<int>(model.next[0]), before = static_cast<int>(model.rows[0]);
   model.slot_of.assign(static_cast<std::size_t>(now), -1);
   std::vector<char> taken(static_cast<std::size_t>(before), 0);
@@ -90,7 +90,7 @@ void Unit::match(Model& model) const {
   }
 }
 
-void Unit::publish_rates(std::size_t m) {
+void ContactUnit::publish_rates(std::size_t m) {
   Model& model = models_[m];
   const int count = model.last - model.first;
   for (int k = 0; k < file_.slots && count > 0; ++k) {
@@ -113,7 +113,7 @@ void Unit::publish_rates(std::size_t m) {
 
 // Energy of the bristles as the solver has them, so that what it integrates closes the account to
 // its own tolerance: the container counts what friction holds of them.
-void Unit::book_bristles(Model& model, int mine, int committed, const double* rates) {
+void ContactUnit::book_bristles(Model& model, int mine, int committed, const double* rates) {
   constexpr int kSpring = 4;                                  // the deflection, then the twist
   const bool follows_patch = model.bristle_stiffness == 0.0;  // its stiffness is the next state
   if (model.last - model.first < (follows_patch ? kSpring + 1 : kSpring)) return;
@@ -133,13 +133,13 @@ void Unit::book_bristles(Model& model, int mine, int committed, const double* ra
   }
 }
 
-void Unit::get_states(double* x) const {
+void ContactUnit::get_states(double* x) const {
   for (std::size_t i = 0; i < states_.size(); ++i) {
     x[i] = memory_.values[static_cast<std::size_t>(states_[i])];
   }
 }
 
-void Unit::set_states(const double* x) {
+void ContactUnit::set_states(const double* x) {
   for (std::size_t i = 0; i < states_.size(); ++i) {
     if (x[i] - x[i] != 0.0) {
       throw Discarded("continuous state " + std::to_string(i) + " is no finite number");
@@ -151,14 +151,14 @@ void Unit::set_states(const double* x) {
   out_of_date_ = true;
 }
 
-void Unit::get_rates(double* rates) {
+void ContactUnit::get_rates(double* rates) {
   update();
   for (std::size_t i = 0; i < rates_.size(); ++i) {
     rates[i] = memory_.values[static_cast<std::size_t>(rates_[i])];
   }
 }
 
-void Unit::get_nominals(double* nominals) const {
+void ContactUnit::get_nominals(double* nominals) const {
   constexpr double kEnergy = 1e-3, kDeflection = 1e-6;  // [J], [m]
   constexpr double kDwell = 1.0, kStiffness = 1e5;      // [-], [N/m]
   std::size_t i = 0;
@@ -172,12 +172,12 @@ void Unit::get_nominals(double* nominals) const {
   }
 }
 
-void Unit::get_indicators(double* indicators) {
+void ContactUnit::get_indicators(double* indicators) {
   update();
   find_indicators(indicators);
 }
 
-void Unit::find_indicators(double* indicators) const {
+void ContactUnit::find_indicators(double* indicators) const {
   for (std::size_t m = 0; m < models_.size(); ++m) {
     const Model& model = models_[m];
     const int count = std::min(model.result.sites, file_.slots);
@@ -191,7 +191,7 @@ void Unit::find_indicators(double* indicators) const {
   }
 }
 
-bool Unit::complete_step() {
+bool ContactUnit::complete_step() {
   update();
   bool others = false;
   for (std::size_t m = 0; m < models_.size(); ++m) {
@@ -210,7 +210,7 @@ bool Unit::complete_step() {
   return others;
 }
 
-bool Unit::update_states() {
+bool ContactUnit::update_states() {
   update();
   bool changed = false;
   for (std::size_t m = 0; m < models_.size(); ++m) {
@@ -232,14 +232,14 @@ bool Unit::update_states() {
   return changed;
 }
 
-void Unit::begin() {
+void ContactUnit::begin() {
   update();
   update_states();
   update();
   memory_.is_stepping = 1.0;
 }
 
-int Unit::step_parts(double step) const {
+int ContactUnit::step_parts(double step) const {
   constexpr double kMost = 1e4;
   const double* longest = values(Role::kInternalStep, 0);
   if (!longest || *longest == 0.0 || !(step > *longest)) return 1;
@@ -252,7 +252,7 @@ int Unit::step_parts(double step) const {
   return static_cast<int>(parts);
 }
 
-void Unit::step(double start, double from, double to) {
+void ContactUnit::step(double start, double from, double to) {
   double before[4] = {}, *power = values(Role::kPower, 0);
   if (power) std::copy_n(power, 4, before);
   std::vector<Body> bodies(bodies_.size());
@@ -278,7 +278,7 @@ void Unit::step(double start, double from, double to) {
   part_at_ = to;
 }
 
-void Unit::end_step(double step) {
+void ContactUnit::end_step(double step) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const Body now = body_at(static_cast<int>(i), 0.0);
     std::copy_n(now.V.angular.data(), 3, &memory_.twists_before[6 * i]);

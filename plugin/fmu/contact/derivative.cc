@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fmu/unit.h"
+#include "fmu/contact/contact_unit.h"
 #include "volcontact/base/check.h"
 
 namespace volcontact::fmu {
@@ -28,7 +28,7 @@ Vec3 turn_of_quaternion(const double* change, const double* quaternion) {
 }  // namespace
 
 // Of one body, from a change of the values: turn, way, change of both velocities, in the world.
-std::vector<double> Unit::body_change(int body, const std::vector<double>& change) const {
+std::vector<double> ContactUnit::body_change(int body, const std::vector<double>& change) const {
   std::vector<double> out(12, 0.0);
   if (!file_.is_free[static_cast<std::size_t>(body)]) return out;
   const Body& now = bodies_[static_cast<std::size_t>(body)];
@@ -58,7 +58,7 @@ std::vector<double> Unit::body_change(int body, const std::vector<double>& chang
 }
 
 // Change of torque and force on every body, in the frame of the outputs.
-void Unit::analytic(const std::vector<double>& change, std::vector<double>& wrenches) const {
+void ContactUnit::analytic(const std::vector<double>& change, std::vector<double>& wrenches) const {
   std::vector<std::vector<double>> moved;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     moved.push_back(body_change(static_cast<int>(i), change));
@@ -95,8 +95,9 @@ void Unit::analytic(const std::vector<double>& change, std::vector<double>& wren
   }
 }
 
-void Unit::derivative(const unsigned* unknowns, std::size_t unknown_count, const unsigned* knowns,
-                      std::size_t known_count, const double* seed, double* sensitivity) {
+void ContactUnit::derivative(const unsigned* unknowns, std::size_t unknown_count,
+                             const unsigned* knowns, std::size_t known_count, const double* seed,
+                             double* sensitivity) {
   update();
   std::vector<double> change(memory_.values.size(), 0.0);
   bool by_inputs = true;

@@ -2,7 +2,7 @@
 // How the bodies of a unit stand and move, and what their contact does to them.
 #include <algorithm>
 
-#include "fmu/unit.h"
+#include "fmu/contact/contact_unit.h"
 #include "volcontact/base/check.h"
 
 namespace volcontact::fmu {
@@ -54,7 +54,7 @@ void copy_pose(const Pose& pose, double* m) {
 
 }  // namespace
 
-Unit::Body Unit::body_at(int body, double later) const {
+ContactUnit::Body ContactUnit::body_at(int body, double later) const {
   Body out;
   if (!file_.is_free[static_cast<std::size_t>(body)]) return out;
   const double* q = values(Role::kQuaternion, body);
@@ -81,7 +81,7 @@ Unit::Body Unit::body_at(int body, double later) const {
   return out;
 }
 
-vc_motion Unit::motion_of(std::size_t m, double later) const {
+vc_motion ContactUnit::motion_of(std::size_t m, double later) const {
   const UnitFile::Model& model = file_.models[m];
   vc_motion motion;
   const Body a =
@@ -97,11 +97,11 @@ vc_motion Unit::motion_of(std::size_t m, double later) const {
   return motion;
 }
 
-void Unit::read_bodies() {
+void ContactUnit::read_bodies() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i] = body_at(static_cast<int>(i), 0.0);
 }
 
-void Unit::publish() {
+void ContactUnit::publish() {
   std::vector<Wrench> wrenches(bodies_.size());
   for (const Role role : {Role::kVolume, Role::kDepth, Role::kSites, Role::kForgotten,
                           Role::kTouching, Role::kElasticEnergy}) {
@@ -123,7 +123,7 @@ void Unit::publish() {
   }
 }
 
-void Unit::publish_model(std::size_t m, std::vector<Wrench>& wrenches) {
+void ContactUnit::publish_model(std::size_t m, std::vector<Wrench>& wrenches) {
   const vc_result& r = models_[m].result;
   const auto add = [&](Role role, double number) {
     if (double* value = values(role, 0)) *value += number;
@@ -145,7 +145,7 @@ void Unit::publish_model(std::size_t m, std::vector<Wrench>& wrenches) {
       Wrench{Eigen::Map<const Vec3>(r.torque_on_b), Eigen::Map<const Vec3>(r.force_on_b)};
 }
 
-void Unit::publish_sites(std::size_t m) {
+void ContactUnit::publish_sites(std::size_t m) {
   Model& model = models_[m];
   const int there = std::min(
       file_.slots, std::max(0, vc_sites(model.workspace.get(), model.sites.data(), file_.slots)));

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The sources of a unit of contact models, for masters that compile it on another platform.
+
+They are those of the core, the C container and the FMI layer, under the Apache License 2.0, and the
+headers of Eigen that they include, under the Mozilla Public License 2.0.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+import sys
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import volcontact
+from volcontact.fmu.container import library_folder
+
+# GNU's and Clang's spelling. Contraction would change bits; the square root need not set errno.
+OPTIONS = "-std=c++20 -O2 -fPIC -fopenmp -ffp-contract=off -fno-math-errno"
+LIBRARIES = ("gomp", "dl")
+_INCLUDE = re.compile(
+    r'^[ \t]*#[ \t]*(?:include|define[ \t]+VOLCONTACT_SIMD_KERNEL)[ \t]*[<"]([^>"]+)[>"]',
+    re.MULTILINE,
+)
+_DEFINITIONS = ("EIGEN_DONT_PARALLELIZE", "EIGEN_MPL2_ONLY", "VC_BUILDS_LIBRARY")
+_HEAD = """// SPDX-License-Identifier: Apache-2.0
+#if !defined(_MSC_VER) && __cplusplus < 202002L
+#error "compile the sources of this FMU as C++20: see sources/README.txt"
+#endif
+""" + "".join(f"#define {name}\n" for name in _DEFINITIONS)
+_README = f"""Sources of this FMU
+
+Compile every file that modelDescription.xml (FMI 2.0) or buildDescription.xml (FMI 3.0) names, with
+this folder among those for headers, and link them to one shared library named after the model:
+
+    c++ {OPTIONS} -I. -c FILE
+    c++ -shared -fopenmp -o NAME.so *.o -ldl
+
+volcontact is under the Apache License 2.0 (https://www.apache.org/licenses/LICENSE-2.0). The folder
+Eigen has headers of Eigen (https://eigen.tuxfamily.org) as they are published, under the Mozilla
+Public License 2.0 (https://www.mozilla.org/MPL/2.0/).
+"""
+
+
+def source_files(fmi: int) -> tuple[dict[str, bytes], list[str]]:
+    """Files of the folder `sources`, and which of them to compile.
+
+    Raises:
+        RuntimeError: the package has no sources, or there are no headers of Eigen.
+    """
+    plugin, eigen = _plugin(), _eigen()
+    return dict(_collected(plugin, eigen, fmi)), list(_rooms(plugin, fmi))
+
+
+def build_description(identifier: str, names: Iterable[str]) -> str:
+    """buildDescription.xml of FMI 3.0."""
+    files = "\n".join(f"<SourceFile name={quoteattr(name)}/>" for name in names)
+    libraries = "\n".join(f'<Library name="{name}" external="true"/>' for name in LIBRARIES)
+    return f"""<?xml version="1.0" encoding="UTF-8"?>
+<fmiBuildDescription fmiVersion="3.0">
+<BuildConfiguration modelIdentifier="{identifier}" description="C++20, with OpenMP; see README.txt">
+<SourceFileSet language="C++20" compiler="gcc" compilerOptions="{OPTIONS}">
+{files}
+<IncludeDirectory name="."/>
+</SourceFileSet>
+{libraries}
+</BuildConfiguration>
+</fmiBuildDescription>
+"""
+
+
+def _plugin_places() -> list[Path]:
+    """Where the sources may lie: in the package, or in the checkout that it runs from."""
+    package = Path(volcontact.__file__)
+    places = [library_folder() / "source", package.parent / "source"]
+    return places + [folder / "plugin" for folder in package.parents]
+
+
+def _plugin() -> Path:
+    for place in _plugin_places():
+        if (place / "fmu" / "instance.cc").is_file():
+            return place
+    raise RuntimeError("this installation of volcontact has no sources to put into an FMU")
+
+
+def _eigen() -> Path:
+    inside = Path("cmeel.prefix") / "include" / "eigen3"
+    places = [Path(entry) / inside for entry in sys.path]
+    for folder in Path(volcontact.__file__).parents:  # of a checkout
+        places += (folder / ".venv" / "tools" / "eigen").glob("**/include/eigen3")
+    places.append(Path("/usr/include/eigen3"))
+    for place in places:
+        if (place / "Eigen" / "Core").is_file():
+            return place
+    raise RuntimeError("there are no headers of Eigen: pip install cmeel-eigen")
+
+
+@functools.cache
+def _listed(plugin: Path) -> tuple[tuple[str, ...], frozenset[str]]:
+    """Sources of the core, and those to be compiled by themselves, as its CMakeLists.txt says."""
+    text = (plugin / "volcontact" / "CMakeLists.txt").read_text()
+
+    def files(command: str) -> list[str]:
+        match = re.search(command + r"([^)]*)\)", text)
+        if match is None:
+            raise RuntimeError(f"the sources of volcontact have no {command!r}")
+        return re.findall(r"[\w/]+\.cc", match[1])
+
+    alone = files(r"volcontact_unity_by_folder\(volcontact_core ALONE")
+    alone += files(r"set_source_files_properties\((?=model)")
+    return tuple(files(r"add_library\(volcontact_core STATIC")), frozenset(alone)
+
+
+def _rooms(plugin: Path, fmi: int) -> dict[str, list[str]]:
+    """Sources that are compiled as one, by the name of the file that includes them."""
+    core, alone = _listed(plugin)
+    rooms: dict[str, list[str]] = {}
+    for name in core:
+        room = name.removesuffix(".cc") if name in alone else name.rpartition("/")[0]
+        rooms.setdefault(f"core_{room.replace('/', '_')}.cc", []).append(f"volcontact/{name}")
+    rooms["container.cc"] = [
+        f"c_api/{path.name}" for path in sorted((plugin / "c_api").glob("*.cc"))
+    ]
+    for path in sorted((plugin / "fmu").rglob("*.cc")):
+        if path.name != f"fmi{5 - fmi}.cc":
+            name = path.relative_to(plugin / "fmu").as_posix()
+            rooms[f"layer_{name.replace('/', '_')}"] = [f"fmu/{name}"]
+    return rooms
+
+
+def _collected(plugin: Path, eigen: Path, fmi: int) -> Iterator[tuple[str, bytes]]:
+    """All files, with the headers that they include, theirs and so on."""
+    rooms = _rooms(plugin, fmi)
+    yield "README.txt", _README.encode()
+    for name, members in rooms.items():
+        yield name, (_HEAD + "".join(f'#include "{one}"\n' for one in members)).encode()
+    waiting = [member for members in rooms.values() for member in members]
+    seen = set(waiting)
+    while waiting:
+        name = waiting.pop()
+        root = eigen if name.startswith("Eigen/") else plugin
+        text = (root / name).read_text(errors="surrogateescape")
+        yield name, text.encode(errors="surrogateescape")
+        for included in _INCLUDE.findall(text):
+            found = _found(root, name, included, (plugin, eigen))
+            if found is not None and found not in seen:
+                seen.add(found)
+                waiting.append(found)
+
+
+def _found(root: Path, by: str, included: str, roots: tuple[Path, Path]) -> str | None:
+    """The file that an include means, by its path in `sources`; None for one of the system."""
+    beside = (root / by).parent / included
+    if beside.is_file():
+        return beside.resolve().relative_to(root.resolve()).as_posix()
+    is_eigens = included.startswith("Eigen/")
+    path = roots[1 if is_eigens else 0] / included
+    return included if path.is_file() else None
