@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Both scenes in scipy: a rigid body as 13 equations, `solve_ivp` with an event at the touch."""
 
+from itertools import pairwise
+
 import numpy as np
 from scipy import integrate
 from two_scenes import GRAVITY, SAMPLE, Memory, Scene, cross, pose, show
@@ -39,16 +41,15 @@ def run(scene: Scene) -> tuple[np.ndarray, np.ndarray, list[float]]:
         return float(scene.gap(pose(y[:3], y[3:7])))
 
     gap.direction = -1
-    times, poses = [0.0], [scene.X_WA]
-    for t in SAMPLE * np.arange(round(scene.duration / SAMPLE)):
-        span, parts = (t, t + SAMPLE), (scene, memory)
+    times = SAMPLE * np.arange(round(scene.duration / SAMPLE) + 1)
+    poses, parts = [scene.X_WA], (scene, memory)
+    for span in pairwise(times):
         solved = integrate.solve_ivp(slopes, span, y, args=parts, events=gap, **METHOD)
         y = solved.y[:, -1]
         touches += list(solved.t_events[0])
         memory.keep(span[1], memory.report(span[1], *motion(y)))
-        times.append(span[1])
         poses.append(motion(y)[0])
-    return np.array(times), np.array(poses), touches
+    return times, np.array(poses), touches
 
 
 if __name__ == "__main__":
