@@ -15,8 +15,7 @@ def free_body(world: dartpy.simulation.World, scene: Scene) -> dartpy.dynamics.B
     start.set_rotation(scene.X_WA[:3, :3])
     start.set_translation(scene.X_WA[:3, 3])
     joint.setPositions(dartpy.dynamics.FreeJoint.convertToPositions(start))
-    back = scene.X_WA[:3, :3].T  # its coordinates are a twist in the body's own frame
-    joint.setVelocities(np.r_[back @ scene.V_WA[:3], back @ scene.V_WA[3:]])
+    joint.setVelocities(scene.V_WA)
     world.addSkeleton(skeleton)
     return body
 
