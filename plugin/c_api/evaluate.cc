@@ -79,6 +79,8 @@ vc_site plain(const SiteReport& from) {
   to.spin = from.spin;
   to.elastic_energy = from.elastic_energy;
   copy_channels(from.power, to.power);
+  const Mat3 second_moment = from.metrics.second_moment();
+  std::copy_n(second_moment.data(), 9, to.second_moment);  // symmetric: rows are columns
   to.pair = from.pair;
   return to;
 }

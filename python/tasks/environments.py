@@ -150,4 +150,6 @@ def _install_package(environment: Environment, tests: bool) -> None:
         f"{ROOT}{extras}",
         mujoco,
     )
+    if wanted.exists() and environment == located("newest"):
+        environment.install("--no-deps", "--group", "hosts")
     started.replace(environment.venv / ".ready")

@@ -32,5 +32,31 @@ TEST(CAllocations, WarmEvaluationAllocatesNothing) {
   EXPECT_GT(adaptor::testing::AllocationCounter::total(), before);
 }
 
+// What implicit solvers and solvers that integrate the states call as well.
+TEST(CAllocations, WarmTangentAndRatesAllocateNothing) {
+  const Model model = model_of(solid("box", "half_sizes", {0.1, 0.08, 0.05}),
+                               solid("box", "half_sizes", {0.5, 0.5, 0.05}));
+  ASSERT_EQ(vc_model_choose(model.get(), "friction_law", "bristle"), 0);
+  const Workspace scratch = workspace();
+  std::vector<double> state(static_cast<std::size_t>(vc_model_state_size(model.get(), 4)));
+  std::vector<double> next = state, rates = state;
+  const int size = static_cast<int>(state.size());
+  vc_result result;
+  vc_tangent tangent;
+  const auto evaluate = [&](double x) {
+    const vc_motion motion = at(x, 0, 0.099);
+    const int code = vc_evaluate_rates(model.get(), scratch.get(), &motion, state.data(),
+                                       next.data(), rates.data(), size, &result);
+    return code != 0 ? code : vc_tangent_of(model.get(), scratch.get(), &tangent);
+  };
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(evaluate(1e-5 * i), 0) << vc_error();
+  }
+  const adaptor::testing::AllocationCounter counter;
+  const long before = adaptor::testing::AllocationCounter::total();
+  for (int i = 3; i < 20; ++i) evaluate(1e-5 * i);
+  EXPECT_EQ(adaptor::testing::AllocationCounter::total(), before);
+}
+
 }  // namespace
 }  // namespace volcontact::c_api::testing::allocations_test

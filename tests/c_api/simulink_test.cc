@@ -192,7 +192,7 @@ TEST(Simulink, BouncingBallHasTheBitsOfTheContainer) {
 
 TEST(Simulink, LawsWithMemoryHaveTheBitsOfTheContainer) {
   const auto [ball, peak] = same_course(
-      "choose friction_law bristle\nset stiffness 1 1e8\nset restitution 1 0.7\nset friction 1 0.3",
+      "choose friction_law bristle\nset stiffness 1 1e8\nset restitution 1 0.7\nset static_friction 1 0.3\nset friction 1 0.3",
       100000);
   // Skidding ended: it rolls on the centroid of its cap, at 5/7 of its speed and a little more.
   EXPECT_NEAR(ball.vx, 5.0 / 7.0 * 0.3, 0.005);

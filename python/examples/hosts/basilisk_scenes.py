@@ -9,53 +9,51 @@ from two_scenes import GRAVITY, SAMPLE, Memory, Scene, moved, pose, show
 
 
 class Contact(sysModel.SysModel):
-    """Reads the state of the spacecraft, and writes the wrench that acts until the next call."""
+    """Reads the state of the spacecraft, and writes the wrench that acts for a step."""
 
-    def __init__(self, scene: Scene, state: object, step: float) -> None:
+    def __init__(self, scene: Scene, state: object) -> None:
         super().__init__()
-        self.scene, self.step, self.memory = scene, step, Memory(scene.contact)
-        self.state, self.times, self.poses = state.addSubscriber(), [], []
+        self.scene, self.state = scene, state.addSubscriber()
+        self.memory, self.rows = Memory(scene.contact), []
         self.force, self.torque = messaging.CmdForceInertialMsg(), messaging.CmdTorqueBodyMsg()
 
     def UpdateState(self, now: int) -> None:  # noqa: N802 (Basilisk's name)
-        read, time = self.state(), max(0.0, now * 1e-9 - self.step)  # it is of a step ago
+        step, read = self.scene.step, self.state()
+        time = max(0.0, now * 1e-9 - step)  # what is read is of a step ago
         s = np.array(read.sigma_BN)
         X = pose(np.array(read.r_BN_N), np.r_[1.0 - s @ s, 2.0 * s])
         V = np.r_[X[:3, :3] @ read.omega_BN_B, read.v_BN_N]
-        self.times.append(time)
-        self.poses.append(X)
+        self.rows.append((time, X))
         self.memory.keep(time, self.memory.report(time, X, V))
-        X = moved(X, V, 0.5 * self.step)  # the wrench holds for a step: that of its middle
-        report = self.memory.report(time + 0.5 * self.step, X, V)
-        force = (report.force_on_A + self.scene.mass * GRAVITY).tolist()
-        torque = (X[:3, :3].T @ report.torque_on_A).tolist()
+        X = moved(X, V, 0.5 * step)  # the wrench holds for a step: that of its middle
+        report = self.memory.report(time + 0.5 * step, X, V)
+        force = report.force_on_A + self.scene.mass * GRAVITY
+        torque = X[:3, :3].T @ report.torque_on_A
         self.force.write(messaging.CmdForceInertialMsgPayload(forceRequestInertial=force), now)
         self.torque.write(messaging.CmdTorqueBodyMsgPayload(torqueRequestBody=torque), now)
 
 
-def run(scene: Scene, step: float = 1e-5) -> tuple[np.ndarray, np.ndarray]:
+def run(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """Times [s], shape (n,), and poses, shape (n, 4, 4); Basilisk steps by Runge-Kutta."""
     sim, body = SimulationBaseClass.SimBaseClass(), spacecraft.Spacecraft()
-    sim.CreateNewProcess("process").addTask(sim.CreateNewTask("task", round(step * 1e9)))
-    body.hub.mHub, body.hub.r_BcB_B = scene.mass, [[0.0], [0.0], [0.0]]
-    body.hub.IHubPntBc_B = np.diag(scene.inertia).tolist()
-    q, turned_back = scene.quaternion, scene.X_WA[:3, :3].T
+    sim.CreateNewProcess("process").addTask(sim.CreateNewTask("task", round(scene.step * 1e9)))
+    body.hub.mHub, body.hub.IHubPntBc_B = scene.mass, np.diag(scene.inertia)
     body.hub.r_CN_NInit, body.hub.v_CN_NInit = scene.position, scene.V_WA[3:]
-    body.hub.sigma_BNInit = q[1:] / (1.0 + q[0])
-    body.hub.omega_BN_BInit = turned_back @ scene.V_WA[:3]
+    body.hub.sigma_BNInit = scene.quaternion[1:] / (1.0 + scene.quaternion[0])
+    body.hub.omega_BN_BInit = scene.X_WA[:3, :3].T @ scene.V_WA[:3]
     push = extForceTorque.ExtForceTorque()
     body.addDynamicEffector(push)
-    contact = Contact(scene, body.scStateOutMsg, step)
+    contact = Contact(scene, body.scStateOutMsg)
     push.cmdForceInertialInMsg.subscribeTo(contact.force)
     push.cmdTorqueInMsg.subscribeTo(contact.torque)
     for priority, module in ((30, contact), (20, push), (10, body)):
         module.ModelTag = f"module{priority}"
         sim.AddModelToTask("task", module, priority)
     sim.InitializeSimulation()
-    sim.ConfigureStopTime(round(scene.duration * 1e9))
+    sim.ConfigureStopTime(round((scene.duration + scene.step) * 1e9))
     sim.ExecuteSimulation()
-    every = round(SAMPLE / step)
-    return np.array(contact.times)[1::every], np.array(contact.poses)[1::every]
+    times, poses = zip(*contact.rows[1 :: round(SAMPLE / scene.step)], strict=True)
+    return np.array(times), np.array(poses)
 
 
 if __name__ == "__main__":

@@ -24,6 +24,7 @@ class Scene:
         quaternion: of the attitude then, w, x, y, z.
         V_WA: twist then, angular and linear, in the world frame, shape (6,) [rad/s], [m/s].
         duration: [s].
+        step: for hosts that take steps of one length [s].
         gap: of a pose: the way to the wall that is watched for a touch [m].
         events: of times and poses: when what happened [s].
     """
@@ -35,6 +36,7 @@ class Scene:
     quaternion: np.ndarray
     V_WA: np.ndarray
     duration: float
+    step: float
     gap: Callable[[np.ndarray], np.ndarray]
     events: Callable[[np.ndarray, np.ndarray], dict[str, float]]
 
@@ -133,6 +135,7 @@ def ball_in_cylinder() -> Scene:
         quaternion=np.array([1.0, 0.0, 0.0, 0.0]),
         V_WA=np.array([0.0, 0.0, 20.0, 0.0, 0.1, 0.0]),
         duration=4.0,
+        step=2e-4,
         gap=bore_gap,
         events=ball_events,
     )
@@ -178,6 +181,7 @@ def tippe_top() -> Scene:
         quaternion=np.array([np.cos(0.05), np.sin(0.05), 0.0, 0.0]),
         V_WA=np.array([0.0, -180.0 * np.sin(0.1), 180.0 * np.cos(0.1), 0.0, 0.0, 0.0]),
         duration=1.65,
+        step=4e-5,
         gap=stem_gap,
         events=top_events,
     )
