@@ -22,16 +22,16 @@ def results() -> dict[str, Any]:
 def host(name: str) -> str:
     """Events of one simulator beside MuJoCo's."""
     found, reference = results()["hosts"][name], results()["reference"]
+    mujoco = f"MuJoCo {results()['mujoco']} [s]"
     lines = [
-        f"| scene | event | MuJoCo {results()['mujoco']} [s] | {found['version']} [s] | difference [s] |",
+        f"| scene | event | {mujoco} | {found['version']} [s] | difference [s] |",
         "| --- " * 5 + "|",
     ]
     for scene, events in found["events"].items():
         for event, time in events.items():
             expected = reference[scene][event]
-            lines.append(
-                f"| {SCENE[scene]} | {event} | {expected:.6f} | {time:.6f} | {time - expected:.1g} |"
-            )
+            cells = f"{expected:.6f}", f"{time:.6f}", f"{time - expected:.1g}"
+            lines.append(f"| {' | '.join((SCENE[scene], event, *cells))} |")
     seconds = found["seconds"]
     lines.append(
         f"\nFree fall takes the ball to the wall in {FREE_FALL} s. The runs took "
@@ -42,10 +42,8 @@ def host(name: str) -> str:
 
 def hosts(_: str) -> str:
     """All simulators: the largest difference of each scene."""
-    lines = [
-        "| page | version | ball in a cylinder, largest difference [s] | tippe-top, largest difference [s] |",
-        "| --- " * 4 + "|",
-    ]
+    titles = [f"{scene}, largest difference [s]" for scene in SCENE.values()]
+    lines = [f"| page | version | {' | '.join(titles)} |", "| --- " * 4 + "|"]
     for name, found in results()["hosts"].items():
         worst = [
             max(abs(time - results()["reference"][scene][event]) for event, time in events.items())

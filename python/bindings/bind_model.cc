@@ -123,7 +123,8 @@ void bind_report(nb::module_& m) {
       .def_ro("power", &SiteReport::power, nb::rv_policy::copy, "Dissipated [W]");
   nb::class_<ContactTangent>(
       m, "ContactTangent",
-      "How the wrenches change with the motion: rows are the torque and force on A, then those on B; "
+      "How the wrenches change with the motion: rows are the torque and force on A, then those on "
+      "B; "
       "columns the turn [rad] and displacement [m] of A's frame, then of B's, or their speeds.")
       .def_ro("by_motion", &ContactTangent::by_motion, nb::rv_policy::copy,
               "Analytic, of a flat patch, at fixed states, shape (12, 12)")

@@ -14,8 +14,9 @@ namespace {
 constexpr double kRadius = 0.05, kMass = 1.0, kGravity = 9.81, kStep = 1e-5;
 constexpr int kPoseA = 0, kTwistA = 1, kPoseB = 2, kTwistB = 3;  // inputs
 constexpr int kForceA = 0, kTorqueA = 1, kForceB = 2, kTorqueB = 3, kContact = 4;
-constexpr const char* kBall = "pair at 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 solid sphere 0.05 "
-                              "at 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 solid half_space";
+constexpr const char* kBall =
+    "pair at 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 solid sphere 0.05 "
+    "at 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 solid half_space";
 
 /// Whether a text is there and has the part in it.
 ::testing::AssertionResult has(const std::string& text, const char* part) {
@@ -197,7 +198,8 @@ TEST(Simulink, BouncingBallHasTheBitsOfTheContainer) {
 
 TEST(Simulink, LawsWithMemoryHaveTheBitsOfTheContainer) {
   const auto [ball, peak] = same_course(
-      "choose friction_law bristle\nchoose rolling off\nset stiffness 1 1e8\nset restitution 1 0.7\nset static_friction 1 0.3\nset friction 1 0.3",
+      "choose friction_law bristle\nchoose rolling off\nset stiffness 1 1e8\nset restitution 1 "
+      "0.7\nset static_friction 1 0.3\nset friction 1 0.3",
       100000);
   // Skidding ended: it rolls, at 5/7 of its speed and a little more, as its cap is flat.
   EXPECT_NEAR(ball.vx, 5.0 / 7.0 * 0.3, 0.005);
@@ -206,8 +208,9 @@ TEST(Simulink, LawsWithMemoryHaveTheBitsOfTheContainer) {
 }
 
 TEST(Simulink, OutputsAreThoseOfTheContainer) {
-  Block block("pair at 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 solid box 0.1 0.08 0.05 "
-              "at 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 solid box 0.5 0.5 0.05");
+  Block block(
+      "pair at 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 solid box 0.1 0.08 0.05 "
+      "at 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 solid box 0.5 0.5 0.05");
   ASSERT_EQ(block.start(), "");
   // A turn about z shows whether matrices are taken column by column.
   vc_motion motion = at(0.45, 0.02, 0.099, 0.3);
@@ -219,9 +222,9 @@ TEST(Simulink, OutputsAreThoseOfTheContainer) {
                                solid("box", "half_sizes", {0.5, 0.5, 0.05}));
   vc_result r;
   ASSERT_EQ(vc_evaluate(model.get(), workspace().get(), &motion, nullptr, nullptr, 0, 0.0, &r), 0);
-  const double contact[] = {r.metrics.volume, r.metrics.depth,     r.metrics.area,
-                            1.0,              r.elastic_energy,    r.power[0],
-                            r.power[1],       r.power[2],          r.power[3]};
+  const double contact[] = {r.metrics.volume, r.metrics.depth, r.metrics.area, 1.0,
+                            r.elastic_energy, r.power[0],      r.power[1],     r.power[2],
+                            r.power[3]};
   const std::pair<int, const double*> wanted[] = {{kForceA, r.force_on_a},
                                                   {kTorqueA, r.torque_on_a},
                                                   {kForceB, r.force_on_b},

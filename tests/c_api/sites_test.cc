@@ -15,9 +15,8 @@ constexpr const char* kUnit = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 ";
 // the wall above on one side and below on the other.
 const std::string kPegInBore =
     std::string("pair at 1 0 0 0 0 0.99955003 -0.0299955 0 0 0.0299955 0.99955003 0 0 0 0 1 ") +
-    "solid cylinder 0.02 0.04 at " + kUnit +
-    "solid csg member " + kUnit + "box 0.06 0.06 0.03 member " + kUnit +
-    "cylinder 0.0205 0.05 difference ";
+    "solid cylinder 0.02 0.04 at " + kUnit + "solid csg member " + kUnit +
+    "box 0.06 0.06 0.03 member " + kUnit + "cylinder 0.0205 0.05 difference ";
 
 std::string pair(const std::string& a, const std::string& b, const std::string& at = kUnit) {
   return "pair at " + at + "solid " + a + " at " + kUnit + "solid " + b + " ";
@@ -64,7 +63,7 @@ void expect_same(const Sum& sum, const double* force, const double* torque) {
 struct Scene {
   const char* name;
   std::string pairs;
-  double height;     // of A's origin [m]
+  double height;  // of A's origin [m]
   std::size_t sites;
 };
 
@@ -144,8 +143,9 @@ TEST(CSites, SecondMomentOfAFlatPatchIsThatOfItsArea) {
   ASSERT_EQ(vc_evaluate(model.get(), scratch.get(), &motion, nullptr, nullptr, 0, 0.0, &result), 0);
   ASSERT_EQ(vc_sites(scratch.get(), &site, 1), 1);
   const double volume = 4.0 * a * b * h;
-  const double expected[] = {volume * a * a / 3.0, 0.0, 0.0, 0.0, volume * b * b / 3.0, 0.0, 0.0,
-                             0.0, volume * h * h / 12.0};
+  const double expected[] = {volume * a * a / 3.0, 0.0, 0.0, 0.0,
+                             volume * b * b / 3.0, 0.0, 0.0, 0.0,
+                             volume * h * h / 12.0};
   for (int i = 0; i < 9; ++i) {
     EXPECT_NEAR(site.second_moment[i], expected[i], 1e-12 * expected[0]) << i;
   }

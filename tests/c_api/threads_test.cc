@@ -83,10 +83,9 @@ TEST(CThreads, ModelsMayTakeTurnsWithOneWorkspace) {
     const vc_motion motion = at(1e-3 * i, 0.01, 0.0995 - 1e-5 * i, 0.05 * i);
     int k = 0;
     for (const vc_model* model : {boxes.get(), ball.get()}) {
-      ASSERT_EQ(
-          vc_evaluate(model, shared.get(), &motion, nullptr, nullptr, 0, 0.0, &turns[k]), 0);
-      ASSERT_EQ(
-          vc_evaluate(model, workspace().get(), &motion, nullptr, nullptr, 0, 0.0, &alone[k]), 0);
+      ASSERT_EQ(vc_evaluate(model, shared.get(), &motion, nullptr, nullptr, 0, 0.0, &turns[k]), 0);
+      ASSERT_EQ(vc_evaluate(model, workspace().get(), &motion, nullptr, nullptr, 0, 0.0, &alone[k]),
+                0);
       EXPECT_EQ(std::memcmp(&turns[k], &alone[k], sizeof(vc_result)), 0) << i;
       ++k;
     }

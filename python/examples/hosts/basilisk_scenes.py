@@ -17,7 +17,7 @@ class Contact(sysModel.SysModel):
         self.memory, self.rows = Memory(scene.contact), []
         self.force, self.torque = messaging.CmdForceInertialMsg(), messaging.CmdTorqueBodyMsg()
 
-    def UpdateState(self, now: int) -> None:  # noqa: N802 (Basilisk's name)
+    def UpdateState(self, now: int) -> None:  # noqa: D102 (called at every step)
         step, read = self.scene.step, self.state()
         time = max(0.0, now * 1e-9 - step)  # what is read is of a step ago
         s = np.array(read.sigma_BN)

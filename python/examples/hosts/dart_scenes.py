@@ -16,7 +16,9 @@ def free_body(world: dartpy.simulation.World, scene: Scene) -> dartpy.dynamics.B
     start.set_translation(scene.X_WA[:3, 3])
     joint.setPositions(dartpy.dynamics.FreeJoint.convertToPositions(start))
     late = np.r_[0.0, 0.0, 0.0, 0.5 * world.getTimeStep() * GRAVITY]
-    joint.setVelocities(scene.V_WA - late)  # Euler's rule is leapfrog with speeds of half a step ago
+    joint.setVelocities(
+        scene.V_WA - late
+    )  # Euler's rule is leapfrog with speeds of half a step ago
     world.addSkeleton(skeleton)
     return body
 

@@ -17,22 +17,22 @@ class Contact(drake.LeafSystem):
         self.DeclareVectorInputPort("state", 13)
         self.memory = self.DeclareAbstractState(drake.Value((0.0, None)))
         kind = drake.Value([drake.ExternallyAppliedSpatialForce()])
-        self.DeclareAbstractOutputPort("force", lambda: kind, self.push)
-        self.DeclarePerStepUnrestrictedUpdateEvent(self.keep)  # at the start of each accepted step
+        self.DeclareAbstractOutputPort("force", lambda: kind, self._push)
+        self.DeclarePerStepUnrestrictedUpdateEvent(self._keep)  # at the start of each accepted step
 
-    def report(self, context: drake.Context) -> vc.ContactReport:
+    def _report(self, context: drake.Context) -> vc.ContactReport:
         x, memory = self.get_input_port().Eval(context), Memory(self.scene.contact)
         memory.time, memory.state = context.get_abstract_state(self.memory).get_value()
         return memory.report(context.get_time(), pose(x[4:7], x[:4]), x[7:])
 
-    def push(self, context: drake.Context, output: drake.Value) -> None:
-        report, applied = self.report(context), drake.ExternallyAppliedSpatialForce()
+    def _push(self, context: drake.Context, output: drake.Value) -> None:
+        report, applied = self._report(context), drake.ExternallyAppliedSpatialForce()
         applied.body_index = self.body
         applied.F_Bq_W = drake.SpatialForce(tau=report.torque_on_A, f=report.force_on_A)
         output.set_value([applied])
 
-    def keep(self, context: drake.Context, state: drake.State) -> None:
-        kept = (context.get_time(), self.report(context).state)
+    def _keep(self, context: drake.Context, state: drake.State) -> None:
+        kept = (context.get_time(), self._report(context).state)
         state.get_mutable_abstract_state(self.memory).set_value(kept)
 
 

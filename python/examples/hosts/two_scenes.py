@@ -41,7 +41,7 @@ class Scene:
     events: Callable[[np.ndarray, np.ndarray], dict[str, float]]
 
     @property
-    def X_WA(self) -> np.ndarray:  # noqa: N802 (a pose)
+    def X_WA(self) -> np.ndarray:
         """The pose at the start, shape (4, 4)."""
         return pose(self.position, self.quaternion)
 
@@ -97,7 +97,7 @@ def first(found: np.ndarray) -> float:
     return float(found[0]) if len(found) else float("nan")
 
 
-# ---- A ball of 0.1 m in a horizontal cylinder of 1 m, the first demonstration of the CSA paper ----
+# ---- A ball of 0.1 m in a horizontal cylinder of 1 m, a demonstration of the CSA paper -----------
 
 BORE, BALL = 1.0, 0.1  # radii [m]
 
@@ -123,9 +123,7 @@ def ball_in_cylinder() -> Scene:
     contact = vc.ContactModel(
         pairs=[vc.Pair(vc.Sphere(radius=BALL), vc.Box((1.2, 1.0, 1.2)) - hole)],
         normal=vc.HuntCrossley(stiffness=1e6, damping=8.0),
-        friction=vc.Bristle(
-            friction=0.1, static_friction=0.1, coupling="quadrature", **bristles
-        ),
+        friction=vc.Bristle(friction=0.1, static_friction=0.1, coupling="quadrature", **bristles),
     )
     return Scene(
         mass=1.0,

@@ -47,8 +47,7 @@ SCENES = {
         [
             vc.Pair(
                 vc.Sphere(0.1),
-                vc.Box((1.2, 1.0, 1.2))
-                - vc.Cylinder(radius=1.0, half_length=1.1).posed(ALONG_Y),
+                vc.Box((1.2, 1.0, 1.2)) - vc.Cylinder(radius=1.0, half_length=1.1).posed(ALONG_Y),
             )
         ],
         turned(0.0, (0.1, 0.2, -np.sqrt(0.905**2 - 0.01))),

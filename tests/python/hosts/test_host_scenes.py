@@ -23,8 +23,10 @@ def needed(package):
     try:
         importlib.import_module(package)
     except ImportError as error:
-        pytest.skip(f"{package} is missing: ./run installs the group `hosts` for the newest MuJoCo"
-                    f" ({error})")
+        pytest.skip(
+            f"{package} is missing: ./run installs the group `hosts` for the newest MuJoCo"
+            f" ({error})"
+        )
 
 
 def test_reference_touches_after_free_fall(reference):
