@@ -15,7 +15,7 @@ constexpr const char* kUnit = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 ";
 // the wall above on one side and below on the other.
 const std::string kPegInBore =
     std::string("pair at 1 0 0 0 0 0.99955003 -0.0299955 0 0 0.0299955 0.99955003 0 0 0 0 1 ") +
-    "solid cylinder 0.02 0.04 at " + kUnit + "solid csg member " + kUnit +
+    "solid cylinder 0.02 0.04 at " + kUnit + "solid csg 3 member " + kUnit +
     "box 0.06 0.06 0.03 member " + kUnit + "cylinder 0.0205 0.05 difference ";
 
 std::string pair(const std::string& a, const std::string& b, const std::string& at = kUnit) {
@@ -63,21 +63,21 @@ void expect_same(const Sum& sum, const double* force, const double* torque) {
 struct Scene {
   const char* name;
   std::string pairs;
-  double height;  // of A's origin [m]
+  double x, y, z;  // of A's origin [m]
   std::size_t sites;
 };
 
 const std::vector<Scene>& scenes() {
   static const std::vector<Scene> all = {
-      {"ball on plane", pair("sphere 0.05", "half_space"), 0.049, 1},
-      {"box on box", pair("box 0.1 0.08 0.05", "box 0.5 0.5 0.05"), 0.099, 1},
-      {"cylinder on box", pair("cylinder 0.04 0.05", "box 0.5 0.5 0.05"), 0.099, 1},
-      {"torus on plane", pair("torus 0.1 0.02", "half_space"), 0.019, 1},
+      {"ball on plane", pair("sphere 0.05", "half_space"), 0.03, -0.02, 0.049, 1},
+      {"box on box", pair("box 0.1 0.08 0.05", "box 0.5 0.5 0.05"), 0.03, -0.02, 0.099, 1},
+      {"cylinder on box", pair("cylinder 0.04 0.05", "box 0.5 0.5 0.05"), 0.03, -0.02, 0.099, 1},
+      {"torus on plane", pair("torus 0.1 0.02", "half_space"), 0.03, -0.02, 0.019, 1},
       {"two balls on plane",
        pair("sphere 0.05", "half_space", "1 0 0 0.2 0 1 0 0 0 0 1 0 0 0 0 1 ") +
            pair("sphere 0.06", "half_space", "1 0 0 -0.2 0 1 0 0 0 0 1 0 0 0 0 1 "),
-       0.049, 2},
-      {"peg jammed in a bore", kPegInBore, 0.0, 2},
+       0.03, -0.02, 0.049, 2},
+      {"peg jammed in a bore", kPegInBore, 0.0, 0.0, 0.0, 2},
   };
   return all;
 }
@@ -106,8 +106,8 @@ TEST(CSites, ForcesAtPointsSumToTheWrenches) {
       std::vector<double> state(static_cast<std::size_t>(size));
       vc_result result;
       for (int step = 0; step < 3; ++step) {  // bristles bend by and by
-        vc_motion motion = at(0.03 + 1e-5 * step, -0.02, scene.height, 2e-4 * step);
-        motion.X_WB[3] = 1e-3;
+        vc_motion motion = at(scene.x + 1e-5 * step, scene.y, scene.z, 2e-4 * step);
+        motion.X_WB[3] = 1e-4;
         const double twist[] = {0.3, -0.2, 2.0, 0.1, 0.05, -0.02};
         std::copy_n(twist, 6, motion.V_WA);
         motion.V_WB[4] = 0.01;

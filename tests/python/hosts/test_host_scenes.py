@@ -6,7 +6,7 @@ import importlib
 import mujoco
 import numpy as np
 import pytest
-from host_runs import EXAMPLES, FREE_FALL, HOSTS, in_host, in_mujoco
+from host_runs import EXAMPLES, FREE_FALL, HOSTS, in_host, in_mujoco, module
 
 SCENES = ("ball_in_cylinder", "tippe_top")
 TOUCH, LATER = 1e-5, 1e-3  # relative; docs/validation.md asks the same of the touch, 5e-3 later
@@ -57,24 +57,29 @@ def test_events_are_those_of_mujoco(host, name, reference):
 
 def test_solve_ivp_finds_the_touches_as_events(reference):
     needed("scipy")
-    for name, event in (("ball_in_cylinder", "touches"), ("tippe_top", "stem touches")):
-        touches = in_host("scipy", name).touches
-        # The reference interpolates between samples 1 ms apart: g dt^2/8 over the speed.
-        assert touches[0] == pytest.approx(reference[name].events[event], abs=2e-6)
-        if name == "ball_in_cylinder":
-            assert touches[0] == pytest.approx(FREE_FALL, rel=1e-8)
+    from scipy.interpolate import CubicSpline
+
+    (touch, *_) = in_host("scipy", "ball_in_cylinder").touches
+    assert touch == pytest.approx(FREE_FALL, rel=1e-8)
+    # The stem nods at the rate of the spin: between samples 1 ms apart its gap is no line.
+    run = reference["tippe_top"]
+    near = np.abs(run.times - run.events["stem touches"]) < 0.01
+    gap = module("two_scenes").stem_gap(run.poses)
+    roots = CubicSpline(run.times[near], gap[near]).roots(extrapolate=False)
+    (touch, *_) = in_host("scipy", "tippe_top").touches
+    assert touch == pytest.approx(roots[0], abs=1e-6)
 
 
 @pytest.mark.skipif(
     int(mujoco.__version__.split(".")[0]) < 3,
     reason="MuJoCo 2 integrates bodies that turn to second order",
 )
-@pytest.mark.parametrize("name", SCENES)
-def test_solver_of_high_order_repeats_the_run_of_mujoco(name, reference):
+@pytest.mark.parametrize(("name", "bound"), [("ball_in_cylinder", 2e-4), ("tippe_top", 1e-7)])
+def test_solver_of_high_order_repeats_the_run_of_mujoco(name, bound, reference):
     """Whole poses, through impacts and with bristles: the contact is the same function there."""
     needed("scipy")
     run = in_host("scipy", name)
-    assert np.abs(run.poses - reference[name].poses).max() < 2e-5
+    assert np.abs(run.poses - reference[name].poses).max() < bound
 
 
 def test_programs_are_short():
