@@ -14,12 +14,13 @@ extern "C" int vc_tangent_of(const vc_model* model, vc_workspace* workspace, vc_
     require_given(model, function, "model");
     require_given(workspace, function, "workspace");
     require_given(tangent, function, "tangent");
-    require(model->contact && workspace->model == &*model->contact,
-            "vc_tangent_of: the workspace has no evaluation of this model as it is now; call "
-            "vc_evaluate first");
+    check(model->contact && workspace->model == &*model->contact, [] {
+      return "vc_tangent_of: the workspace has no evaluation of this model as it is now; call "
+             "vc_evaluate first";
+    });
     const ContactTangent found = contact_tangent(*model->contact, workspace->report);
-    require(found.by_motion.allFinite() && found.by_speed.allFinite(),
-            "vc_tangent_of: a derivative is no finite number");
+    check(found.by_motion.allFinite() && found.by_speed.allFinite(),
+          [] { return "vc_tangent_of: a derivative is no finite number"; });
     std::copy_n(found.by_motion.data(), 144, tangent->by_motion);
     std::copy_n(found.by_speed.data(), 144, tangent->by_speed);
     return 0;
