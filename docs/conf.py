@@ -84,6 +84,8 @@ SECTIONS = {
         "docs/c_container",
         "docs/fmu",
         "docs/hosts",
+        *(f"docs/hosts/{name}" for name in ("scipy", "drake", "dart", "basilisk")),
+        "docs/simulink",
     ],
     "Measured": [
         "docs/comparison",

@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable
 
 import numpy as np
+from hosts_tables import host, hosts
 from make_accuracy import SPREADS, over, short
 from make_comparison import VALIDATION
 from make_components import CHOICE, FIELD, NAME, laws, number
@@ -251,4 +252,6 @@ BLOCK: dict[str, Callable[[str], str]] = {
     "validation": validation,
     "wheels": wheels,
     "releases": releases,
+    "host": host,
+    "hosts": hosts,
 }

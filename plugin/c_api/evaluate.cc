@@ -12,12 +12,6 @@ using namespace volcontact::c_api;
 
 namespace {
 
-// Like require, but the message is only made where it is needed: an evaluation allocates nothing.
-template <typename Message>
-void check(bool condition, Message&& message) {
-  if (!condition) throw std::invalid_argument(message());
-}
-
 void copy_vector(const Vec3& from, double (&to)[3]) { std::copy_n(from.data(), 3, to); }
 void copy_channels(const ByChannel& from, double (&to)[4]) {
   const double numbers[] = {from.normal, from.roll, from.slide, from.spin};
@@ -79,6 +73,8 @@ vc_site plain(const SiteReport& from) {
   to.spin = from.spin;
   to.elastic_energy = from.elastic_energy;
   copy_channels(from.power, to.power);
+  const Mat3 second_moment = from.metrics.second_moment();
+  std::copy_n(second_moment.data(), 9, to.second_moment);  // symmetric: rows are columns
   to.pair = from.pair;
   return to;
 }
@@ -187,13 +183,15 @@ int vc_interference(const vc_solid* a, const vc_solid* b, const double* X_AB, do
     require_given(b, function, "b");
     require_given(workspace, function, "workspace");
     require_given(metrics, function, "metrics");
-    require(tolerance > 0.0 && tolerance < 1.0,
-            "vc_interference: tolerance = " + std::to_string(tolerance) + " must be > 0 and < 1");
+    check(tolerance > 0.0 && tolerance < 1.0, [&] {
+      return "vc_interference: tolerance = " + std::to_string(tolerance) + " must be > 0 and < 1";
+    });
     const Engine wanted = engine ? engine_from(engine) : Engine::kAuto;
     const Shape &shape_a = a->named.shape, &shape_b = b->named.shape;
-    require(serves(wanted, shape_a, shape_b),
-            std::string("vc_interference: engine ") + to_string(wanted) + " does not serve " +
-                name_of(shape_a) + " with " + name_of(shape_b) + "; use auto or octree");
+    check(serves(wanted, shape_a, shape_b), [&] {
+      return std::string("vc_interference: engine ") + to_string(wanted) + " does not serve " +
+             name_of(shape_a) + " with " + name_of(shape_b) + "; use auto or octree";
+    });
     Interference& out = workspace->scratch.interference;
     interference(shape_a, shape_b, pose_from(X_AB, "vc_interference: X_AB"), {tolerance, wanted},
                  workspace->scratch.engines, out);

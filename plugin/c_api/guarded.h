@@ -33,6 +33,12 @@ int guarded(Function&& function) noexcept {
   }
 }
 
+/// Like require, but the message is only made where it is needed: an evaluation allocates nothing.
+template <typename Message>
+void check(bool condition, Message&& message) {
+  if (!condition) throw std::invalid_argument(message());
+}
+
 /// Throws std::invalid_argument naming function and argument where the pointer is null.
 void require_given(const void* pointer, const char* function, const char* argument);
 

@@ -63,8 +63,9 @@ extern "C" int vc_evaluate_rates(const vc_model* model, vc_workspace* workspace,
     require_given(model, function, "model");
     require_given(workspace, function, "workspace");
     require_given(motion, function, "motion");
-    require(model->contact.has_value(),
-            "vc_evaluate_rates: the model has no pairs; add one with vc_model_add_pair");
+    check(model->contact.has_value(), [] {
+      return "vc_evaluate_rates: the model has no pairs; add one with vc_model_add_pair";
+    });
     const ContactModel& contact = *model->contact;
     const int row = contact.row_size();
     if (row == 0) {
@@ -72,9 +73,9 @@ extern "C" int vc_evaluate_rates(const vc_model* model, vc_workspace* workspace,
     }
     require_given(next_state, function, "next_state");
     require_given(rates, function, "rates");
-    require(state_size >= kStateHead,
-            "vc_evaluate_rates: state_size is too small; "
-            "vc_model_state_size tells the size");
+    check(state_size >= kStateHead, [] {
+      return "vc_evaluate_rates: state_size is too small; vc_model_state_size tells the size";
+    });
     const BodyMotion bodies{pose_from(motion->X_WA, "vc_evaluate_rates: X_WA"),
                             pose_from(motion->X_WB, "vc_evaluate_rates: X_WB"),
                             twist_from(motion->V_WA, "vc_evaluate_rates: V_WA"),

@@ -69,19 +69,22 @@ typedef struct vc_metrics {
 } vc_metrics;
 
 /* One contact site: a connected region of the overlap of one pair. World frame. Channels of power
- * in the order normal, roll, slide, spin. */
+ * in the order normal, roll, slide, spin. A host of flexible bodies applies the force and the
+ * torque at the centroid, or spreads them over the patch, of which second_moment tells how far it
+ * reaches; the sites together make the wrenches of vc_result. */
 typedef struct vc_site {
   vc_metrics metrics;
-  double normal[3];      /* on A, from B to A */
-  double normal_force;   /* [N] */
-  double force[3];       /* on A, at the centroid [N] */
-  double torque[3];      /* on A, about the centroid [N m] */
-  double approach_speed; /* > 0 while approaching [m/s] */
-  double slip[3];        /* tangential velocity of A against B at the centroid [m/s] */
-  double spin;           /* of A against B about the normal [rad/s] */
-  double elastic_energy; /* [J] */
-  double power[4];       /* dissipated [W] */
-  int pair;              /* index of the pair in the model */
+  double normal[3];        /* on A, from B to A */
+  double normal_force;     /* [N] */
+  double force[3];         /* on A, at the centroid [N] */
+  double torque[3];        /* on A, about the centroid [N m] */
+  double approach_speed;   /* > 0 while approaching [m/s] */
+  double slip[3];          /* tangential velocity of A against B at the centroid [m/s] */
+  double spin;             /* of A against B about the normal [rad/s] */
+  double elastic_energy;   /* [J] */
+  double power[4];         /* dissipated [W] */
+  double second_moment[9]; /* integral of r r^T dV, r from the centroid [m^5] */
+  int pair;                /* index of the pair in the model */
 } vc_site;
 
 /* How the two bodies stand and move. */

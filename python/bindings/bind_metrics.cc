@@ -20,6 +20,9 @@ void bind_metrics(nb::module_& m) {
               "Centroid of the volume [m], shape (3,)")
       .def_ro("inertia", &VolumeMetrics::inertia, nb::rv_policy::copy,
               "Inertia tensor about the centroid, unit density [m^5], shape (3, 3)")
+      .def_prop_ro(
+          "second_moment", [](const VolumeMetrics& self) { return self.second_moment(); },
+          "Integral of r r^T over the volume, r from the centroid [m^5], shape (3, 3)")
       .def_ro("area_vector", &VolumeMetrics::area_vector, nb::rv_policy::copy,
               "Integral of A's outward normal over A's surface inside B = dV/dx of A [m^2], "
               "shape (3,)")

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>
@@ -8,6 +9,7 @@
 #include "bindings.h"
 #include "python_law.h"
 #include "volcontact/model/contact_model.h"
+#include "volcontact/model/contact_tangent.h"
 #include "volcontact/model/model_text.h"
 
 namespace volcontact::python {
@@ -22,6 +24,7 @@ using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMaj
 
 struct PyReport : ContactReport {
   Eigen::Index row_size = 0;
+  std::optional<ContactTangent> tangent;
 
   VolumeMetrics metrics() const {
     VolumeMetrics sum;
@@ -38,9 +41,10 @@ struct PyReport : ContactReport {
 PyReport evaluate(const ContactModel& model, const std::optional<Matrix4>& X_WA,
                   const std::optional<Matrix4>& X_WB, const std::optional<Vector6>& V_WA,
                   const std::optional<Vector6>& V_WB, const std::optional<Rows>& state,
-                  double elapsed) {
+                  double elapsed, bool tangent) {
   PyReport report;
   report.row_size = model.row_size();
+  report.keeps_inputs = tangent;
   require(!state || state->cols() == report.row_size,
           "evaluate: the rows of state have " + std::to_string(state ? state->cols() : 0) +
               " numbers, those of the model have " + std::to_string(report.row_size));
@@ -54,6 +58,7 @@ PyReport evaluate(const ContactModel& model, const std::optional<Matrix4>& X_WA,
   {
     nb::gil_scoped_release release;
     model.evaluate(motion, memory, workspace, report);
+    if (tangent) report.tangent = contact_tangent(model, report);
   }
   rethrow_law_error();
   return report;
@@ -116,6 +121,14 @@ void bind_report(nb::module_& m) {
       .def_ro("bristle_energy", &SiteReport::bristle_energy, nb::rv_policy::copy,
               "The part of it that sliding and spinning stored [J]")
       .def_ro("power", &SiteReport::power, nb::rv_policy::copy, "Dissipated [W]");
+  nb::class_<ContactTangent>(
+      m, "ContactTangent",
+      "How the wrenches change with the motion: rows are the torque and force on A, then those on "
+      "B; "
+      "columns the turn [rad] and displacement [m] of A's frame, then of B's, or their speeds.")
+      .def_ro("by_motion", &ContactTangent::by_motion, nb::rv_policy::copy,
+              "Analytic, of a flat patch, at fixed states, shape (12, 12)")
+      .def_ro("by_speed", &ContactTangent::by_speed, nb::rv_policy::copy, "Shape (12, 12)");
   nb::class_<PyReport>(m, "ContactReport", "What an evaluation of a contact model returns.")
       .def_prop_ro("metrics", &PyReport::metrics, "Sum over all sites, in the world frame")
       .def_ro("sites", &PyReport::sites)
@@ -134,6 +147,7 @@ void bind_report(nb::module_& m) {
       .def_prop_ro("touching", &PyReport::touching)
       .def_ro("elastic_energy", &PyReport::elastic_energy, "[J]")
       .def_ro("power", &PyReport::power, nb::rv_policy::copy, "Dissipated [W]")
+      .def_ro("tangent", &PyReport::tangent, "None unless it was asked for")
       .def_prop_ro("state", &PyReport::state,
                    "What the sites keep for the next evaluation, shape (sites, row_size)");
 }
@@ -191,7 +205,7 @@ Raises:
           "with a SignedDistance or a law of your own")
       .def("evaluate", &evaluate, nb::kw_only(), nb::arg("X_WA") = nb::none(),
            nb::arg("X_WB") = nb::none(), nb::arg("V_WA") = nb::none(), nb::arg("V_WB") = nb::none(),
-           nb::arg("state") = nb::none(), nb::arg("elapsed") = 0.0,
+           nb::arg("state") = nb::none(), nb::arg("elapsed") = 0.0, nb::arg("tangent") = false,
            R"(Wrenches on both bodies from their poses and twists.
 
 Args:
@@ -201,6 +215,7 @@ Args:
     state: `state` of the report of the last accepted time, shape (sites, row_size); left out, all
         sites are new
     elapsed [s]: time since then
+    tangent: whether to find how the wrenches change with the motion, for an implicit solver
 
 Returns:
     ContactReport: wrenches, sites, energy, dissipated power and the new state

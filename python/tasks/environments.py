@@ -150,4 +150,16 @@ def _install_package(environment: Environment, tests: bool) -> None:
         f"{ROOT}{extras}",
         mujoco,
     )
+    if wanted.exists() and environment == located("newest"):
+        _install_hosts(environment)
     started.replace(environment.venv / ".ready")
+
+
+def _install_hosts(environment: Environment) -> None:
+    """Other simulators, as wheels; their tests are skipped, and say so, where there are none."""
+    try:
+        environment.install("--no-deps", "--only-binary", ":all:", "--group", "hosts")
+    except Stopped:
+        if os.environ.get("CI") == "true":
+            raise
+        say("going on without the simulators of python/examples/hosts")

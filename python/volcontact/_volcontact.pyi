@@ -29,6 +29,12 @@ class VolumeMetrics:
         """Inertia tensor about the centroid, unit density [m^5], shape (3, 3)"""
 
     @property
+    def second_moment(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order='F')]:
+        """
+        Integral of r r^T over the volume, r from the centroid [m^5], shape (3, 3)
+        """
+
+    @property
     def area_vector(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
         """
         Integral of A's outward normal over A's surface inside B = dV/dx of A [m^2], shape (3,)
@@ -1246,6 +1252,19 @@ class SiteReport:
     def power(self) -> ByChannel:
         """Dissipated [W]"""
 
+class ContactTangent:
+    """
+    How the wrenches change with the motion: rows are the torque and force on A, then those on B; columns the turn [rad] and displacement [m] of A's frame, then of B's, or their speeds.
+    """
+
+    @property
+    def by_motion(self) -> Annotated[NDArray[numpy.float64], dict(shape=(12, 12), order='C')]:
+        """Analytic, of a flat patch, at fixed states, shape (12, 12)"""
+
+    @property
+    def by_speed(self) -> Annotated[NDArray[numpy.float64], dict(shape=(12, 12), order='C')]:
+        """Shape (12, 12)"""
+
 class ContactReport:
     """What an evaluation of a contact model returns."""
 
@@ -1284,6 +1303,10 @@ class ContactReport:
         """Dissipated [W]"""
 
     @property
+    def tangent(self) -> ContactTangent | None:
+        """None unless it was asked for"""
+
+    @property
     def state(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C')]:
         """What the sites keep for the next evaluation, shape (sites, row_size)"""
 
@@ -1319,7 +1342,7 @@ class ContactModel:
         All of it as text, as the C container reads it (docs/c_container.md). Raises ValueError with a SignedDistance or a law of your own
         """
 
-    def evaluate(self, *, X_WA: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, X_WB: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, V_WA: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')] | None = None, V_WB: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')] | None = None, state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C')] | None = None, elapsed: float = 0.0) -> ContactReport:
+    def evaluate(self, *, X_WA: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, X_WB: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, V_WA: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')] | None = None, V_WB: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')] | None = None, state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C')] | None = None, elapsed: float = 0.0, tangent: bool = False) -> ContactReport:
         """
         Wrenches on both bodies from their poses and twists.
 
@@ -1330,6 +1353,7 @@ class ContactModel:
             state: `state` of the report of the last accepted time, shape (sites, row_size); left out, all
                 sites are new
             elapsed [s]: time since then
+            tangent: whether to find how the wrenches change with the motion, for an implicit solver
 
         Returns:
             ContactReport: wrenches, sites, energy, dissipated power and the new state

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 import os
 import re
 import subprocess
@@ -180,6 +181,19 @@ def test_blocks_of_pages_say_what_the_code_and_the_results_say(
     for name, draw in module.PICTURE.items():
         picture = (module.DOCS / f"{name}.svg").read_text(encoding="utf-8")
         assert f"<dc:source>{digest(draw()[1])}</dc:source>" in picture, command
+
+
+def test_pictures_of_the_hosts_show_what_was_measured() -> None:
+    module, digest = generator("make_hosts"), generator("make_concepts").digest
+    found = json.loads(module.RESULT.read_text(encoding="utf-8"))
+    assert {page.stem for page in module.PICTURES.glob("*.md")} == set(found["hosts"])
+    shown = {host: module.numbers(found, host) for host in found["hosts"]}
+    shown["simulink"] = module.block_diagram()[1]
+    for name, numbers in shown.items():
+        picture = (module.PICTURES / f"{name}.svg").read_text(encoding="utf-8")
+        assert f"<dc:source>{digest(numbers)}</dc:source>" in picture, (
+            "run './run python docs/generate/make_hosts.py'"
+        )
 
 
 def test_times_on_the_pages_of_the_engines_are_all_there_are() -> None:
