@@ -53,7 +53,8 @@ class Residuals:
         """Unknowns that begin at a point of the box."""
         return np.concatenate([point, np.zeros(self.unknowns - self.count)])
 
-    def _moved(self, unknowns: np.ndarray) -> np.ndarray | None:
+    def moved(self, unknowns: np.ndarray) -> np.ndarray | None:
+        """Numbers of all trials at the unknowns, as of `Bench.deviations`; None: there are none."""
         if not len(self.active):
             return None
         moved = np.zeros((self.trials, len(self._pool.deviations)))
@@ -64,7 +65,7 @@ class Residuals:
     def __call__(self, unknowns: np.ndarray) -> np.ndarray:
         """Of shape (rows,): samples of all trials, priors, numbers of trials."""
         point = unknowns[: self.count]
-        parts = self._pool.run("errors", [(self._box.values(point), self._moved(unknowns))])[0]
+        parts = self._pool.run("errors", [(self._box.values(point), self.moved(unknowns))])[0]
         self.sizes = [len(part) for part in parts]
         self.evaluations += 1
         found = np.concatenate([*parts, self._box.prior(point), unknowns[self.count :]])
@@ -91,7 +92,7 @@ class Residuals:
                 there = unknowns.copy()
                 there[self.count + number :: len(self.active)] += sign * _MOVED_STEP
                 points.append(there)
-        asked = [(self._box.values(p[: self.count]), self._moved(p)) for p in points]
+        asked = [(self._box.values(p[: self.count]), self.moved(p)) for p in points]
         results = [np.concatenate(parts) for parts in self._pool.run("errors", asked)]
         columns = [
             (up - down) / step
