@@ -22,7 +22,7 @@ def normal(points):
     return -0.5 * np.einsum("mi,ij,mj->m", shift, np.linalg.inv(COVARIANCE), shift)
 
 
-def request(steps=1200, **given):
+def request(steps=3000, **given):
     return Request(**{"steps": steps, "walkers": 16, "burn": 200, "seed": 1} | given)
 
 
@@ -90,7 +90,7 @@ def test_too_few_walkers_are_told():
 
 SCENE = """\
 <mujoco>
-  <option timestep="0.001" gravity="0 0 -5"/>
+  <option timestep="0.01" gravity="0 0 -5"/>
   <worldbody>
     <body name="mass">
       <joint name="slide" type="slide" axis="0 0 1"/>
@@ -119,26 +119,26 @@ velocity = 0.05
 starts = 1
 [uncertainty]
 scale = {scale}
-mcmc = 900
-burn = 150
+mcmc = 2100
+burn = 100
 walkers = 16
 """
 
 
 def fall(folder, scale):
     """Heights of a mass that falls, with noise, and the linear model of the samples."""
-    steps = np.arange(0, 400, 20)
-    gravity = 1e-6 * steps * (steps + 1) / 2  # of the semi-implicit Euler steps
+    steps = np.arange(0, 40, 2)
+    gravity = 1e-4 * steps * (steps + 1) / 2  # of the semi-implicit Euler steps
     noise = 1e-3 * np.random.default_rng(3).standard_normal(len(steps))
     noise[0] = 0.0  # which the start is taken from
     z = -9.0 * gravity + noise
     with (folder / "fall.csv").open("w", newline="") as out:
         writer = csv.writer(out)
         writer.writerow(["t", "z"])
-        writer.writerows((repr(float(t)), repr(float(h))) for t, h in zip(1e-3 * steps, z))
+        writer.writerows((repr(float(t)), repr(float(h))) for t, h in zip(1e-2 * steps, z, strict=True))
     (folder / "scene.xml").write_text(SCENE)
     (folder / "study.toml").write_text(STUDY.format(scale=str(scale).lower()))
-    return z, np.column_stack([gravity, 1e-3 * steps])
+    return z, np.column_stack([gravity, 1e-2 * steps])
 
 
 def start_speed(z):
