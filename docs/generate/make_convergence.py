@@ -52,7 +52,8 @@ up to 4 under Runge-Kutta's; peaks of impacts hang on how the bodies meet, show 
 a sum over several impacts hangs on their order. What is below 1 nm, 1 nN and so on counts as nothing.
 
 The two are told apart by the hardest blow of the finest run: how long its contact force stays above half of the peak, counted in
-steps. Figures that are erratic, or that miss what was asked without an order of at least 0.75, are named as ruled by impacts, the others as smooth.
+steps. Named as ruled by impacts are figures that are erratic, and those that miss what was asked, unless the blow lasts ten steps and their order is 0.75 at
+least; the others are smooth.
 With `--error` the report of `compare` has the table and these words, too; the report of `./run demo` has them.
 
 ## Scenes of this project

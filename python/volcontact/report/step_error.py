@@ -8,7 +8,8 @@ from volcontact.report.key_figures import text_of
 from volcontact.report.units import quantity
 
 _LITTLE = 1e-6
-_RESOLVED = 10.0  # steps that a blow must last
+_RESOLVED = 10.0  # steps that a blow lasts which is as good as smooth
+_SMOOTH = 0.75  # least order of a smooth motion
 
 
 def heads(found: Convergence) -> tuple[str, ...]:
@@ -54,8 +55,9 @@ def _motion(found: Convergence) -> list[str]:
         f"the hardest blow, {quantity(blow.force, 'N')} at {_time(blow.time)}, lasts "
         f"{_time(blow.lasts)}, {count:.2g} of the steps of {_time(step)}"
     )
-    ruled = [one.name for one in found.estimates if _hangs_on_impacts(one, found.within)]
-    if count >= _RESOLVED and not ruled:
+    is_resolved = count >= _RESOLVED
+    ruled = [one.name for one in found.estimates if _is_ruled(one, found.within, is_resolved)]
+    if is_resolved and not ruled:
         return [f"Smooth: {hit}, and every figure converges as in a smooth motion."]
     smooth = [one.name for one in found.estimates if one.limit is not None and one.name not in ruled]
     lines = [f"Impacts: {hit}."]
@@ -66,15 +68,15 @@ def _motion(found: Convergence) -> list[str]:
     return lines
 
 
-def _hangs_on_impacts(one: Estimate, within: float) -> bool:
-    """Erratic, or off by more than what was asked without an order that explains it."""
+def _is_ruled(one: Estimate, within: float, is_resolved: bool) -> bool:
+    """Erratic, or off by more than what was asked: by impacts, unless it has a smooth order."""
     if one.kind == "erratic":
         return True
     if one.limit is None or one.error_of_first is None:
         return False
     asked = max(within * abs(one.limit), NOTHING.get(one.unit, LEAST))
     is_off = abs(one.error_of_first) > asked
-    return is_off and (one.order is None or one.order < 0.75)
+    return is_off and not (is_resolved and one.order is not None and one.order >= _SMOOTH)
 
 
 def _step(found: Convergence) -> str:
