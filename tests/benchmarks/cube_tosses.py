@@ -75,8 +75,11 @@ class Variant:
 
 _LAW = _numeric(f"{_PAIR}/friction_law/regularized_coulomb", 1)
 _SLIP = _numeric(f"{_PAIR}/slip_speed", 0.01)
-_DAMPING = _numeric(f"{_PAIR}/damping", 4.8)
-_CENTRED = (('pos="0 0 0.005" mass', 'pos="0 0 0" mass'),)
+_DAMPING = _numeric(f"{_PAIR}/damping", 4)
+_CENTRED = (
+    ('pos="0 0 0.006" mass', 'pos="0 0 0" mass'),
+    ("0.00092 0.00092 0.00092", "0.00081 0.00081 0.00081"),
+)
 _BALANCED = ("centre_of_mass", "inertia")
 _ROUNDED = (
     _numeric("volcontact/shape/rounded/rounded_box", 3e-3)
@@ -188,13 +191,10 @@ def main(words: list[str]) -> None:
     found: list[dict[str, Any]] = []
     if RESULT.exists():
         found = json.loads(RESULT.read_text(encoding="utf-8"))
-    asked = [
-        (name, seed)
-        for name, variant in VARIANTS.items()
-        for seed in variant.seeds
-        if not words[1:] or name in words[1:] or f"{name}:{seed}" in words[1:]
-    ]
-    for name, seed in asked:
+    every = [f"{name}:{seed}" for name, variant in VARIANTS.items() for seed in variant.seeds]
+    for word in words[1:] or every:
+        name, _, number = word.partition(":")
+        seed = int(number or 1)
         if any((each["variant"], each["seed"]) == (name, seed) for each in found):
             continue
         result = fit(name, seed, tosses)
