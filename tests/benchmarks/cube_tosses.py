@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import sys
 import time
 from dataclasses import dataclass
@@ -203,6 +204,18 @@ def main(words: list[str]) -> None:
         order = list(VARIANTS)
         found.sort(key=lambda each: (order.index(each["variant"]), each["seed"]))
         RESULT.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    keep_scenes(found)
+
+
+def keep_scenes(found: list[dict[str, Any]]) -> None:
+    """The scenes of the seeds that fit best, beside the studies."""
+    for name, file in (("volumetric", "identified.xml"), ("native", "identified_native.xml")):
+        seeds = [each for each in found if each["variant"] == name]
+        if seeds:
+            best = min(seeds, key=lambda each: float(each["fit"]))
+            made = BUILD / f"{name}_{best['seed']}" / "results" / "identified.xml"
+            if made.exists():
+                shutil.copyfile(made, FOLDER / file)
 
 
 if __name__ == "__main__":
