@@ -319,14 +319,23 @@ def _solved(settings: Settings, residuals: Residuals, begin: np.ndarray) -> Any:
     """
     result = solve(settings, residuals, settled(residuals, residuals.first(begin)))
     for _ in range(_ROUNDS if len(residuals.active) else 0):
-        fresh = residuals.first(result.x[: residuals.count])
-        again = solve(settings, residuals, settled(residuals, fresh))
-        gained = again.cost < (1.0 - _GAIN) * result.cost
-        if again.cost < result.cost:
-            result = again
-        if not gained:
+        fresh = settled(residuals, residuals.first(result.x[: residuals.count]))
+        if _cost(settings, residuals, fresh) > (1.0 - _GAIN) * result.cost:
             break
+        again = solve(settings, residuals, fresh)
+        if again.cost >= result.cost:
+            break
+        result = again
     return result
+
+
+def _cost(settings: Settings, residuals: Residuals, unknowns: np.ndarray) -> float:
+    """As `solve` has it."""
+    squares = residuals(unknowns) ** 2
+    if settings.estimator.loss == "linear":
+        return 0.5 * float(squares.sum())
+    scale = settings.estimator.loss_scale**2
+    return 0.5 * scale * float(_Loss(settings, residuals)(squares / scale)[0].sum())
 
 
 _REASONS = {

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 _HORIZONS = (0.3, 0.6, 1.0)  # parts of a trial that are fitted one after the other
 _MOST = 15  # iterations of each
-_STILL = 1e-4  # of a cost, below which a trial has settled
+_STILL = 1e-3  # of a cost, below which a trial has settled
 _DAMPING, _EASED, _RAISED = 1e-3, 0.2, 8.0  # of Levenberg and Marquardt, each trial with its own
 
 

@@ -113,6 +113,24 @@ def tosses(text: str, seed: int = 0, count: int = TOSSES, frames: int = FRAMES) 
     return np.array(rows)
 
 
+def slides(text: str, seed: int = 0, count: int = TOSSES, frames: int = 40) -> np.ndarray:
+    """Rows of cubes that are thrown along the board, slide on a face and stop."""
+    model = vc.load(text)
+    generator = np.random.default_rng(seed)
+    rows = []
+    with vc.attach(model):
+        for toss in range(count):
+            data = mujoco.MjData(model)
+            data.qpos[2] = HALF - 1e-6
+            data.qvel[:2] = 0.15 * generator.standard_normal(2)
+            data.qvel[5] = generator.standard_normal()
+            for frame in range(frames):
+                rows.append([toss, frame / RATE, *data.qpos, *data.qvel])
+                for _ in range(EVERY):
+                    mujoco.mj_step(model, data)
+    return np.array(rows)
+
+
 def noisy(rows: np.ndarray, seed: int) -> np.ndarray:
     """Rows as cameras see them."""
     generator = np.random.default_rng(seed)
