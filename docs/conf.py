@@ -47,6 +47,7 @@ SECTIONS = {
         "docs/studies/battery_insert_0g",
         "docs/identification",
         "docs/identification/cube_tosses",
+        "docs/identification/coverage",
         "python/examples/README",
         "docs/troubleshooting",
         "docs/faq",
