@@ -60,7 +60,7 @@ def demo(session: nox.Session) -> None:
     arguments = [word for word in session.posargs if word != "--all"]
     scene = shell.ROOT / "mjcf_models" / "battery_box" / "scene.xml"
     program = environment.venv / "bin" / "volcontact"
-    shell.run(program, "compare", scene, "--out", out, *arguments)
+    shell.run(program, "compare", scene, "--out", out, "--error", *arguments)
     shell.say(f"the report is {out / 'report.html'}")
     if "--all" in session.posargs:
         environment.script("mjcf_models/make_paper_figures.py", "--out", out / "paper")

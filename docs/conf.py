@@ -48,6 +48,7 @@ SECTIONS = {
         "docs/identification",
         "docs/identification/cube_tosses",
         "docs/bench_tests",
+        "docs/identification/coverage",
         "python/examples/README",
         "docs/troubleshooting",
         "docs/faq",

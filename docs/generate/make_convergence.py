@@ -10,9 +10,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from volcontact.cli.converge import row_of
 from volcontact.convergence import Estimate
 from volcontact.report.key_figures import text_of
+from volcontact.report.step_error import row_of
 from volcontact.report.units import quantity
 
 DOCS = Path(__file__).parents[1]
@@ -50,6 +50,11 @@ with the mean of the last two orders, from 0.3 to 4, and the factor of safety $F
 **erratic**: these steps tend to nothing, and its least, median and largest value are told instead. Smooth motions show the order of the integrator, 1 under Euler's and
 up to 4 under Runge-Kutta's; peaks of impacts hang on how the bodies meet, show about 1 at best, and may be erratic where
 a sum over several impacts hangs on their order. What is below 1 nm, 1 nN and so on counts as nothing.
+
+The two are told apart by the hardest blow of the finest run: how long its contact force stays above half of the peak, counted in
+steps. Named as ruled by impacts are figures that are erratic, and those that miss what was asked, unless the blow lasts ten steps and their order is 0.75 at
+least; the others are smooth.
+With `--error` the report of `compare` has the table and these words, too; the report of `./run demo` has them.
 
 ## Scenes of this project
 """  # noqa: E501

@@ -120,6 +120,41 @@ class Convergence:
         }
 
 
+@dataclass(frozen=True)
+class Blow:
+    """The hardest blow of a run.
+
+    Attributes:
+        force: largest sum of the contact forces [N].
+        time: of it [s].
+        lasts: how long it stays above half of that [s].
+    """
+
+    force: float
+    time: float
+    lasts: float
+
+
+def blow_of(run: Recording) -> Blow | None:
+    """The hardest blow of a run; None where nothing is touched, or where its force only rests.
+
+    A force that lies above half of its peak from the first touch to the end is a load, not a blow.
+    """
+    force = run.contact_force
+    top = int(force.argmax())
+    if not force[top] > 0.0:
+        return None
+    above = force >= 0.5 * force[top]
+    first = last = top
+    while first > 0 and above[first - 1]:
+        first -= 1
+    while last < len(force) - 1 and above[last + 1]:
+        last += 1
+    if last == len(force) - 1 and not force[:first].any():
+        return None
+    return Blow(float(force[top]), float(run.time[top]), (last - first + 1) * run.timestep)
+
+
 def converge(
     scene: str | os.PathLike[str] | mujoco.MjModel,
     *,

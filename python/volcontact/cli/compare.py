@@ -86,6 +86,7 @@ def add_to(commands: Subparsers) -> None:
 
 def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     """Runs the command and returns the exit status."""
+    from volcontact.cli.converge import error_of_step, print_estimates
     from volcontact.report import Comparison, Limits, files, fill_report
     from volcontact.report.design_pose import read_design_pose, read_peak_limits
     from volcontact.simulation import simulate
@@ -113,6 +114,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             )
             for contact in ("volumetric", "native")
         )
+        found = error_of_step(arguments, bars, volumetric) if arguments.error else None
         comparison = Comparison(
             scene=arguments.scene,
             volumetric=volumetric,
@@ -121,6 +123,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             mujoco_version=mujoco.mj_versionString(),
             volcontact_version=volcontact.__version__,
             limits=limits,
+            error_of_step=found,
         )
         fill_report(
             comparison,
@@ -130,14 +133,8 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             progress=bars.task("pictures"),
         )
     report = arguments.out / files.REPORT
-    found = None
-    if arguments.error:
-        from volcontact.cli.converge import error_of_step, print_estimates
-
-        found = error_of_step(arguments, terminal, volumetric)
     if terminal.json:
-        about = {} if found is None else {"error_of_step": found.summary()}
-        terminal.result({**comparison.summary(), **about, "report": str(report)})
+        terminal.result({**comparison.summary(), "report": str(report)})
     else:
         _print(comparison, report, terminal)
         if found is not None:

@@ -15,12 +15,11 @@ from volcontact._files import appearing
 from volcontact.cli.arguments import add_command, add_keys, add_time, positive
 from volcontact.cli.status import report_warnings
 from volcontact.cli.terminal import Terminal
-from volcontact.convergence import LEAST, NOTHING
-from volcontact.report.units import quantity
 
 if TYPE_CHECKING:
     from volcontact.cli.arguments import Subparsers
-    from volcontact.convergence import Convergence, Estimate
+    from volcontact.cli.terminal import ProgressBars
+    from volcontact.convergence import Convergence
     from volcontact.recording import Recording
 
 _EXAMPLES = """\
@@ -30,7 +29,6 @@ _EXAMPLES = """\
   volcontact converge scene.xml --contact native --json
 """
 _FEWEST = 3
-_LITTLE = 1e-6
 
 
 def add_to(commands: Subparsers) -> None:
@@ -120,93 +118,36 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
 
 
 def error_of_step(
-    arguments: argparse.Namespace, terminal: Terminal, first: Recording
+    arguments: argparse.Namespace, bars: ProgressBars, first: Recording
 ) -> Convergence:
     """For `--error` of other commands: two runs more, at a half and a quarter of the step."""
     from volcontact.convergence import converge
 
-    with terminal.progress() as bars:
-        task = bars.task("error of the step")
-        return converge(
-            arguments.scene,
-            duration=arguments.duration,
-            timestep=arguments.timestep,
-            levels=_FEWEST,
-            contact=first.contact,
-            material=dict(arguments.material),
-            options=dict(arguments.option),
-            with_tolerance=False,
-            first=first,
-            progress=lambda done, total, _: task(done, total),
-        )
-
-
-def print_estimates(found: Convergence, terminal: Terminal) -> None:
-    """The table, and what has no value to converge to."""
-    from volcontact.report.key_figures import text_of
-
-    table = Table(box=None, pad_edge=False)
-    first_step, asked = _time(found.steps[0]), f"{100 * found.within:g} % from"
-    table.add_column("", min_width=18)
-    for head in (f"at {first_step}", "tends to", "+-", "error", "order", asked):
-        table.add_column(head, no_wrap=True)
-    erratic, missing = [], []
-    for one in found.estimates:
-        if one.kind == "erratic":
-            erratic.append(one)
-        elif one.kind == "none":
-            missing.append(one)
-        else:
-            table.add_row(*map(escape, row_of(one)))
-    terminal.out.print(table)
-    for one in erratic:
-        low, middle, high = (text_of(value, one.unit) for value in one.spread())
-        terminal.out.print(
-            f"{one.name} has no value that these steps tend to: {low} to {high}, {middle} in the "
-            f"median of {len(one.values)} runs. Impacts that hang on how they are met have a "
-            "distribution: take shorter steps, or ask for it with volcontact study.",
-            markup=False,
-        )
-    for one in missing:
-        terminal.out.print(f"{one.name}: not in every run.", markup=False)
-    for one, change in zip(found.estimates, found.geometry, strict=False):
-        scale = max((abs(value) for value in one.values if value is not None), default=0.0)
-        if change is None or one.kind not in ("converges", "settled"):
-            continue
-        if abs(change) > found.within * scale:
-            terminal.out.print(
-                f"{one.name} changes by {_number(change, one)} when overlaps are asked for ten "
-                "times as closely: give a smaller volcontact/option/tolerance.",
-                markup=False,
-            )
-
-
-def row_of(one: Estimate) -> tuple[str, ...]:
-    """Cells of a figure that has a limit: name, at first, limit, bar, error, order, step."""
-    return (
-        one.name,
-        _number(one.values[0], one),
-        _number(one.limit, one),
-        _number(one.error, one),
-        _share(one.error_of_first or 0.0, one),
-        "" if one.order is None else f"{one.order:.1f}",
-        "shorter" if one.step is None else _time(one.step),
+    task = bars.task("error of the step")
+    return converge(
+        arguments.scene,
+        duration=arguments.duration,
+        timestep=arguments.timestep,
+        levels=_FEWEST,
+        contact=first.contact,
+        material=dict(arguments.material),
+        options=dict(arguments.option),
+        with_tolerance=False,
+        first=first,
+        progress=lambda done, total, _: task(done, total),
     )
 
 
-def _time(seconds: float) -> str:
-    return quantity(seconds, "s")
+def print_estimates(found: Convergence, terminal: Terminal) -> None:
+    """The table, and what it says in words."""
+    from volcontact.report import step_error
 
-
-def _number(value: float | None, one: Estimate) -> str:
-    from volcontact.report.key_figures import text_of
-
-    nothing = value is not None and abs(value) <= NOTHING.get(one.unit, LEAST)
-    return "0" if nothing else text_of(value, one.unit)
-
-
-def _share(error: float, one: Estimate) -> str:
-    if not one.limit or abs(one.limit) <= NOTHING.get(one.unit, LEAST):
-        return _number(error, one)
-    share = error / abs(one.limit)
-    return f"{100.0 * share:+.2g} %" if abs(share) >= _LITTLE else "0"
+    table = Table(box=None, pad_edge=False)
+    table.add_column("", min_width=18)
+    for head in step_error.heads(found):
+        table.add_column(head, no_wrap=True)
+    for row in step_error.rows(found):
+        table.add_row(*map(escape, row))
+    terminal.out.print(table)
+    for line in step_error.sentences(found):
+        terminal.out.print(line, markup=False)

@@ -118,7 +118,8 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     if arguments.error:
         from volcontact.cli.converge import error_of_step, print_estimates
 
-        found = error_of_step(arguments, terminal, recording)
+        with terminal.progress() as bars:
+            found = error_of_step(arguments, bars, recording)
         summary["error_of_step"] = found.summary()
     if terminal.json:
         terminal.result(summary)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from volcontact.identify.costs import rho
+from volcontact.identify.own_numbers import settled
 from volcontact.identify.pool import Pool
 from volcontact.identify.scales import Box
 from volcontact.identify.search import Found, Progress, signature
@@ -20,6 +21,7 @@ from volcontact.identify.settings import Settings, StudyError
 _DENSE = 4e6  # numbers of a Jacobian that is kept whole
 _MOVED_STEP = 1e-3  # of differences by the numbers of a trial [sd]
 _MOVED_MOST = 8.0  # how far these may go [sd]
+_ROUNDS, _GAIN = 3, 0.01  # in which starts are looked for anew, and what it must gain
 
 
 class Residuals:
@@ -53,7 +55,8 @@ class Residuals:
         """Unknowns that begin at a point of the box."""
         return np.concatenate([point, np.zeros(self.unknowns - self.count)])
 
-    def _moved(self, unknowns: np.ndarray) -> np.ndarray | None:
+    def moved(self, unknowns: np.ndarray) -> np.ndarray | None:
+        """Numbers of all trials at the unknowns, as of `Bench.deviations`; None: there are none."""
         if not len(self.active):
             return None
         moved = np.zeros((self.trials, len(self._pool.deviations)))
@@ -64,7 +67,7 @@ class Residuals:
     def __call__(self, unknowns: np.ndarray) -> np.ndarray:
         """Of shape (rows,): samples of all trials, priors, numbers of trials."""
         point = unknowns[: self.count]
-        parts = self._pool.run("errors", [(self._box.values(point), self._moved(unknowns))])[0]
+        parts = self._pool.run("errors", [(self._box.values(point), self.moved(unknowns))])[0]
         self.sizes = [len(part) for part in parts]
         self.evaluations += 1
         found = np.concatenate([*parts, self._box.prior(point), unknowns[self.count :]])
@@ -73,6 +76,51 @@ class Residuals:
             cost = 0.5 * float(found @ found)
             self._progress(min(self.evaluations, most), most, f"cost {cost:.6g}")
         return found
+
+    def shares(self) -> list[np.ndarray]:
+        """When each row of `by_trial` was measured, from 0 at the start of its trial to 1."""
+        found = []
+        for trial in self._pool.trials:
+            end = max(float(trial.times[-1]), 1e-300)
+            parts = [
+                np.repeat(trial.times[trial.samples[each.name].index] / end, each.width)
+                for each in self._settings.measures
+                if each.weight
+            ]
+            found.append(np.concatenate(parts))
+        return found
+
+    def by_trial(self, unknowns: np.ndarray) -> list[np.ndarray]:
+        """Errors of the samples of each trial."""
+        asked = [(self._box.values(unknowns[: self.count]), self.moved(unknowns))]
+        parts: list[np.ndarray] = self._pool.run("errors", asked)[0]
+        self.evaluations += 1
+        return parts
+
+    def own_slopes(self, unknowns: np.ndarray) -> list[np.ndarray]:
+        """Derivatives of `by_trial` by the numbers of the trial, shape (samples, q) each."""
+        values = self._box.values(unknowns[: self.count])
+        points = self._own_points(unknowns)
+        results = self._pool.run("errors", [(values, self.moved(point)) for point in points])
+        columns = [
+            [(up - down) / (2.0 * _MOVED_STEP) for up, down in zip(one, two, strict=True)]
+            for one, two in zip(results[::2], results[1::2], strict=True)
+        ]
+        return [np.stack(each, axis=1) for each in zip(*columns, strict=True)]
+
+    def bounded(self, own: np.ndarray) -> np.ndarray:
+        """Numbers of trials within what is looked for."""
+        inside: np.ndarray = np.clip(own, -_MOVED_MOST, _MOVED_MOST)
+        return inside
+
+    def _own_points(self, unknowns: np.ndarray) -> list[np.ndarray]:
+        points = []
+        for number in range(len(self.active)):
+            for sign in (1.0, -1.0):
+                there = unknowns.copy()
+                there[self.count + number :: len(self.active)] += sign * _MOVED_STEP
+                points.append(there)
+        return points
 
     def jacobian(self, unknowns: np.ndarray) -> Any:
         """By central differences, of shape (rows, unknowns); sparse where it is large."""
@@ -86,12 +134,8 @@ class Residuals:
                 ends.append(there)
             steps.append(ends[0][place] - ends[1][place])
             points += ends
-        for number in range(len(self.active)):
-            for sign in (1.0, -1.0):
-                there = unknowns.copy()
-                there[self.count + number :: len(self.active)] += sign * _MOVED_STEP
-                points.append(there)
-        asked = [(self._box.values(p[: self.count]), self._moved(p)) for p in points]
+        points += self._own_points(unknowns)
+        asked = [(self._box.values(p[: self.count]), self.moved(p)) for p in points]
         results = [np.concatenate(parts) for parts in self._pool.run("errors", asked)]
         columns = [
             (up - down) / step
@@ -251,7 +295,7 @@ def fit(
             done.append(kept[number])
             continue
         residuals = Residuals(settings, pool, box, progress)
-        result = solve(settings, residuals, residuals.first(begin))
+        result = _solved(settings, residuals, begin)
         done.append(
             {
                 "cost": float(result.cost),
@@ -266,6 +310,32 @@ def fit(
             file.write_text(text, encoding="utf-8")
     best = min(done, key=lambda each: each["cost"])
     return _looked_at(settings, pool, box, best, done)
+
+
+def _solved(settings: Settings, residuals: Residuals, begin: np.ndarray) -> Any:
+    """From one first guess; with numbers of trials again from these, while that gains.
+
+    Starts that were found with parameters far off may sit in a valley of their own.
+    """
+    result = solve(settings, residuals, settled(residuals, residuals.first(begin)))
+    for _ in range(_ROUNDS if len(residuals.active) else 0):
+        fresh = settled(residuals, residuals.first(result.x[: residuals.count]))
+        if _cost(settings, residuals, fresh) > (1.0 - _GAIN) * result.cost:
+            break
+        again = solve(settings, residuals, fresh)
+        if again.cost >= result.cost:
+            break
+        result = again
+    return result
+
+
+def _cost(settings: Settings, residuals: Residuals, unknowns: np.ndarray) -> float:
+    """As `solve` has it."""
+    squares = residuals(unknowns) ** 2
+    if settings.estimator.loss == "linear":
+        return 0.5 * float(squares.sum())
+    scale = settings.estimator.loss_scale**2
+    return 0.5 * scale * float(_Loss(settings, residuals)(squares / scale)[0].sum())
 
 
 _REASONS = {

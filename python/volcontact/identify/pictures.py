@@ -9,7 +9,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from volcontact.identify import rotations
+from volcontact.identify.mcmc import Chain
 from volcontact.identify.measurements import Trial
+from volcontact.identify.scales import Box
 from volcontact.identify.settings import Settings
 from volcontact.identify.units import SI
 from volcontact.report.palette import NATIVE, VOLUMETRIC
@@ -72,6 +74,25 @@ def correlations(names: list[str], matrix: np.ndarray) -> Figure:
         for j in range(len(names)):
             axes.text(j, i, f"{matrix[i, j]:.2f}", ha="center", va="center", fontsize=8)
     figure.colorbar(image, label="correlation")
+    return figure
+
+
+def chain(settings: Settings, box: Box, walked: Chain) -> Figure:
+    """Where the walkers of a chain were, step by step, for each parameter."""
+    count = len(settings.parameters)
+    figure = Figure(figsize=(8, 1.4 * count), layout="constrained")
+    steps, walkers = walked.samples.shape[:2]
+    every = max(1, steps // 200), max(1, walkers // 8)
+    seen = walked.samples[:: every[0], :: every[1], :count]
+    values = [[box.values(point) for point in row] for row in seen]
+    axes = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+    for place, each in zip(axes, settings.parameters, strict=True):
+        lines = [[point[each.name] for point in row] for row in values]
+        place.plot(walked.burn + every[0] * np.arange(len(seen)), lines, lw=0.5, color=VOLUMETRIC)
+        place.set_ylabel(each.name)
+        if each.log:
+            place.set_yscale("log")
+    axes[-1].set_xlabel("step")
     return figure
 
 

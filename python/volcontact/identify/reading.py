@@ -378,7 +378,13 @@ def _uncertainty(table: Table, names: list[str]) -> Uncertainty:
         points=table.whole("points", 4, low=1, high=100),
         bootstrap=table.whole("bootstrap", 0, low=0, high=100_000),
         scale=bool(table.take("scale", True)),
+        mcmc=table.whole("mcmc", 0, low=0, high=10**7),
+        walkers=table.whole("walkers", 0, low=0, high=10**5),
+        burn=table.whole("burn", low=0, high=10**7) if table.has("burn") else None,
     )
+    table.take("burn", None)
+    if made.burn is not None and made.burn >= made.mcmc:
+        raise table.error("burn", made.burn, "must be fewer than the steps of mcmc")
     for name in made.profile:
         if name not in names:
             raise table.error("profile", name, f"is no parameter{nearest(name, names)}")
@@ -397,6 +403,11 @@ def _check_together(settings: Settings, file: str) -> None:
     if not any(each.weight > 0.0 for each in settings.measures):
         raise StudyError(f"{file} [measure]: every weight is 0; something must count")
     if settings.estimator.method != "least_squares":
+        if settings.uncertainty.mcmc:
+            raise StudyError(
+                f"{file} [uncertainty] mcmc: needs errors with a likelihood; take the estimator "
+                '"least_squares"'
+            )
         if settings.nuisance != Nuisance() or any(each.bias for each in settings.measures):
             raise StudyError(
                 f"{file} [nuisance]: numbers of each trial are found by least squares alone"

@@ -75,6 +75,7 @@ def write_report(
         histograms=_svg(pictures.histograms(settings, raw)),
         correlations=_svg(correlations) if correlations is not None else None,
         profiles=[_svg(each) for each in profiles],
+        chain=_svg(pictures.chain(settings, box, known.chain)) if known.chain else None,
         trials=shown,
         study=settings.text,
     )

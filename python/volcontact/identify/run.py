@@ -12,7 +12,7 @@ import mujoco
 import numpy as np
 
 from volcontact._files import appearing
-from volcontact.identify import least_squares, scores, uncertainty, words
+from volcontact.identify import least_squares, posterior, scores, uncertainty, words
 from volcontact.identify.bench import Values
 from volcontact.identify.measurements import Trial, read_trials
 from volcontact.identify.pool import Pool
@@ -23,7 +23,7 @@ from volcontact.identify.uncertainty import Known
 from volcontact.identify.windows import windowed
 
 RESULT, SCENE, REPORT = "identified.json", "identified.xml", "report.html"
-_LOG, _STARTS = "evaluations.jsonl", "starts.json"
+_LOG, _STARTS, _CHAIN = "evaluations.jsonl", "starts.json", "chain.npz"
 
 
 @dataclass(frozen=True)
@@ -163,7 +163,10 @@ def _estimate(
         return found, uncertainty.of_search(settings, box, log, found.point), [], None
     fitted = least_squares.fit(settings, pool, box, out / _STARTS if out else None, progress)
     known = uncertainty.of_fit(settings, pool, box, fitted, progress)
-    moved = least_squares.Residuals(settings, pool, box)._moved(fitted.unknowns)
+    if settings.uncertainty.mcmc:
+        file = out / _CHAIN if out else None
+        known = posterior.of_chain(settings, pool, box, fitted, known, file, progress)
+    moved = least_squares.Residuals(settings, pool, box).moved(fitted.unknowns)
     return fitted.found, known, fitted.starts, moved
 
 
@@ -214,9 +217,29 @@ def _summary(
         "uncertainty": known.method,
         "noise": known.noise,
         "profiles": profiles,
+        "chain": _chain(settings, known),
         "findings": findings,
         "study_sha256": signature(settings),
         "versions": {"volcontact": __version__, "mujoco": mujoco.__version__},
+    }
+
+
+def _chain(settings: Settings, known: Known) -> dict[str, Any] | None:
+    """How long the chain was, in autocorrelation times; None where there was none."""
+    chain = known.chain
+    if chain is None:
+        return None
+    times = chain.times[: len(settings.parameters)]
+    return {
+        "steps": len(chain.samples),
+        "burn": chain.burn,
+        "walkers": chain.samples.shape[1],
+        "accepted": chain.accepted,
+        "autocorrelation": {
+            each.name: float(time) if np.isfinite(time) else None
+            for each, time in zip(settings.parameters, times, strict=True)
+        },
+        "enough": chain.enough,
     }
 
 

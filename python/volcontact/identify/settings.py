@@ -197,6 +197,9 @@ class Uncertainty:
         points: of a profile, to each side.
         bootstrap: samples of the trials; 0: none.
         scale: whether the given sigmas are right up to one common factor only.
+        mcmc: steps of a chain; 0: none.
+        walkers: of its ensemble; 0: four times the unknowns, at least 32.
+        burn: steps of it left out; None: a quarter.
     """
 
     level: float = 0.95
@@ -204,6 +207,9 @@ class Uncertainty:
     points: int = 4
     bootstrap: int = 0
     scale: bool = True
+    mcmc: int = 0
+    walkers: int = 0
+    burn: int | None = None
 
 
 @dataclass(frozen=True)

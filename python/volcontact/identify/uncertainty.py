@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from volcontact.identify.least_squares import Fit, Residuals, noise, solve
+from volcontact.identify.mcmc import Chain
 from volcontact.identify.pool import Pool
 from volcontact.identify.scales import Box
 from volcontact.identify.search import Evaluations, Progress, total
@@ -47,6 +48,7 @@ class Known:
         noise: factor of the given sigmas that the residuals ask for.
         profiles: by parameter.
         samples: of the bootstrap, shape (b, n); none: empty.
+        chain: of MCMC; None: there was none.
     """
 
     deviations: np.ndarray
@@ -57,6 +59,7 @@ class Known:
     noise: float
     profiles: dict[str, Profile] = field(default_factory=dict)
     samples: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))
+    chain: Chain | None = None
 
 
 def normal_quantile(level: float) -> float:
@@ -88,7 +91,7 @@ def of_fit(
             progress(len(profiles), len(settings.uncertainty.profile), "profiles")
     samples = _one_step_bootstrap(settings, fitted, count)
     return Known(
-        deviations, _correlation(covariance), low, high, "covariance", factor, profiles, samples
+        deviations, correlation_of(covariance), low, high, "covariance", factor, profiles, samples
     )
 
 
@@ -148,7 +151,8 @@ def _inverse(curvature: np.ndarray) -> np.ndarray:
     return result
 
 
-def _correlation(covariance: np.ndarray) -> np.ndarray:
+def correlation_of(covariance: np.ndarray) -> np.ndarray:
+    """Correlations; none with what has no end."""
     deviations = np.sqrt(np.diag(covariance))
     known = np.isfinite(deviations) & (deviations > 0.0)
     safe = np.where(known, deviations, 1.0)
@@ -248,7 +252,7 @@ def of_search(settings: Settings, box: Box, log: Evaluations, point: np.ndarray)
     covariance = np.atleast_2d(np.cov(samples.T))
     return Known(
         deviations=np.sqrt(np.diag(covariance)),
-        correlation=_correlation(covariance),
+        correlation=correlation_of(covariance),
         low=np.minimum(low, point),
         high=np.maximum(high, point),
         method="bootstrap over trials",

@@ -29,7 +29,7 @@ def told(settings: Settings, box: Box, point: np.ndarray, known: Known) -> dict[
 
 def findings(settings: Settings, box: Box, point: np.ndarray, known: Known) -> list[str]:
     """Sentences on each parameter that is not plainly known."""
-    lines = []
+    lines = [known.chain.finding()] if known.chain and not known.chain.enough else []
     percent = f"{100 * settings.uncertainty.level:g} %"
     names = [each.name for each in settings.parameters]
     for place, each in enumerate(settings.parameters):

@@ -9,6 +9,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
+from volcontact.convergence import Convergence
 from volcontact.recording import Recording
 from volcontact.report.design_pose import DesignPose, angle_between
 
@@ -40,6 +41,7 @@ class Comparison:
         mujoco_version: of the library that ran.
         volcontact_version: of this package.
         limits: of what contacts and sensors may carry.
+        error_of_step: what the step of the volumetric run costs; None where it was not asked.
     """
 
     scene: str
@@ -49,6 +51,7 @@ class Comparison:
     mujoco_version: str
     volcontact_version: str
     limits: Limits = Limits()
+    error_of_step: Convergence | None = None
 
     @property
     def runs(self) -> tuple[Recording, Recording]:
@@ -57,11 +60,13 @@ class Comparison:
 
     def summary(self) -> dict[str, Any]:
         """The content of `summary.json`; units are SI, times of a step in microseconds."""
+        found = self.error_of_step
         return {
             "volumetric": run_summary(self.volumetric, self.design),
             "native": run_summary(self.native, self.design),
             "mujoco_version": self.mujoco_version,
             "volcontact_version": self.volcontact_version,
+            **({} if found is None else {"error_of_step": found.summary()}),
         }
 
 

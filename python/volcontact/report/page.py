@@ -14,7 +14,7 @@ from markupsafe import Markup
 
 from volcontact.printable import printable
 from volcontact.recording import Frame, Recording
-from volcontact.report import palette
+from volcontact.report import palette, step_error
 from volcontact.report.comparison import Comparison
 from volcontact.report.description import tables
 from volcontact.report.figures import Curve
@@ -59,6 +59,8 @@ def page(comparison: Comparison, pairs: list[FramePair], made: list[Curve]) -> s
         tables=[table for table in parts if len(table.rows) <= 12],
         long_tables=[table for table in parts if len(table.rows) > 12],
         scene_warnings=run.description.get("warnings", ()),
+        step_error=comparison.error_of_step,
+        step_words=step_error,
         reference=quantity(reference_force(comparison), "N"),
         by_weight=run.weight > 0.0,
         colors=palette,

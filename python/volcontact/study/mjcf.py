@@ -68,18 +68,22 @@ class Document:
 
     def names(self, tag: str) -> list[str]:
         """Names of all elements of a kind, in worldbody, assets, actuators and so on."""
-        return [e.get("name", "") for e in self._elements(tag) if e.get("name")]
+        return [name for name in map(self._name, self._elements(tag)) if name]
 
     def tags(self) -> set[str]:
         """All kinds of elements."""
         return {element.tag for element in self.root.iter()}
 
     def find(self, tag: str, name: str) -> ElementTree.Element | None:
-        """The element of that kind and name."""
+        """The element of that kind and name; an `inertial` goes by the name of its body."""
         for element in self._elements(tag):
-            if element.get("name") == name:
+            if self._name(element) == name:
                 return element
         return None
+
+    def _name(self, element: ElementTree.Element) -> str:
+        named = self._parents[element] if element.tag == "inertial" else element
+        return named.get("name", "")
 
     def _elements(self, tag: str) -> list[ElementTree.Element]:
         found = []
