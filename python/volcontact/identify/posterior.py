@@ -25,9 +25,10 @@ class Posterior:
     """Logarithm of the density of all unknowns of a fit, up to a constant.
 
     Errors are normal with the given sigmas, or with these times one common factor that is
-    integrated over with the prior 1/factor: the density is then that of Student, -n/2 ln S of n samples with
-    the sum of squares S. A robust loss takes the place of the squares. The prior is flat in the box
-    of the bounds, but for the priors given; numbers of trials are normal with their deviations.
+    integrated over with the prior 1/factor: the density is then that of Student, -n/2 ln S of n
+    samples with the sum of squares S. A robust loss takes the place of the squares. The prior is
+    flat in the box of the bounds, but for the priors given; numbers of trials are normal with their
+    deviations.
 
     Args:
         settings: of the study.
