@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -112,7 +113,7 @@ def of_chain(
     return replace(known, chain=chain, **_of_samples(settings, chain, count))
 
 
-def _of_samples(settings: Settings, chain: Chain, count: int) -> dict[str, object]:
+def _of_samples(settings: Settings, chain: Chain, count: int) -> dict[str, Any]:
     samples = chain.samples[..., :count].reshape(-1, count)
     covariance = np.atleast_2d(np.cov(samples.T))
     tail = 0.5 * (1.0 - settings.uncertainty.level)

@@ -14,6 +14,7 @@ themselves, in its threads as well.
 
 from __future__ import annotations
 
+import importlib
 import math
 from pathlib import Path
 from typing import Any
@@ -38,7 +39,7 @@ def toolbox() -> Any:
         ModuleNotFoundError: this MuJoCo has none, or what it needs is not installed.
     """
     try:
-        from mujoco import sysid
+        sysid = importlib.import_module("mujoco.sysid")  # its types would ask for those of MuJoCo
     except ImportError as error:
         raise ModuleNotFoundError(
             f"MuJoCo {mujoco.__version__} has no mujoco.sysid: MuJoCo 4 has it; or take "
