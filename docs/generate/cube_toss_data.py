@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the tosses of a real cube say by themselves, before anything is simulated.
 
-Flights have the centre of mass: p + R c moves on a parabola. Where a corner hits, the flights before
-and after give the impulse and the velocities of the contact point. Where the cube slides on a face,
-its deceleration is friction.
+Flights have the centre of mass: p + R c moves on a parabola. Where a corner hits, the flights
+before and after give the impulse and the velocities of the contact point. Where the cube slides on
+a face, its deceleration is friction.
 """
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -61,8 +62,9 @@ def read(path: Path) -> list[Toss]:
 
 def matrices(q: np.ndarray) -> np.ndarray:
     """Rotation matrices of quaternions, shape (..., 3, 3)."""
-    return np.stack([rotations.rotate(q, np.broadcast_to(e, (*q.shape[:-1], 3)))
-                     for e in np.eye(3)], axis=-1)
+    return np.stack(
+        [rotations.rotate(q, np.broadcast_to(e, (*q.shape[:-1], 3))) for e in np.eye(3)], axis=-1
+    )
 
 
 def centre_of_mass(tosses: list[Toss]) -> tuple[np.ndarray, np.ndarray, float]:
@@ -146,9 +148,7 @@ class Impacts:
     depth: np.ndarray
 
 
-def impacts(
-    tosses: list[Toss], centre: np.ndarray, inertia: float, radius: float
-) -> Impacts:
+def impacts(tosses: list[Toss], centre: np.ndarray, inertia: float, radius: float) -> Impacts:
     """Of hits between two flights of five frames or more, whose impulse goes through the corner.
 
     Args:
@@ -171,7 +171,7 @@ def _hits(air: np.ndarray) -> list[tuple[slice, slice]]:
     """Flights before and after each touch of up to three frames."""
     edges = np.flatnonzero(np.diff(air.astype(int)))
     ends = [0, *(int(e) + 1 for e in edges), len(air)]
-    parts = [(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+    parts = [(a, b) for a, b in itertools.pairwise(ends)]
     found = []
     for (a, b), (c, d), (e, f) in zip(parts, parts[1:], parts[2:], strict=False):
         if air[a] and not air[c] and d - c <= 3 and b - a >= 5 and f - e >= 5:
@@ -217,7 +217,7 @@ def sliding(tosses: list[Toss]) -> list[tuple[float, float, int, float, float, f
     for toss in tosses:
         flat = np.abs(toss.turned[:, 2, :]).max(axis=1) > np.cos(0.02)
         edges = [0, *(np.flatnonzero(np.diff(flat.astype(int))) + 1), len(flat)]
-        for a, b in zip(edges[:-1], edges[1:], strict=True):
+        for a, b in itertools.pairwise(edges):
             if not flat[a]:
                 continue
             for begin in range(int(a) + 3, int(b) - 8, 4):
@@ -233,7 +233,7 @@ def sliding(tosses: list[Toss]) -> list[tuple[float, float, int, float, float, f
                     ratios.append(-2.0 * float(half @ speed) / size / GRAVITY)
     speed, ratio = np.array(speeds), np.array(ratios)
     found = []
-    for low, high in zip(_SPEEDS[:-1], _SPEEDS[1:], strict=True):
+    for low, high in itertools.pairwise(_SPEEDS):
         here = ratio[(speed > low) & (speed <= high)]
         quartiles = np.quantile(here, [0.25, 0.75])
         found.append((low, high, len(here), float(np.median(here)), *map(float, quartiles)))

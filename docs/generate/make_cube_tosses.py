@@ -17,10 +17,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import cube_toss_data as data
 import mujoco
 import numpy as np
 
-import cube_toss_data as data
 from volcontact.identify.bench import Bench
 from volcontact.identify.measurements import read_trials
 from volcontact.identify.reading import read_settings
@@ -125,7 +125,7 @@ Before that both had been fitted with the centre of mass in the centre, and coul
 
 No search settled before its evaluations ran out. Rounded edges were not fitted: an evaluation takes
 thirty times as long, since there is no closed form for a rounded box on a plane.
-"""
+"""  # noqa: E501
 
 
 def main(tosses: Path) -> None:

@@ -56,7 +56,9 @@ def repetition(number: int, rows: Any, folder: Path) -> dict[str, Any]:
 def held(results: list[dict[str, Any]], name: str) -> int:
     """How many intervals of a parameter hold the truth."""
     ends = [each["intervals"][name] for each in results]
-    return sum(low is not None and high is not None and low <= TRUE[name] <= high for low, high in ends)
+    return sum(
+        low is not None and high is not None and low <= TRUE[name] <= high for low, high in ends
+    )
 
 
 def main() -> None:

@@ -88,8 +88,7 @@ def walk(
 ) -> Chain:
     """Walks.
 
-    Goodman and Weare, Comm. App. Math. Comp. Sci. 5 (2010) 65. The same request gives the same chain,
-    also where it was interrupted.
+    The same request gives the same chain, also where it was interrupted. [GoodmanWeare2010]
 
     Args:
         probability: logarithm of the density, up to a constant, of points of shape (m, n): (m,).
@@ -119,9 +118,7 @@ def walk(
         state, accepted = emcee.State(begin, random_state=draws), 0.0
     else:
         chain, accepted = kept["chain"], float(kept["accepted"])
-        state = emcee.State(
-            chain[-1], log_prob=kept["probability"], random_state=_unpacked(kept)
-        )
+        state = emcee.State(chain[-1], log_prob=kept["probability"], random_state=_unpacked(kept))
     while len(chain) < request.steps:
         steps = min(_CHUNK, request.steps - len(chain))
         sampler.reset()

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -24,10 +25,11 @@ _UNKNOWN = 0.2  # spread of first walkers along what a fit does not tell, as a p
 class Posterior:
     """Logarithm of the density of all unknowns of a fit, up to a constant.
 
-    Errors are normal with the given sigmas, or with these times one common factor that is integrated
-    over with the prior 1/factor: the density is then that of Student, -n/2 ln S of n samples with
-    the sum of squares S. A robust loss takes the place of the squares. The prior is flat in the box
-    of the bounds, but for the priors given; numbers of trials are normal with their deviations.
+    Errors are normal with the given sigmas, or with these times one common factor that is
+    integrated over with the prior 1/factor: the density is then that of Student, -n/2 ln S of n
+    samples with the sum of squares S. A robust loss takes the place of the squares. The prior is
+    flat in the box of the bounds, but for the priors given; numbers of trials are normal with their
+    deviations.
 
     Args:
         settings: of the study.
@@ -111,7 +113,7 @@ def of_chain(
     return replace(known, chain=chain, **_of_samples(settings, chain, count))
 
 
-def _of_samples(settings: Settings, chain: Chain, count: int) -> dict[str, object]:
+def _of_samples(settings: Settings, chain: Chain, count: int) -> dict[str, Any]:
     samples = chain.samples[..., :count].reshape(-1, count)
     covariance = np.atleast_2d(np.cov(samples.T))
     tail = 0.5 * (1.0 - settings.uncertainty.level)

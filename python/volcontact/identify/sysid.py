@@ -14,6 +14,7 @@ themselves, in its threads as well.
 
 from __future__ import annotations
 
+import importlib
 import math
 from pathlib import Path
 from typing import Any
@@ -38,7 +39,7 @@ def toolbox() -> Any:
         ModuleNotFoundError: this MuJoCo has none, or what it needs is not installed.
     """
     try:
-        from mujoco import sysid
+        sysid = importlib.import_module("mujoco.sysid")  # its types would ask for those of MuJoCo
     except ImportError as error:
         raise ModuleNotFoundError(
             f"MuJoCo {mujoco.__version__} has no mujoco.sysid: MuJoCo 4 has it; or take "
@@ -73,7 +74,8 @@ def parameter(
         target: `volcontact/...`, `option/NAME`, `ELEMENT/NAME/ATTRIBUTE` with `/INDEX` where one is
             meant, as in studies; an `inertial` goes by the name of its body.
         nominal: first guess, in the unit of the target.
-        low, high: bounds.
+        low: bound.
+        high: bound.
         log: whether the toolbox sees the logarithm, which parameters over decades need; `values`
             gives the number back.
 
@@ -149,8 +151,9 @@ def _write(spec: Any, target: str, value: float) -> None:
         _set(spec.option, parts[1], index, value, target)
         return
     if len(parts) != 3:
-        raise StudyError(f"target {target!r}: must be volcontact/..., option/NAME or "
-                         "ELEMENT/NAME/ATTRIBUTE")
+        raise StudyError(
+            f"target {target!r}: must be volcontact/..., option/NAME or ELEMENT/NAME/ATTRIBUTE"
+        )
     tag, owner, key = parts
     is_inertial = tag == "inertial"
     find = getattr(spec, "body" if is_inertial else tag, None)

@@ -37,10 +37,12 @@ def row_of(one: Estimate) -> tuple[str, ...]:
 
 
 def sentences(found: Convergence) -> list[str]:
-    """Smooth or impacts, the step that would do, what tends to nothing, and what hangs on overlaps."""
-    return [line for line in (*_motion(found), _step(found), *_erratic(found)) if line] + [
-        f"{one.name}: not in every run." for one in found.estimates if one.kind == "none"
-    ] + _overlaps(found)
+    """Smooth or impacts, the step that would do, what tends to nothing, what hangs on overlaps."""
+    return (
+        [line for line in (*_motion(found), _step(found), *_erratic(found)) if line]
+        + [f"{one.name}: not in every run." for one in found.estimates if one.kind == "none"]
+        + _overlaps(found)
+    )
 
 
 def _motion(found: Convergence) -> list[str]:
@@ -59,7 +61,9 @@ def _motion(found: Convergence) -> list[str]:
     ruled = [one.name for one in found.estimates if _is_ruled(one, found.within, is_resolved)]
     if is_resolved and not ruled:
         return [f"Smooth: {hit}, and every figure converges as in a smooth motion."]
-    smooth = [one.name for one in found.estimates if one.limit is not None and one.name not in ruled]
+    smooth = [
+        one.name for one in found.estimates if one.limit is not None and one.name not in ruled
+    ]
     lines = [f"Impacts: {hit}."]
     if ruled:
         lines.append(f"Ruled by impacts: {', '.join(ruled)}.")
@@ -88,7 +92,9 @@ def _step(found: Convergence) -> str:
         return ""
     if not off:
         return f"Every figure that tends to something is within {percent} at the step of {step}."
-    worst = max(off, key=lambda one: abs(one.error_of_first or 0.0) / max(abs(one.limit or 0), LEAST))
+    worst = max(
+        off, key=lambda one: abs(one.error_of_first or 0.0) / max(abs(one.limit or 0), LEAST)
+    )
     costs = f"The step of {step} costs {_share(worst.error_of_first or 0.0, worst)} of "
     costs += worst.name[0].lower() + worst.name[1:]
     steps = [one.step for one in off]
@@ -118,8 +124,8 @@ def _overlaps(found: Convergence) -> list[str]:
         if change is None or one.limit is None or abs(change) <= found.within * scale:
             continue
         lines.append(
-            f"{one.name} changes by {_number(change, one)} when overlaps are asked for ten times as "
-            "closely: give a smaller volcontact/option/tolerance."
+            f"{one.name} changes by {_number(change, one)} when overlaps are asked for ten times "
+            "as closely: give a smaller volcontact/option/tolerance."
         )
     return lines
 

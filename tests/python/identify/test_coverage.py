@@ -8,7 +8,7 @@ from scipy import stats
 from synthetic_tosses import scene, tosses
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-import identify_coverage as bench  # noqa: E402
+import identify_coverage as bench
 
 REPETITIONS = 3
 

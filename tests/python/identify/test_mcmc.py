@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chains in linear problems, whose posteriors are normal, or Student's where the noise is unknown."""
+"""Chains in linear problems: posteriors are normal, or Student's where the noise is unknown."""
 
 import csv
 import json
@@ -135,7 +135,9 @@ def fall(folder, scale):
     with (folder / "fall.csv").open("w", newline="") as out:
         writer = csv.writer(out)
         writer.writerow(["t", "z"])
-        writer.writerows((repr(float(t)), repr(float(h))) for t, h in zip(1e-2 * steps, z, strict=True))
+        writer.writerows(
+            (repr(float(t)), repr(float(h))) for t, h in zip(1e-2 * steps, z, strict=True)
+        )
     (folder / "scene.xml").write_text(SCENE)
     (folder / "study.toml").write_text(STUDY.format(scale=str(scale).lower()))
     return z, np.column_stack([gravity, 1e-2 * steps])

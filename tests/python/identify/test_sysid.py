@@ -24,7 +24,7 @@ def toolbox():
 def test_without_the_toolbox_it_says_what_is_missing(monkeypatch):
     monkeypatch.setitem(sys.modules, "mujoco.sysid", None)
     monkeypatch.delattr(mujoco, "sysid", raising=False)
-    with pytest.raises(ModuleNotFoundError, match="has no mujoco.sysid: MuJoCo 4 has it"):
+    with pytest.raises(ModuleNotFoundError, match=r"has no mujoco\.sysid: MuJoCo 4 has it"):
         adapter.toolbox()
     empty = types.ModuleType("mujoco.sysid")
     monkeypatch.setitem(sys.modules, "mujoco.sysid", empty)

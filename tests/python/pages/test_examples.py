@@ -54,6 +54,20 @@ def test_compare_with_native(run):
     assert numbers(native)[2] - numbers(native)[0] > 0.1  # it creeps [mm]
 
 
+def test_identify_with_sysid(run):
+    from volcontact.identify.sysid import toolbox
+
+    lines = run("identify_with_sysid").splitlines()
+    try:
+        toolbox()
+    except ModuleNotFoundError:
+        assert lines[0].startswith("nothing to show: ")
+        return
+    said = dict(line.split(" = ") for line in lines if " = " in line)
+    assert float(said["stiffness"]) == pytest.approx(4e6, rel=1e-4)
+    assert float(said["damping"]) == pytest.approx(0.5, rel=1e-4)
+
+
 def test_sweep_stiffness(run):
     rows = [numbers(line.split(": ")[1]) for line in run("sweep_stiffness").splitlines()]
     assert len(rows) == 5

@@ -16,7 +16,8 @@ from volcontact.simulation import simulate
 
 ROOT = Path(__file__).parents[3]
 # A block on a spring of contact: presses on it and lets go, or lies on it.
-SCENE = """<mujoco><option timestep="{step}" gravity="0 0 {gravity}"><flag energy="enable"/></option>
+SCENE = """<mujoco>
+  <option timestep="{step}" gravity="0 0 {gravity}"><flag energy="enable"/></option>
   <worldbody><geom type="plane" size="1 1 1"/>
   <body pos="0 0 {height}"><joint type="slide" axis="0 0 1"/>
     <geom name="block" type="box" size=".05 .05 .05" mass="1"/></body></worldbody></mujoco>"""
@@ -70,11 +71,16 @@ def test_step_that_would_do_is_named():
     soft = converged(text(2e-4, height=0.0505), stiffness=1e5)
     first = soft.estimates[0]
     made = [
-        dataclasses.replace(first, name=name, kind="converges", values=(value, 1.0), limit=1.0, step=step)
+        dataclasses.replace(
+            first, name=name, kind="converges", values=(value, 1.0), limit=1.0, step=step
+        )
         for name, value, step in (("Peak", 1.2, 1e-5), ("Depth", 1.05, 5e-5))
     ]
     said = step_error.sentences(dataclasses.replace(soft, estimates=tuple(made)))
-    assert "The step of 200 µs costs +20 % of peak at most; 10.0 µs would bring all within 1 %." in said
+    assert (
+        "The step of 200 µs costs +20 % of peak at most; 10.0 µs would bring all within 1 %."
+        in said
+    )
     same = [dataclasses.replace(made[0], values=(1.001, 1.0), step=soft.steps[0])]
     said = step_error.sentences(dataclasses.replace(soft, estimates=tuple(same)))
     assert any("is within 1 % at the step of 200 µs" in line for line in said)
