@@ -34,8 +34,8 @@ def host(name: str) -> str:
             lines.append(f"| {' | '.join((SCENE[scene], event, *cells))} |")
     seconds = found["seconds"]
     lines.append(
-        f"\nFree fall takes the ball to the wall in {FREE_FALL} s; the straight line between samples "
-        "1 ms apart, in both columns, meets it 7e-7 s early. The runs took "
+        f"\nFree fall takes the ball to the wall in {FREE_FALL} s; the straight line between "
+        "samples 1 ms apart, in both columns, meets it 7e-7 s early. The runs took "
         f"{seconds['ball_in_cylinder']:g} s and {seconds['tippe_top']:g} s of one core."
     )
     return "\n".join(lines) + "\n"
