@@ -30,14 +30,20 @@ def host(name: str) -> str:
     for scene, events in found["events"].items():
         for event, time in events.items():
             expected = reference[scene][event]
-            cells = f"{expected:.6f}", f"{time:.6f}", f"{time - expected:.1g}"
+            cells = f"{expected:.6f}", f"{time:.6f}", difference(time - expected)
             lines.append(f"| {' | '.join((SCENE[scene], event, *cells))} |")
     seconds = found["seconds"]
     lines.append(
-        f"\nFree fall takes the ball to the wall in {FREE_FALL} s. The runs took "
+        f"\nFree fall takes the ball to the wall in {FREE_FALL} s; the straight line between "
+        "samples 1 ms apart, in both columns, meets it 7e-7 s early. The runs took "
         f"{seconds['ball_in_cylinder']:g} s and {seconds['tippe_top']:g} s of one core."
     )
     return "\n".join(lines) + "\n"
+
+
+def difference(seconds: float) -> str:
+    """Less than a picosecond is the rounding of a sum of steps."""
+    return f"{seconds:.1g}" if abs(seconds) > 1e-12 else "0"
 
 
 def hosts(_: str) -> str:

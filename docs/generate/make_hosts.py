@@ -84,7 +84,6 @@ def draw_ball(axes: Axes, reference: Run, run: Run, label: str) -> None:
     axes.plot(*touch, "o", color=NATIVE, ms=5)
     axes.annotate(f"touches,\n{run.events['touches']:.6f} s", touch, (-0.35, -0.45), color=NATIVE)
     axes.set(aspect="equal", xlabel="x [m]", ylabel="z [m]", title="Ball in a cylinder, 4 s")
-    axes.legend(loc="upper right", fontsize=8)
 
 
 def draw_top(axes: Axes, reference: Run, run: Run, label: str) -> None:
@@ -94,9 +93,10 @@ def draw_top(axes: Axes, reference: Run, run: Run, label: str) -> None:
         axes.plot(one.times, tilt, **style)
     for event, time_of in run.events.items():
         axes.axvline(time_of, color=NATIVE, lw=0.8, ls=":")
+        place, end = (175.0, "top") if event == "upright" else (5.0, "bottom")
         axes.annotate(
-            f"{event}, {time_of:.4g} s", (time_of, 175.0), (-3, 0), textcoords="offset points",
-            rotation=90, ha="right", va="top", fontsize=8, color=NATIVE,
+            f"{event}, {time_of:.3f} s", (time_of, place), (-3, 0), textcoords="offset points",
+            rotation=90, ha="right", va=end, fontsize=8, color=NATIVE,
         )  # fmt: skip
     axes.set(xlabel="time [s]", ylabel="tilt [degree]", ylim=(0, 180), title="Tippe-top")
     axes.legend(loc="center left", bbox_to_anchor=(0.16, 0.5), fontsize=8)
@@ -111,7 +111,7 @@ def main() -> None:
     found = measure()
     RESULT.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
     save({host: partial(picture, found, host) for host in HOSTS}, PICTURES)
-    for page in PICTURES.glob("*.md"):
+    for page in (DOCS / "hosts.md", *PICTURES.glob("*.md")):
         page.write_text(make_blocks.render(page.read_text(encoding="utf-8")), encoding="utf-8")
 
 

@@ -7,7 +7,7 @@
  *             3 sample time [s], 0: continuous      scalar
  *             4 names of tunable parameters         char, parted by spaces, may be ''
  *             5 their numbers                       vector, tunable
- * Inputs      X_WA [4x4], V_WA [6], X_WB [4x4], V_WB [6]; twists: angular, then linear, in the world
+ * Inputs      X_WA [4x4], V_WA [6], X_WB [4x4], V_WB [6]; twists: angular, then linear, in W
  * Outputs     force on A [3], torque on A [3], force on B [3], torque on B [3], contact [9]:
  *             volume, depth, area, sites, elastic energy, dissipated power (normal, roll, slide,
  *             spin)
@@ -104,8 +104,7 @@ static const char* wrong_parameter(SimStruct* S) {
       !(mxGetScalar(sample_time) >= 0.0 && mxGetScalar(sample_time) < mxGetInf())) {
     return "volcontact_sfun: parameter 3, the sample time [s], must be > 0, or 0 for continuous";
   }
-  if (!mxIsChar(ssGetSFcnParam(S, kTunableNames)) &&
-      !mxIsEmpty(ssGetSFcnParam(S, kTunableNames))) {
+  if (!mxIsChar(ssGetSFcnParam(S, kTunableNames)) && !mxIsEmpty(ssGetSFcnParam(S, kTunableNames))) {
     return "volcontact_sfun: parameter 4 must be names parted by spaces, as 'stiffness friction', "
            "or ''";
   }

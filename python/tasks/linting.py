@@ -8,7 +8,7 @@ from pathlib import Path
 from tasks.shell import ROOT, Stopped, run, stop
 from tasks.sites import tool_environment
 
-_CPP = (".h", ".inc", ".cc")
+_CPP = (".h", ".inc", ".c", ".cc")
 
 
 def format_files() -> None:

@@ -3,7 +3,9 @@
 #include "simulink_methods.h"
 
 const simulink_methods volcontact_sfun_methods = {
-    mdlInitializeSizes,   mdlInitializeSampleTimes, mdlStart,    mdlInitializeConditions, mdlOutputs,
-    mdlUpdate,            mdlZeroCrossings,         mdlTerminate, mdlCheckParameters,
-    mdlProcessParameters,
+    mdlInitializeSizes, mdlInitializeSampleTimes,
+    mdlStart,           mdlInitializeConditions,
+    mdlOutputs,         mdlUpdate,
+    mdlZeroCrossings,   mdlTerminate,
+    mdlCheckParameters, mdlProcessParameters,
 };
