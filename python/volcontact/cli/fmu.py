@@ -145,13 +145,16 @@ def _whole_scene(arguments: argparse.Namespace, terminal: Terminal) -> int:
         raise ValueError(
             f"one scene at a time, not {' '.join([arguments.whole, *arguments.scene])}"
         )
-    defaults = {"kind": ("both", "cs"), "orientation": ("quaternion",), "frame": ("world",),
-                "slots": (_SLOTS,), "sources": (False,)}  # fmt: skip
+    defaults: dict[str, tuple[object, ...]] = {
+        "kind": ("both", "cs"),
+        "orientation": ("quaternion",),
+        "frame": ("world",),
+        "slots": (_SLOTS,),
+        "sources": (False,),
+    }
     for name, values in defaults.items():
         if getattr(arguments, name) not in values:
-            raise ValueError(
-                f"--{name} is of the contact of some bodies and not of a whole --scene"
-            )
+            raise ValueError(f"--{name} is for the contact of bodies, not for a whole --scene")
     out = export_scene_fmu(
         arguments.whole,
         arguments.out or Path(arguments.whole).with_suffix(".fmu").name,
