@@ -20,6 +20,7 @@ _EXAMPLES = """\
   volcontact fmu merge linux/ball.fmu windows/ball.fmu --out ball.fmu
 """
 _MERGE = "merge"
+_SLOTS = 4
 
 
 def add_to(commands: Subparsers) -> None:
@@ -80,7 +81,7 @@ def add_to(commands: Subparsers) -> None:
     parser.add_argument(
         "--slots",
         type=int,
-        default=4,
+        default=_SLOTS,
         metavar="N",
         help="contact sites with values of their own (default: %(default)s)",
     )
@@ -110,6 +111,8 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
         folders = merge_fmus(rest, out)
         _tell(terminal, {"fmu": str(out), "binaries": folders})
         return 0
+    if arguments.contact:
+        raise ValueError("--contact goes with --scene; of bodies the unit has all contact")
     if rest:
         raise ValueError(f"one scene at a time, not {' '.join(arguments.scene)}")
     if not Path(first).is_file():
@@ -142,6 +145,16 @@ def _whole_scene(arguments: argparse.Namespace, terminal: Terminal) -> int:
         raise ValueError(
             f"one scene at a time, not {' '.join([arguments.whole, *arguments.scene])}"
         )
+    defaults: dict[str, tuple[object, ...]] = {
+        "kind": ("both", "cs"),
+        "orientation": ("quaternion",),
+        "frame": ("world",),
+        "slots": (_SLOTS,),
+        "sources": (False,),
+    }
+    for name, values in defaults.items():
+        if getattr(arguments, name) not in values:
+            raise ValueError(f"--{name} is for the contact of bodies, not for a whole --scene")
     out = export_scene_fmu(
         arguments.whole,
         arguments.out or Path(arguments.whole).with_suffix(".fmu").name,

@@ -350,6 +350,10 @@ def test_the_command_writes_one(tmp_path, capsys, monkeypatch):
     assert "pair.ball.world.volume" in names
     assert main(["fmu", scene, "--scene", scene]) == 1
     assert "one scene at a time" in capsys.readouterr().err
+    assert main(["fmu", "--scene", scene, "--kind", "me"]) == 1
+    assert "--kind is for the contact of bodies" in capsys.readouterr().err
+    assert main(["fmu", scene, "--bodies", "ball", "world", "--contact", "a", "b"]) == 1
+    assert "--contact goes with --scene" in capsys.readouterr().err
     assert main(["fmu"]) == 1
     assert "name a scene" in capsys.readouterr().err
 
