@@ -311,7 +311,7 @@ TEST(Bristle, SlopeTellsWhatOfTheDampingIsViscous) {
   const std::array<double, 5> committed{};
   std::array<double, 5> pending{};
   const FrictionSlope slope =
-      law.slope({.normal_force = 10.0}, {committed.data(), pending.data(), 1e-3});
+      law.slope({.normal_force = 10.0, .patch = {}}, {committed.data(), pending.data(), 1e-3});
   EXPECT_EQ(slope.viscous, 3.0);
   EXPECT_EQ(slope.damping, 503.0);
 }

@@ -99,8 +99,12 @@ void BoreOutline::trace() {
                                                           : std::max(before.rho, after.rho));
     if (side * before.rho > side * p.rho || side * after.rho > side * p.rho) continue;
     if (side * (p.rho - 1.0) + 2.0 * fall < 0.0) continue;
-    const Place top = summit(p.angle - 2.0 * kPi / n, p.angle + 2.0 * kPi / n, side);
-    if (side * (top.rho - 1.0) > 0.0) places_.push_back(top);
+    // To both sides: the end of a face has two corners.
+    for (const double way : {-1.0, 1.0}) {
+      const double end = p.angle + way * 2.0 * kPi / n;
+      const Place top = summit(std::min(p.angle, end), std::max(p.angle, end), side);
+      if (side * (top.rho - 1.0) > 0.0) places_.push_back(top);
+    }
   }
   std::sort(places_.begin(), places_.end(),
             [](const Place& p, const Place& q) { return p.angle < q.angle; });

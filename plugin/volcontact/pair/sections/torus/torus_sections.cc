@@ -157,7 +157,7 @@ class TorusSectionsRun {
     const bool done =
         range.whole ? s_.breaks.empty() && !closer_ &&
                           integrate_even_turn(s_.sections, s_.path, options_.tolerance, error_)
-                    : corners_.size() == 2 && whole_range(range);
+                    : corners_.size() == 2 && !has_axial_plane() && whole_range(range);
     for (std::size_t i = 0; i + 1 < corners_.size() && !done; ++i) {
       const double from = corners_[i], to = corners_[i + 1];
       const bool begins = !range.whole && i == 0, ends = !range.whole && i + 2 == corners_.size();
@@ -197,9 +197,10 @@ class TorusSectionsRun {
     return flux.open(v[0], middle.head<2>(), std::sqrt(std::max(spread, 0.0)));
   }
 
-  // A range without breaks. At its ends sections mostly grow like an odd power of the root of the
-  // angle: then the integrand, as a function of theta, angle = middle - half cos theta, is even and
-  // periodic, and equal steps converge fastest. False when they do not.
+  // A range without breaks, where openness() can tell whether one was overlooked. At its ends
+  // sections mostly grow like an odd power of the root of the angle: then the integrand, as a
+  // function of theta, angle = middle - half cos theta, is even and periodic, and equal steps
+  // converge fastest. False when they do not.
   bool whole_range(const TorusRange& range) {
     double u[kLanes], v[kLanes], weight[kLanes], section[kLanes];
     const double half = 0.5 * (range.high - range.low), middle = range.low + half;

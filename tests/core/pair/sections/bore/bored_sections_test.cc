@@ -9,6 +9,7 @@
 #include "core/support/random.h"
 #include "core/support/sanitized.h"
 #include "volcontact/pair/interference.h"
+#include "volcontact/pair/octree/octree.h"
 #include "volcontact/pair/quadrature/gauss.h"
 #include "volcontact/shape/csg/csg_metrics.h"
 
@@ -418,6 +419,29 @@ TEST(BoredLines, ACapsuleAcrossABore) {
            {evaluated(pipe, capsule, X).total, evaluated(capsule, pipe, X.inverse()).total}) {
         EXPECT_NEAR(m.volume, expected, m.volume_error + 2e-5 * expected) << off << " " << turn;
       }
+    }
+  }
+}
+
+// The end of a cone reaches the wall of a bore with two corners, and its middle just does, or not:
+// two lobes, of which one place of the outline is beside both.
+TEST(BoredLines, AnEndWithTwoCornersAtTheWall) {
+  const Shape block =
+      Csg(Csg::Operation::kDifference, Csg(Box({.half_sizes = {0.47, 0.62, 0.205}})),
+          Csg(Cylinder({.radius = 0.4, .half_length = 0.51})));
+  const Shape cone = Frustum({.bottom_radius = 0.25, .top_radius = 0.05, .half_length = 0.25});
+  Mat3 across;
+  across << -Vec3::UnitZ(), Vec3::UnitY(), Vec3::UnitX();
+  static OctreeScratch scratch;
+  for (const double beyond : {0.0, 1e-4, -1e-4, -1e-3}) {
+    const Pose X{across.transpose(), {0.045, 0.0, -0.15 - beyond}};
+    Interference bounded;
+    octree_interference(cone, block, X, {}, scratch, bounded);
+    ASSERT_GT(bounded.total.volume, 1e-6);
+    for (const VolumeMetrics& m :
+         {evaluated(cone, block, X).total, evaluated(block, cone, X.inverse()).total}) {
+      EXPECT_NEAR(m.volume, bounded.total.volume, bounded.total.volume_error + m.volume_error)
+          << beyond;
     }
   }
 }

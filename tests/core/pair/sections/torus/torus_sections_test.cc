@@ -8,6 +8,7 @@
 #include "core/support/matchers.h"
 #include "core/support/random_shapes.h"
 #include "core/support/sanitized.h"
+#include "volcontact/pair/octree/octree.h"
 
 namespace volcontact::torus_sections_test {
 namespace {
@@ -352,6 +353,30 @@ TEST(TorusSections, AThinDiscThroughTheAxis) {
       const Pose X{round * upright * spin, round * Vec3(x, 0.0, z)};
       const VolumeMetrics m = evaluated(ring, plate, X).total;
       EXPECT_NEAR(m.volume, 2.0 * half * common, 2e-5 * m.volume) << turn << " " << own;
+    }
+  }
+}
+
+// The end of a cone holds the axis of the ring: what the half-planes see of it tells nothing, and a
+// range that looks smooth may not be.
+TEST(TorusSections, AConeWhoseEndHoldsTheAxis) {
+  static OctreeScratch scratch;
+  const Shape ring = Torus({.major_radius = 0.359, .minor_radius = 0.15});
+  for (const double top : {0.0, 2.8e-7, 0.02}) {
+    const Shape cone = Frustum({.bottom_radius = 0.283, .top_radius = top, .half_length = 0.2698});
+    for (const double off : {0.0, 1e-7, 1e-3}) {
+      Mat3 R;  // the cone's axis across that of the ring
+      R << -0.922, 0.0, 0.387, 0.387, 0.0, 0.922, 0.0, 1.0, 0.0;
+      R.col(0).normalize();
+      R.col(2) = R.col(0).cross(R.col(1));
+      const Pose X{R, Vec3(-0.2698 * R.col(2)) + Vec3(0.0, 0.0, off)};
+      Interference bounded;
+      octree_interference(ring, cone, X, {.tolerance = 1e-4}, scratch, bounded);
+      for (const VolumeMetrics& m :
+           {evaluated(ring, cone, X).total, evaluated(cone, ring, X.inverse()).total}) {
+        EXPECT_NEAR(m.volume, bounded.total.volume, bounded.total.volume_error + m.volume_error)
+            << top << " " << off;
+      }
     }
   }
 }
