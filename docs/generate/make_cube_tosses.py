@@ -65,7 +65,7 @@ interval of the difference by a bootstrap over tosses {low} to {high}. Volumetri
 {better} of {judge} tosses.
 
 100 tosses, one run of each, take {seconds} s of one core under volumetric contact and
-{native_seconds} s under native contact.
+{native_seconds} s under native contact; the {evaluations} evaluations of a fit take {study_seconds} s of one core.
 
 ## How errors grow
 
@@ -113,7 +113,10 @@ One number for both is a compromise; the fits find 0.18.
 ## What was tried
 
 Every fit that was run, with all its numbers; the two scenes above are those of the seeds that fit
-best. `python tests/benchmarks/cube_tosses.py` runs them ({variants}) and says there what each is.
+best. `tests/benchmarks/cube_tosses.py` runs them:
+
+{variants}
+
 The sum on the tosses of the fit chooses; the sum on the others is shown, and chose nothing.
 
 | variant | seed | numbers | sum, fit | sum, others | values |
@@ -192,6 +195,10 @@ def _page(runs: dict[str, Any], fits: list[dict[str, Any]], tosses: list[data.To
         growth.append(f"| {word} | " + " | ".join(f"{part:.1f}" for part in parts) + " |")
     settings, values = runs["volumetric"]["settings"], runs["volumetric"]["values"]
     ours, theirs = (_sums(runs[word]["table"]) for word in RUNS)
+    share = len(settings.fit) / 100.0
+    sys.path.insert(0, str(ROOT / "tests" / "benchmarks"))
+    from cube_tosses import VARIANTS
+
     return _TEXT.format(
         fit=len(settings.fit),
         judge=len(ours),
@@ -202,13 +209,21 @@ def _page(runs: dict[str, Any], fits: list[dict[str, Any]], tosses: list[data.To
         parts=" | ".join(_PARTS),
         growth="\n".join(growth),
         fits="\n".join(_fit_row(each) for each in fits),
-        evaluations=max(each["evaluations"] for each in fits if each["variant"] == "volumetric"),
+        variants="\n".join(
+            f"* `{name}`: {VARIANTS[name].text}"
+            for name in dict.fromkeys(each["variant"] for each in fits)
+        ),
+        evaluations=_evaluations(fits),
         seconds=f"{runs['volumetric']['seconds']:.2f}",
+        study_seconds=f"{_evaluations(fits) * runs['volumetric']['seconds'] * share:.0f}",
         native_seconds=f"{runs['native']['seconds']:.2f}",
-        variants=", ".join(sorted({f"`{each['variant']}`" for each in fits})),
         **_difference(ours, theirs),
         **_said_by_data(tosses, values),
     )
+
+
+def _evaluations(fits: list[dict[str, Any]]) -> int:
+    return max(int(each["evaluations"]) for each in fits if each["variant"] == "volumetric")
 
 
 def _fit_row(each: dict[str, Any]) -> str:
