@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The real cube under Drake's point and hydroelastic contact: writes results/cube_tosses_drake.json.
+"""The real cube under Drake's contacts, point and hydroelastic: results/cube_tosses_drake.json.
 
     ./run python tests/benchmarks/cube_tosses_drake.py tosses.parquet
 

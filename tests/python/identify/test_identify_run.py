@@ -122,6 +122,20 @@ def test_search_finds_the_parameter_and_goes_on_where_it_was_stopped(tmp_path, r
         run(read_settings(study), tmp_path / "b", workers=1)
 
 
+def test_least_squares_go_on_with_the_first_guess_that_was_not_done(tmp_path, rows):
+    text = STUDY[: STUDY.index("[parameter.damping]")] + "[estimator]\nstarts = 2\nseed = 5\n"
+    settings = read_settings(write_study(tmp_path, rows[:20], text))
+    whole = run(settings, tmp_path / "a", workers=1, report=False)
+    kept = json.loads((tmp_path / "a" / "starts.json").read_text())
+    assert len(kept["starts"]) == 2
+    (tmp_path / "b").mkdir()
+    stopped = kept | {"starts": kept["starts"][:1]}
+    (tmp_path / "b" / "starts.json").write_text(json.dumps(stopped))
+    again = run(settings, tmp_path / "b", workers=1, report=False)
+    assert again.values == whole.values
+    assert again.summary["starts"] == whole.summary["starts"]
+
+
 def test_optuna_finds_about_the_same(tmp_path, rows):
     text = STUDY[: STUDY.index("[parameter.damping]")]
     text += '[estimator]\nmethod = "optuna"\nevaluations = 30\nseed = 3\n'
