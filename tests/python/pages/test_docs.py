@@ -271,6 +271,12 @@ def test_third_party_page_is_generated_from_the_results() -> None:
     )
 
 
+def test_coverage_page_is_generated_from_the_results() -> None:
+    pytest.importorskip("scipy")
+    made = generator("make_identify_coverage")
+    assert made.PAGE.read_text(encoding="utf-8") == made.render()
+
+
 def test_convergence_page_is_generated_from_the_results() -> None:
     module = generator("make_convergence")
     assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
