@@ -49,8 +49,8 @@ logging.getLogger("drake").setLevel(logging.ERROR)
 
 RESULT = Path(__file__).parent / "results" / "cube_tosses_drake.json"
 FEWER = 6  # every which toss of the fit the grid sees
-DISSIPATIONS = (1.0, 4.0, 10.0)  # [s/m]
-STIFFNESS = {"point": (1e4, 1e5, 1e6), "hydroelastic": (1e7, 5e7, 1.5e8)}  # [N/m], [Pa]
+DISSIPATIONS = (2.0, 4.0, 8.0)  # [s/m]
+STIFFNESS = {"point": (3e3, 1e4, 3e4), "hydroelastic": (1e6, 3e6, 1e7)}  # [N/m], [Pa]
 
 
 class Cube:
