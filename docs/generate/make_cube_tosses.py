@@ -240,6 +240,7 @@ def _drake() -> dict[str, str]:
             f"| {kind} | {found[kind]['stiffness']:g} {unit} | {found[kind]['dissipation']:g} | "
             f"{found[kind]['judge']:.2f} ({found[kind]['median']:.2f}) |"
             for kind, unit in units.items()
+            if kind in found  # what is there so far
         ),
     }
 
