@@ -150,10 +150,11 @@ TEST(FlushGroups, SidesOfAFamilyAreInOneOrder) {
 TEST(FlushGroups, AFamilyWithAPairOfItsOwnIsNone) {
   const std::string tiles = box("a", "0 0 0") + box("b", "1 0 0");
   EXPECT_FALSE(Scene(tiles).groups.empty());
-  EXPECT_TRUE(Scene(tiles,
-                    "<contact><pair geom1=\"a\" geom2=\"ball\" friction=\".1 .1 .005 .0001 .0001\"/>"
-                    "</contact>")
-                  .groups.empty());
+  EXPECT_TRUE(
+      Scene(tiles,
+            "<contact><pair geom1=\"a\" geom2=\"ball\" friction=\".1 .1 .005 .0001 .0001\"/>"
+            "</contact>")
+          .groups.empty());
   const std::string masked =
       box("a", "0 0 0") + box("b", "1 0 0", "contype=\"2\" conaffinity=\"2\"");
   EXPECT_TRUE(Scene(masked).groups.empty());
