@@ -57,7 +57,10 @@ def test_a_site_across_the_seam_is_that_of_one_floor(scene, x):
     # Two equal sides in series: half the stiffness.
     assert site["force"] == pytest.approx([0.0, 0.0, -5e7 * volume], rel=1e-9, abs=1e-9)
     # Told with the geom in which its centroid lies, and with the pair of that.
-    left, right, ball = (model.geom(name).id for name in ("left", "right", "ball"))
+    left, right, ball = (
+        mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, name)
+        for name in ("left", "right", "ball")
+    )
     assert (site["geom_a"], site["geom_b"]) == (left if x < 0 else right, ball)
     pair = contact.description["pairs"][site["pair"]]
     assert pair["geom_a"] == ("left" if x < 0 else "right")
