@@ -476,7 +476,7 @@ vector is no longer than the areas; V is within `volume_error` of the judge's, a
 (*beyond the bound*; *wrong volume* where it is more than {short(WRONG)} of V off and the status is
 `ok`); centroid and area vector agree with the judge's. Every tenth is moved a little: the
 increments of V must lie between those that S and T foretell at both ends. *Slow* is a call of more
-than 2 s.
+than 2 s of the processor.
 
 """
     header = [

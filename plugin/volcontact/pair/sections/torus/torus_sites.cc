@@ -14,6 +14,7 @@ constexpr double kShortArc = kPi / 6.0;  // one with a ball that meets the body 
 constexpr double kNothing = 1e-9;        // an arc this short holds nothing [rad]
 constexpr double kSampleStep = kPi / 24.0;  // between half-planes, at most [rad]
 constexpr int kLeastSamples = 8;            // of an arc
+constexpr int kBesideRounds = 8;            // each of them narrows a search to two ninths
 constexpr int kEndRounds = 9;               // each of them narrows an end to a fifth
 constexpr double kEndWidth = 1e-4;          // to which an end is known, of the range
 
@@ -83,7 +84,7 @@ class SiteSearch {
     }
     const Vec3& q = gap.place;
     if (q.x() != 0.0 || q.y() != 0.0) {
-      s_.samples.push_back({turned_near(std::atan2(q.y(), q.x()), start_), 0.0});
+      s_.samples.push_back({turned_near(std::atan2(q.y(), q.x()), start_), 0.0, true});
     }
     if (arc.high - arc.low > kShortArc) {
       s_.arcs.push_back({arc.low, angle});
@@ -133,6 +134,45 @@ class SiteSearch {
         s_.samples[from + i].length = length[i];
       }
     }
+    look_beside();
+  }
+
+  // A half-plane where a ball meets the body may but touch it, in a corner or an edge: then the
+  // overlap lies beside it.
+  void look_beside() {
+    for (std::size_t i = 0; i < s_.samples.size(); ++i) {
+      const Sample sample = s_.samples[i];
+      const bool last = i + 1 == s_.samples.size();
+      if (!sample.met || sample.length > 0.0) continue;
+      if ((i > 0 && s_.samples[i - 1].length > 0.0) || (!last && s_.samples[i + 1].length > 0.0)) {
+        continue;
+      }
+      const double low = i > 0 ? s_.samples[i - 1].angle : sample.angle - kSampleStep;
+      const double high = last ? sample.angle + kSampleStep : s_.samples[i + 1].angle;
+      const Sample found = longest_between(low, high);
+      if (!(found.length > 0.0)) continue;
+      const bool before = found.angle < sample.angle;
+      s_.samples.insert(s_.samples.begin() + static_cast<std::ptrdiff_t>(before ? i : i + 1),
+                        found);
+      ++i;
+    }
+  }
+
+  // A half-plane between two with a column, or about the one that is nearest to having one.
+  Sample longest_between(double low, double high) {
+    Sample best{};
+    for (int round = 0; round < kBesideRounds; ++round) {
+      double angle[kLanes], length[kLanes];
+      const double step = (high - low) / (kLanes + 1);
+      for (int i = 0; i < kLanes; ++i) angle[i] = low + (i + 1) * step;
+      probe(angle, length);
+      const auto most = std::max_element(length, length + kLanes) - length;
+      best = {angle[most], length[most]};
+      if (best.length > 0.0) break;
+      low = best.angle - step;
+      high = best.angle + step;
+    }
+    return best;
   }
 
   void probe(const double* angle, double* length) {

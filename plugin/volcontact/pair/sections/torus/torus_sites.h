@@ -23,6 +23,7 @@ struct TorusSites {
   std::vector<Arc> arcs, doubtful;
   struct Sample {
     double angle, length;
+    bool met = false;  ///< a ball meets the body there
   };
   std::vector<Sample> samples;
 };

@@ -381,5 +381,43 @@ TEST(TorusSections, AConeWhoseEndHoldsTheAxis) {
   }
 }
 
+// A body whose nearest place to the middle of a ball of the tube is a corner: the half-plane
+// through it meets nothing else, and the overlap lies beside it.
+TEST(TorusSections, ACornerInTheTubeIsNotMissed) {
+  static OctreeScratch scratch;
+  const Shape ring = Torus({.major_radius = 0.27228824696060872, .minor_radius = 0.05});
+  const Shape body =
+      ConvexPolytope({{0.06, 0.074, 0.0318},
+                      {-0.186, -0.00936, 0.021},
+                      {0.1164, 0.0507, 0.1342},
+                      {-0.036955437268140684, -0.03948445807008797, -0.25263869529206823},
+                      {-0.0476, 0.0565, 0.1945},
+                      {0.138, 0.0319, -0.1631},
+                      {0.0949, -0.0462, 0.1894},
+                      {-0.1644, -0.0274, -0.1005},
+                      {-0.069256148499206208, -0.042289816502973004, -0.22744525700886276},
+                      {-0.0383, -0.0761, 0.0455}});
+  Mat3 R;
+  R << 0.22102619235636844, 0.73736177258757007, -0.63831421621248718, 0.92538930711318512,
+      -0.36519372440609876, -0.10143063607698144, -0.30789941957240585, -0.56827032298098978,
+      -0.76306407820448241;
+  int seen = 0;
+  for (const double deeper : {-1e-3, -3e-4, -1e-4, 0.0, 1e-4, 3e-4, 1e-3}) {
+    const Vec3 way = Vec3(-0.0363301, -0.0381294, -0.244551).normalized();
+    const Pose X{
+        R, Vec3(-0.22750304009435771, -0.134189772608619, -0.12112660029508712) - deeper * way};
+    Interference bounded;
+    octree_interference(body, ring, X, {}, scratch, bounded);
+    if (!(bounded.total.volume > 1e-9)) continue;
+    ++seen;
+    for (const VolumeMetrics& m :
+         {evaluated(body, ring, X).total, evaluated(ring, body, X.inverse()).total}) {
+      EXPECT_NEAR(m.volume, bounded.total.volume, bounded.total.volume_error + m.volume_error)
+          << deeper;
+    }
+  }
+  EXPECT_GE(seen, 4);
+}
+
 }  // namespace
 }  // namespace volcontact::torus_sections_test
