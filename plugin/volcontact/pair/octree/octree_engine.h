@@ -9,8 +9,8 @@
 namespace volcontact {
 namespace octree_work {
 
-/// A look at a solid, in looks at a simple one: what it costs to know how far its surface is. As
-/// measured.
+/// A look at a solid, in looks at a simple one: what it costs to know how far its surface is. Of a
+/// mesh about 15 were measured; more stand here, since large meshes cost more.
 inline constexpr int kOfMesh = 24;
 inline constexpr int kLeastCells = 1500;  ///< whatever a look costs
 

@@ -19,6 +19,9 @@ inline constexpr double kCloserTarget = 1e-2;  ///< of the target, on a closer l
 inline constexpr int kCloserDepth = 2;         ///< more of divisions then
 /// Divisions then, whatever the error seems to be: the same nodes would agree by the same chance.
 inline constexpr int kCloserLeast = 1;
+/// Of the gap on a closer look, and of what V changed by since the first: error of V. Where two
+/// silhouettes come near each other, the normals in the check converge far less fast than V.
+inline constexpr double kGapShare = 0.1;
 /// Of V: a surface as far from closed as this is an answer, to any tolerance, but an approximate
 /// one.
 inline constexpr double kLeastOpen = 1e-3;

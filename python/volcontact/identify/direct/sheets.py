@@ -124,13 +124,7 @@ class Sheet:
         Raises:
             SheetError: it is not there, and has no default.
         """
-        value = self.constants.get(name, default)
-        if value is None:
-            raise SheetError(
-                f"{self.source}: the constant {name!r} is missing; write a line such as "
-                f'"# {name} [unit] = value" above the table, or give it with --given'
-            )
-        return float(value)
+        return float(self._constant(name, default, f"# {name} [unit] = value"))
 
     def word(self, name: str, default: str | None = None) -> str:
         """A constant that is a word.
@@ -138,13 +132,16 @@ class Sheet:
         Raises:
             SheetError: it is not there, and has no default.
         """
+        return str(self._constant(name, default, f"# {name} = word"))
+
+    def _constant(self, name: str, default: float | str | None, line: str) -> float | str:
         value = self.constants.get(name, default)
         if value is None:
             raise SheetError(
                 f"{self.source}: the constant {name!r} is missing; write a line such as "
-                f'"# {name} = word" above the table, or give it with --given'
+                f'"{line}" above the table, or give it with --given'
             )
-        return str(value)
+        return value
 
     def groups(self, label: str) -> list[tuple[str, np.ndarray]]:
         """Rows of each label, in the order of their first one."""

@@ -18,7 +18,6 @@ constexpr double kOnFace = 1e-6;   // of an apex from a face, per its distance f
 constexpr double kOnWall = 1e-12;  // of a place from the wall, per the size of the numbers
 constexpr double kEndError =
     5.0;  // error by its estimate where an arc ends in nothing, as measured
-constexpr double kGapShare = 0.1;  // of what a first look missed, that a closer one may still miss
 constexpr double kThroughBore = 0.5;  // of radii: between places outside of the wall nothing is
 
 class BoreRun {
@@ -268,7 +267,8 @@ class BoreRun {
       s_.sections.look_closer();
       s_.sections.set(s_.faces.active, s_.faces.idle, frame_);
       integrate_arcs(open);
-      open_ = kGapShare * std::max(open_, std::abs(s_.sections.total().moments[0] - volume));
+      open_ = outer_rule::kGapShare *
+              std::max(open_, std::abs(s_.sections.total().moments[0] - volume));
       closer_ = false;
       s_.sections.choose_rule(options_.tolerance);
     }

@@ -20,11 +20,7 @@ constexpr double kSameAngle = 1e-11;    // [rad]
 constexpr double kNearRangeEnd = 3e-4;  // of a range: to which its ends are known at least
 constexpr double kOnAxis = 1e-8;        // of a plane from the axis, per radius
 constexpr double kEndError = 5.0;       // error by its estimate where an arc ends in nothing
-constexpr double kTarget = 1e-2;  // share of the tolerance asked of an arc: kinks may be hidden
-// Where two silhouettes come near each other the normals in the check of the surface converge far
-// less fast than V: on a closer look a gap this many times as large is another one's error. So is
-// what V changed by since the first look, which was wrong by that.
-constexpr double kGapShare = 0.1;
+constexpr double kTarget = 1e-2;   // share of the tolerance asked of an arc: kinks may be hidden
 constexpr double kGapError = 3.0;  // error of V by the gap on a first look, at most as measured
 constexpr double kWhole = 0.999;   // share of a solid in the overlap, that is all of it
 
@@ -139,7 +135,8 @@ class TorusSectionsRun {
     closer_ = true;
     set_sections();
     integrate_corners(range);
-    open_ = kGapShare * std::max(open_, std::abs(s_.sections.total().moments[0] - volume));
+    open_ =
+        outer_rule::kGapShare * std::max(open_, std::abs(s_.sections.total().moments[0] - volume));
   }
 
   bool is_open(double tolerance) const {
