@@ -3,17 +3,29 @@
 
 from __future__ import annotations
 
+import re
+import shutil
+import tempfile
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
 import latex2mathml.converter
 from docutils import nodes
 from sphinx.application import Sphinx
 
+ROOT = Path(__file__).parents[1]
+
 project = "volcontact"
 copyright = "the volcontact developers"
 language = "en"
-extensions = ["myst_parser", "sphinx.ext.githubpages"]
+extensions = [
+    "autoapi.extension",
+    "hawkmoth",
+    "myst_parser",
+    "sphinx.ext.githubpages",
+    "sphinx.ext.napoleon",
+]
 include_patterns = [
     "*.md",
     "docs/**.md",
@@ -31,10 +43,70 @@ myst_enable_extensions = ["dollarmath"]
 myst_fence_as_directive = ["math"]
 myst_heading_anchors = 4
 
+# ---- References from the code -------------------------------------------------------------------
+
+_ARRAY = re.compile(r"Annotated\[NDArray\[numpy\.\w+\], dict\(.*?order='.'\)\]")
+_SOLIDS = re.compile(r"HalfSpace \| Sphere \|[\w |]*Mesh\b")
+
+
+_NORM = re.compile(r"\|(\w+)\|")
+_TRAILING = re.compile(r"^( +)([^/\n]+[,;\w\d]) +/\* (.*) \*/$", re.MULTILINE)
+_ARGUMENT = re.compile(r"(\w+) {2,}(\S.*)")
+
+
+def unread(folder: str, names: list[str]) -> set[str]:
+    """What of a folder of the package no name of the reference is in."""
+    if Path(folder).name in ("fmu", "identify", "study"):
+        wanted = {"__init__.py", "export.py", "merge.py", "scene_export.py", "settings.py"}
+        return set(names) - wanted
+    hidden = ("cli", "view", "templates", "report", "meshes", "__pycache__")
+    return {name for name in names if name in hidden or name.endswith(".so")}
+
+
+def readable_sources() -> str:
+    """A copy of the package whose annotations are short: docstrings tell the shapes of arrays."""
+    copy = Path(tempfile.mkdtemp(prefix="volcontact-docs-")) / "volcontact"
+    shutil.copytree(ROOT / "python" / "volcontact", copy, ignore=unread)
+    stub = copy / "_volcontact.pyi"
+    text = _ARRAY.sub("numpy.ndarray", stub.read_text(encoding="utf-8"))
+    text = _NORM.sub(r"‖\1‖", _SOLIDS.sub("Solid", text))  # bars mean something else there
+    stub.write_text(text, encoding="utf-8")
+    return str(copy)
+
+
+def readable_header() -> str:
+    """A folder with the C header, every comment in front of what it is about and marked as such."""
+    header = ROOT / "plugin" / "c_api" / "volcontact.h"
+    text = _TRAILING.sub(r"\1/** \3 */\n\1\2", header.read_text(encoding="utf-8"))
+    copy = Path(tempfile.mkdtemp(prefix="volcontact-docs-"))
+    text = re.sub(r"^/\* (?!SPDX|The contact model|----)", "/** ", text, flags=re.MULTILINE)
+    (copy / header.name).write_text(text, encoding="utf-8")
+    return str(copy)
+
+
+def read_comment(app: Sphinx, lines: list[str], transform: str, options: Any) -> None:
+    """Comments of the C header as reStructuredText: arguments in columns are a list."""
+    found: list[str] = []
+    for line in (line.strip().removeprefix("* ") for line in lines):
+        argument = _ARGUMENT.fullmatch(line)
+        found.append(f"* ``{argument[1]}``: {argument[2]}" if argument else line)
+    lines[:] = found
+
+
+autoapi_dirs = [readable_sources()]
+autoapi_generate_api_docs = False  # docs/reference/python.md has the order
+autoapi_add_toctree_entry = False
+autoapi_options = ["members", "imported-members"]
+suppress_warnings = ["autoapi.python_import_resolution"]  # constants and parts that are left out
+hawkmoth_root = readable_header()
+hawkmoth_autoconf: list[str] = []  # the header includes nothing
+napoleon_use_ivar = True
+
 # The navigation is added here: the pages are Markdown that reads well without Sphinx too.
 SECTIONS = {
     "Start": [
         "README",
+        "docs/gallery",
         "docs/start",
         "docs/install",
         "docs/concepts",
@@ -99,6 +171,8 @@ SECTIONS = {
     ],
     "Inside": [
         "docs/theory",
+        "docs/reference/python",
+        "docs/reference/c",
         "docs/glossary",
         "docs/architecture",
         "CONTRIBUTING",
@@ -141,4 +215,5 @@ def visit_block(translator: Any, node: nodes.math_block) -> None:
 def setup(app: Sphinx) -> None:
     """Sphinx calls this."""
     app.connect("source-read", add_navigation)
+    app.connect("hawkmoth-process-docstring", read_comment)
     app.add_html_math_renderer("mathml", (visit_inline, None), (visit_block, None))

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws the moving picture of the README: the battery box under both contacts, in slow motion.
+"""Draws the moving pictures of the README and the gallery: scenes under both contacts.
 
-`./run python docs/generate/make_clip.py` writes docs/pictures/battery_box.gif.
+`./run python docs/generate/make_clips.py [NAME ...]` writes docs/pictures/NAME.webp, and
+battery_box.gif for the README.
 """
 
 from __future__ import annotations
@@ -9,38 +10,86 @@ from __future__ import annotations
 import subprocess
 import sys
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 
 import imageio_ffmpeg
 
 ROOT = Path(__file__).resolve().parents[2]
-CLIP = ROOT / "docs" / "pictures" / "battery_box.gif"
-SCENE = ROOT / "mjcf_models" / "battery_box" / "scene.xml"
-DURATION = 1.4  # [s], until the box lies in its seat
-INTERVAL = 0.02  # [s] between two pictures
-RATE = 15  # pictures a second: 0.3 times as fast as it is
-WIDTH = 800  # [pixel], of both runs side by side
-FILTER = (
-    f"setpts=N/{RATE}/TB,scale={WIDTH}:-1:flags=lanczos,split[a][b];"
-    "[a]palettegen=max_colors=64:stats_mode=diff[p];"
+PICTURES = ROOT / "docs" / "pictures"
+MODELS = ROOT / "mjcf_models"
+RATE = 15  # pictures a second
+NATIVE_WARNED = 3  # of MuJoCo, under native contact: that is shown
+README = "battery_box"  # in the README as a GIF, which every reader of Markdown shows
+# Both: slower than the film by the rate, and as wide as a column of text.
+SCALED = f"setpts=N/{RATE}/TB,scale={{width}}:-1:flags=lanczos"
+GIF = (
+    ",split[a][b];[a]palettegen=max_colors=64:stats_mode=diff[p];"
     "[b][p]paletteuse=dither=none:diff_mode=rectangle"
 )
 
 
+@dataclass(frozen=True)
+class Clip:
+    """A scene on film, volumetric contact beside native.
+
+    Attributes:
+        scene: path below mjcf_models.
+        duration: [s].
+        interval: between two pictures [s].
+        camera: of the scene; empty: its first.
+        width: of both runs side by side [pixel].
+    """
+
+    scene: str
+    duration: float
+    interval: float
+    camera: str = ""
+    width: int = 640
+
+
+CLIPS = {
+    "battery_box": Clip("battery_box/scene.xml", 1.4, 0.02, width=800),
+    "peg_in_hole": Clip("peg_in_hole/scene_mesh.xml", 0.36, 0.006),
+    "tippe_top": Clip("tippe_top/scene.xml", 2.2, 0.02, "follow"),
+    "gear_pair": Clip("gear_pair/scene.xml", 0.1, 0.002, "teeth"),
+    "box_pile": Clip("box_pile/scene.xml", 1.5, 0.03),
+}
+
+
+def film(clip: Clip, folder: Path) -> Path:
+    """The film that `volcontact compare` makes of a scene."""
+    compare = [sys.executable, "-m", "volcontact.cli", "compare", str(MODELS / clip.scene)]
+    compare += ["--out", str(folder), "--duration", str(clip.duration)]
+    compare += ["--frame-interval", str(clip.interval)]
+    compare += ["--camera", clip.camera] if clip.camera else []
+    status = subprocess.run(compare).returncode
+    if status not in (0, NATIVE_WARNED):
+        raise SystemExit(f"{clip.scene}: volcontact compare ended with {status}")
+    return folder / "run.mp4"
+
+
+def encode(film: Path, out: Path, width: int) -> None:
+    """A moving picture of a film; what comes out hangs on the ending."""
+    gif = out.suffix == ".gif"
+    options = ["-vf", SCALED.format(width=width) + (GIF if gif else ""), "-r", str(RATE)]
+    if not gif:
+        options += ["-c:v", "libwebp_anim", "-quality", "60", "-compression_level", "6"]
+    program = imageio_ffmpeg.get_ffmpeg_exe()
+    run = [program, "-y", "-v", "error", "-i", str(film), *options, "-loop", "0", str(out)]
+    subprocess.run(run, check=True)
+    print(f"{out}: {out.stat().st_size / 1e3:.0f} kB")
+
+
 def main() -> None:
-    """Runs the comparison, and makes the clip of its film."""
-    with tempfile.TemporaryDirectory() as folder:
-        compare = [sys.executable, "-m", "volcontact.cli", "compare", str(SCENE), "--out", folder]
-        compare += ["--duration", str(DURATION), "--frame-interval", str(INTERVAL)]
-        subprocess.run(compare, check=True)
-        CLIP.parent.mkdir(exist_ok=True)
-        film = Path(folder) / "run.mp4"
-        subprocess.run(
-            [imageio_ffmpeg.get_ffmpeg_exe(), "-y", "-v", "error", "-i", str(film),
-             "-vf", FILTER, "-r", str(RATE), str(CLIP)],
-            check=True,
-        )  # fmt: skip
-    print(f"{CLIP}: {CLIP.stat().st_size / 1e6:.2f} MB")
+    """Films scenes, all or those that are named."""
+    PICTURES.mkdir(exist_ok=True)
+    for name in sys.argv[1:] or CLIPS:
+        with tempfile.TemporaryDirectory() as folder:
+            found = film(CLIPS[name], Path(folder))
+            encode(found, PICTURES / f"{name}.webp", CLIPS[name].width)
+            if name == README:
+                encode(found, PICTURES / f"{name}.gif", CLIPS[name].width)
 
 
 if __name__ == "__main__":

@@ -35,12 +35,13 @@
 extern "C" {
 #endif
 
+/* What a function returns when it fails. */
 enum {
   VC_ERROR_ARGUMENT = -1, /* a value, name, pose or state that cannot be used */
   VC_ERROR_VERSION = -2,  /* the library is not the one of the header */
-  VC_ERROR_MEMORY = -3,
-  VC_ERROR_RESULT = -4, /* a force was no finite number; the result is all zero */
-  VC_ERROR_INTERNAL = -5
+  VC_ERROR_MEMORY = -3,   /* out of memory */
+  VC_ERROR_RESULT = -4,   /* a force was no finite number; the result is all zero */
+  VC_ERROR_INTERNAL = -5  /* a fault of the library */
 };
 
 /* What the numbers of a vc_metrics are worth. */
@@ -89,17 +90,17 @@ typedef struct vc_site {
 
 /* How the two bodies stand and move. */
 typedef struct vc_motion {
-  double X_WA[16];
-  double X_WB[16];
-  double V_WA[6];
-  double V_WB[6];
+  double X_WA[16]; /* pose of body A in the world */
+  double X_WB[16]; /* pose of body B */
+  double V_WA[6];  /* twist of body A at its origin, in the world frame */
+  double V_WB[6];  /* twist of body B */
 } vc_motion;
 
 /* What an evaluation gives, summed over all sites. World frame. */
 typedef struct vc_result {
-  double force_on_a[3];
+  double force_on_a[3];  /* [N] */
   double torque_on_a[3]; /* about A's origin [N m] */
-  double force_on_b[3];
+  double force_on_b[3];  /* [N] */
   double torque_on_b[3]; /* about B's origin [N m] */
   double elastic_energy; /* [J] */
   double power[4];       /* dissipated [W] */
@@ -118,8 +119,11 @@ typedef struct vc_tangent {
   double by_speed[144];  /* dW/dv */
 } vc_tangent;
 
+/* A solid in a frame of its own. */
 typedef struct vc_solid vc_solid;
+/* Pairs of solids on two bodies, with their laws. */
 typedef struct vc_model vc_model;
+/* What an evaluation works in. */
 typedef struct vc_workspace vc_workspace;
 
 /* VC_VERSION of the library. */
@@ -163,6 +167,7 @@ VC_API int vc_solid_combine(const char* operation, const vc_solid* a, const vc_s
  * vc_solid_text writes up to `capacity` characters with the final zero and returns the length of
  * the whole text without it. docs/c_container.md, "A model as text". */
 VC_API int vc_solid_create_text(const char* text, vc_solid** solid);
+/* The text of a solid. */
 VC_API int vc_solid_text(const vc_solid* solid, char* text, int capacity);
 
 /* Sets a parameter of a simple shape: 1 or 3 numbers. */
@@ -174,6 +179,7 @@ VC_API int vc_solid_get(const vc_solid* solid, const char* name, double* numbers
 /* Of the solid itself, in its frame: volume, centroid, inertia. */
 VC_API int vc_solid_metrics(const vc_solid* solid, vc_metrics* metrics);
 
+/* Frees it; null is nothing to free. */
 VC_API void vc_solid_free(vc_solid* solid);
 
 /* ---- Models: pairs of solids x normal law x friction law ------------------------------------- */
@@ -183,6 +189,7 @@ VC_API int vc_model_create(vc_model** model);
 
 /* A whole model from text, and its text, as above. */
 VC_API int vc_model_create_text(const char* text, vc_model** model);
+/* The text of a model. */
 VC_API int vc_model_text(const vc_model* model, char* text, int capacity);
 
 /* Adds a pair: solid a fixed on body A at X_Aa, solid b on body B at X_Bb (null: identity). Returns
@@ -220,6 +227,7 @@ VC_API int vc_model_state_size(const vc_model* model, int sites);
  * state[1] and state[0] is the count of sites. */
 VC_API int vc_model_states(const vc_model* model, char* text, int capacity);
 
+/* Frees it; null is nothing to free. */
 VC_API void vc_model_free(vc_model* model);
 
 /* ---- Evaluation ------------------------------------------------------------------------------ */
@@ -227,6 +235,7 @@ VC_API void vc_model_free(vc_model* model);
 /* Scratch memory, and the sites of the last evaluation; one per thread. Holds nothing that could
  * change a value. A warm evaluation allocates nothing. */
 VC_API int vc_workspace_create(vc_workspace** workspace);
+/* Frees it; null is nothing to free. */
 VC_API void vc_workspace_free(vc_workspace* workspace);
 
 /* Wrenches on both bodies.

@@ -29,6 +29,7 @@ def lint() -> None:
         ("ruff", "check", "-q", "."),
         ("shellcheck", "run", ".ci/run"),
         ("pymarkdown", "scan", *_pages()),
+        ("proselint", "check", "--config", ROOT / "docs" / "proselint.json", *_pages()),
         (python, ROOT / "tests" / "test_layering.py"),
     ]
     failed = [Path(check[0]).name for check in checks if not _passes(check)]

@@ -56,6 +56,8 @@ class Variable(NamedTuple):
 class Recorder:
     """Keeps the state, the energies and all contact sites of every instant it is shown.
 
+    Shown every step of a run, and written::
+
         with vc.attach(model) as contact:
             recorder = vc.Recorder(contact)
             for _ in range(500):

@@ -114,6 +114,12 @@ def test_components_page_is_generated_from_the_field_tables() -> None:
     )
 
 
+def test_reference_has_every_public_name() -> None:
+    page = (ROOT / "docs" / "reference" / "python.md").read_text(encoding="utf-8")
+    listed = re.findall(r"^\.\. autoapi(?:class|function):: volcontact\.(\w+)$", page, re.MULTILINE)
+    assert sorted(listed) == sorted(set(vc.__all__) - {"__version__"})
+
+
 def test_places_in_the_glossary_exist() -> None:
     named = 0
     rows = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8").splitlines()
