@@ -18,7 +18,7 @@ import nox
 
 sys.path.insert(0, str(Path(__file__).parent / "python"))
 
-from tasks import cgal, environments, linting, recording, shell, sites, system, testing
+from tasks import cgal, crossing, environments, linting, recording, shell, sites, system, testing
 
 logging.getLogger("nox").setLevel(logging.ERROR)  # the output of a command is its own
 nox.options.sessions = []
@@ -146,6 +146,14 @@ def wheels(session: nox.Session) -> None:
     """Builds the wheels, in build/wheels/dist, and tries them in fresh environments."""
     system.need_system()
     recording.wheels(session.posargs)
+
+
+@command
+def cross(session: nox.Session) -> None:
+    """Core, C container and their tests for another machine, emulated: ARGS as x86_64-windows-gnu."""
+    system.need_system()
+    machine, *rest = session.posargs or [""]
+    crossing.cross(machine, rest)
 
 
 @command

@@ -149,10 +149,18 @@ def unpacked(wheel: Path, folder: Path) -> Path:
 
 
 def make_adaptor(
-    out: Path, source: Path, release: str, pythons: list[Path], eigen: Path | None
+    out: Path,
+    source: Path,
+    release: str,
+    pythons: list[Path],
+    eigen: Path | None,
+    machine: str = "",
 ) -> Path:
-    """The adaptor of a release, from the sources in a wheel and the package of that MuJoCo."""
-    folder, version = mujoco_package(out, release, pythons)
+    """The adaptor of a release, from the sources in a wheel and the package of that MuJoCo.
+
+    The compiler of another `machine` is what the environment says.
+    """
+    folder, version = mujoco_package(out, release, pythons, machine)
     tree = out / "adaptors" / version
     say(f"adaptor for MuJoCo {version}")
     configure = ["cmake", "-G", "Ninja", "-S", source / "adaptor", "-B", tree]
@@ -163,11 +171,13 @@ def make_adaptor(
     run(*configure)
     run("cmake", "--build", tree, "--target", "volcontact_mujoco")
     library = tree / "plugin" / LIBRARY.format(version)
-    run("strip", "--strip-unneeded", library)
+    run(f"{machine}-linux-gnu-strip" if machine else "strip", "--strip-unneeded", library)
     return library
 
 
-def mujoco_package(out: Path, release: str, pythons: list[Path]) -> tuple[Path, str]:
+def mujoco_package(
+    out: Path, release: str, pythons: list[Path], machine: str = ""
+) -> tuple[Path, str]:
     """Package folder and version of a release, for the first Python that can have it."""
     requirement = "mujoco" if release == "newest" else f"mujoco=={release}"
     folder = out / "mujoco" / release
@@ -175,6 +185,7 @@ def mujoco_package(out: Path, release: str, pythons: list[Path]) -> tuple[Path, 
         shutil.rmtree(folder, ignore_errors=True)
         command = ["uv", "pip", "install", "-q", "--only-binary", "mujoco", "--target", folder]
         command += ["--python", python, requirement]
+        command += ["--python-platform", f"{machine}-manylinux_2_36"] if machine else []
         if subprocess.run([*map(str, command)], stderr=subprocess.DEVNULL).returncode == 0:
             (library,) = (folder / "mujoco").glob("libmujoco.so.*.*.*")
             return folder / "mujoco", library.name.removeprefix("libmujoco.so.")

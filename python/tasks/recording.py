@@ -148,15 +148,20 @@ def matrix(releases: list[str]) -> None:
 
 
 def wheels(arguments: list[str]) -> None:
-    """One for each Python here, with the adaptors of the matrix.
+    """One for each Python here, with the adaptors of the matrix; or for another machine.
 
     The other release shows that what is not in a wheel is compiled at first use.
     """
     python = tool_environment("wheels")
     pythons = {path.name: path for path in reversed(list(all_interpreters()))}
     newest = [prepared("newest").version if r == "newest" else r for r in MATRIX]
+    script, other = "make_wheels.py", ["--other", "3.5.0"]
+    if "--machine=aarch64" in arguments:
+        need_system("g++-aarch64-linux-gnu", "mmdebstrap", "qemu-user-static")
+        script, other = "make_aarch64_wheels.py", []
+        arguments = [each for each in arguments if not each.startswith("--machine")]
     run(
-        python, ROOT / "python" / "make_wheels.py", "--eigen", TOOLS / "eigen", "--other", "3.5.0",
+        python, ROOT / "python" / script, "--eigen", TOOLS / "eigen", *other,
         "--releases", *newest, "--pythons", *reversed(pythons.values()), *arguments,
     )  # fmt: skip
 

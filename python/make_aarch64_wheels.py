@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Builds the wheels for 64-bit ARM, on another machine, and tries one there in emulation.
+
+`./run wheels --machine=aarch64` runs it. Compilers are GCC's for that machine. The wheel of CPython
+3.11 is installed by that machine's own pip, into a system that has neither compiler nor network;
+then a box is dropped, and the program writes and runs a scene. qemu does what the processor would.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import make_wheels as native
+
+ROOT = Path(__file__).resolve().parents[1]
+MACHINE = "aarch64"
+TOOLCHAIN = ROOT / "python" / "toolchains" / "aarch64-linux-gnu.cmake"
+LIBRARIES = Path("/usr/aarch64-linux-gnu/lib")  # of the cross compiler
+EMULATOR = Path("/usr/bin/qemu-aarch64-static")
+SYSTEM = ("python3", "python3-pip", "coreutils", "bash")  # of the machine the wheel is tried on
+SUITE, PYTHON = "bookworm", "3.11"  # and the CPython that it has
+# What its pip takes: of this C library and of older ones.
+PLATFORMS = [f"manylinux_2_{minor}_{MACHINE}" for minor in range(17, 37)]
+PLATFORMS.append(f"manylinux2014_{MACHINE}")
+BOOTSTRAP = ("mmdebstrap", "--mode=root", "--variant=extract", "--architectures=arm64")
+
+
+def main() -> int:
+    """Builds and tries; 0 when the wheel works."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=Path, default=ROOT / "build" / "wheels-aarch64")
+    parser.add_argument("--eigen", type=Path, help="folder of Eigen, so that builds share a cache")
+    parser.add_argument("--releases", nargs="+", required=True, help="of MuJoCo, in the wheels")
+    parser.add_argument("--pythons", nargs="+", type=Path, required=True)
+    arguments = parser.parse_args()
+    out: Path = arguments.out.resolve()
+    out.mkdir(parents=True, exist_ok=True)
+
+    source = native.make_source(out)
+    eigen = native.near(source, arguments.eigen)
+    os.environ["CMAKE_TOOLCHAIN_FILE"] = str(TOOLCHAIN)
+    os.environ["_PYTHON_HOST_PLATFORM"] = f"linux-{MACHINE}"
+    os.environ["LD_LIBRARY_PATH"] = str(LIBRARIES)  # where auditwheel finds what it adds
+    raw = []
+    for python in arguments.pythons:
+        tag = native.tag_of(python)
+        suffix = f".cpython-{tag.removeprefix('cp')}-{MACHINE}-linux-gnu.so"
+        os.environ["SETUPTOOLS_EXT_SUFFIX"] = suffix
+        raw.append(native.make_raw_wheel(out, source, python, eigen))
+    package = native.unpacked(raw[0], out / "unpacked") / "volcontact"
+    adaptors = [
+        native.make_adaptor(
+            out, package / "source", release, arguments.pythons, eigen, machine=MACHINE
+        )
+        for release in arguments.releases
+    ]
+    shutil.rmtree(out / "dist", ignore_errors=True)
+    wheels = [native.complete(wheel, adaptors, out) for wheel in raw]
+    tag = "cp" + PYTHON.replace(".", "")
+    tried = [wheel for wheel in wheels if f"-{tag}-" in wheel.name]
+    if not tried:
+        sys.exit(f"make_aarch64_wheels: CPython {PYTHON} is not among --pythons: nothing was tried")
+    system = make_system(out)
+    rows = [try_wheel(out, system, tried[0], native.release_of(each)) for each in adaptors]
+    write_rows([row for row in rows if row is not None])
+    return 0
+
+
+def make_system(out: Path) -> Path:
+    """The root of a small system of that machine, with Python and pip and no compiler."""
+    system = out / "system"
+    if not (system / "usr" / "bin" / f"python{PYTHON}").exists():
+        native.say(f"a system for {MACHINE}")
+        shutil.rmtree(system, ignore_errors=True)
+        native.run(*BOOTSTRAP, f"--include={','.join(SYSTEM)}", SUITE, system)
+    shutil.copy(EMULATOR, system / "usr" / "bin")
+    return system
+
+
+def try_wheel(out: Path, system: Path, wheel: Path, release: str) -> dict[str, object] | None:
+    """Installs the wheel beside a MuJoCo and uses it; None where no such MuJoCo is had."""
+    index = out / "index"
+    shutil.rmtree(index, ignore_errors=True)
+    shutil.rmtree(system / "home", ignore_errors=True)
+    fetch = [sys.executable, "-m", "pip", "download", "-q", "--only-binary", ":all:"]
+    fetch += ["--python-version", PYTHON, "--dest", str(index)]
+    fetch += [f"--platform={platform}" for platform in PLATFORMS]
+    fetch += [f"mujoco=={release}", str(wheel)]
+    found = subprocess.run(fetch, stderr=subprocess.DEVNULL, check=False)
+    if found.returncode != 0:
+        return None
+    shutil.copytree(index, system / "home" / "index")
+    begin = time.monotonic()
+    install = ["-m", "pip", "install", "-q", "--break-system-packages", "--no-index"]
+    install += ["--find-links", "/home/index", f"mujoco=={release}", "volcontact"]
+    there(system, *install)
+    native.say(f"installed in {time.monotonic() - begin:.0f} s, in emulation")
+    depth = json.loads(there(system, "-c", native.DROP))
+    if abs(depth["depth"] - native.DEPTH) > native.DEPTH_TOLERANCE:
+        sys.exit(f"make_aarch64_wheels: MuJoCo {release}: depth {depth['depth']} m")
+    program = ["-m", "volcontact.cli"]
+    there(system, *program, "doctor")
+    there(system, *program, "new", "/home/scene")
+    there(system, *program, "run", "/home/scene/scene.xml", "--duration", "0.1")
+    row = {
+        "python": "cp" + PYTHON.replace(".", ""),
+        "mujoco": release,
+        "adaptor": "in the wheel",
+        "platform": wheel.stem.split("-", 4)[4],
+        "depth_um": round(1e6 * depth["depth"], 3),
+    }
+    native.say(", ".join(str(value) for value in row.values()))
+    return row
+
+
+def there(system: Path, *arguments: object) -> str:
+    """What Python prints on that machine."""
+    python = ["chroot", system, f"/usr/bin/{EMULATOR.name}", f"/usr/bin/python{PYTHON}"]
+    surroundings = {"HOME": "/home", "PATH": "/usr/local/bin:/usr/bin:/bin", "LANG": "C.UTF-8"}
+    return native.run(*python, *arguments, env=surroundings)
+
+
+def write_rows(rows: list[dict[str, object]]) -> None:
+    """Puts them into the record in place of those of this machine."""
+    with native.TABLE.open(encoding="utf-8") as file:
+        kept = [row for row in csv.DictReader(file) if not row["platform"].endswith(MACHINE)]
+    native.write_table([*kept, *rows])
+
+
+if __name__ == "__main__":
+    sys.exit(main())
