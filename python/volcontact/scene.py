@@ -16,7 +16,24 @@ from volcontact._adaptor import CONTACT_DTYPE, SITE_DTYPE, RawEnergy, RawSurface
 from volcontact._closing import Closing
 from volcontact.compiling import compile_scene
 from volcontact.given_keys import GivenKeys, Values
+from volcontact.names import name_of
+from volcontact.spelling import nearest
 from volcontact.surface import SiteSurface
+from volcontact.wrenches import wrench_on
+
+
+class Wrench(NamedTuple):
+    """A force and its torque.
+
+    Attributes:
+        force: [N], world frame, shape (3,).
+        torque: [N m], world frame, about `point`, shape (3,).
+        point: [m], world frame, shape (3,).
+    """
+
+    force: np.ndarray
+    torque: np.ndarray
+    point: np.ndarray
 
 
 class Channels(NamedTuple):
@@ -299,6 +316,41 @@ class Contact(Closing):
                 names = [name for name in CONTACT_DTYPE.names or () if name != "reserved"]
                 return rows[:count][names].copy()
             rows = np.empty(count, CONTACT_DTYPE)
+
+    def force_on(self, data: mujoco.MjData, name: str) -> Wrench:
+        """The contact force on a body or a geom at the state of the last evaluation, signed.
+
+        The sum over all contacts, volumetric and MuJoCo's own, of what acts on the geoms of the
+        body itself, not on those of its children, or on the geom alone. A box at rest on a floor
+        feels (0, 0, m g). The same for every target.
+
+        Args:
+            data: of the attached model.
+            name: of a body or of a geom (`geom 3` where it has none); where both have it, of the
+                body.
+
+        Returns:
+            Force [N] and torque [N m] in the world frame, the torque about the centre of mass of
+            the body, or the centre of the geom, which is `point`.
+
+        Raises:
+            ValueError: there is no body or geom of that name.
+        """
+        model = self._require_open()
+        self._check(data)
+        bodies = [name_of(model, "body", i) for i in range(model.nbody)]
+        geoms = [name_of(model, "geom", i) for i in range(model.ngeom)]
+        if name in bodies:
+            body = bodies.index(name)
+            members, point = model.geom_bodyid == body, data.xipos[body].copy()
+        elif name in geoms:
+            geom = geoms.index(name)
+            members, point = np.arange(model.ngeom) == geom, data.geom_xpos[geom].copy()
+        else:
+            known = {*bodies, *geoms}
+            raise ValueError(f"the scene has no body or geom {name!r}{nearest(str(name), known)}")
+        wrench = wrench_on(self.contact_forces(data), members, point)
+        return Wrench(wrench[:3], wrench[3:], point)
 
     def update_touch(self, data: mujoco.MjData) -> None:
         """Writes what touch sensors measure into `data.sensordata`.

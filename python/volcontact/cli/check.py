@@ -17,7 +17,7 @@ from rich.table import Table
 
 import volcontact
 from volcontact._files import appearing
-from volcontact.cli.arguments import add_command, add_keys, pixels
+from volcontact.cli.arguments import add_command, add_keyframe, add_keys, pixels
 from volcontact.cli.terminal import Terminal
 
 if TYPE_CHECKING:
@@ -50,18 +50,19 @@ def add_to(commands: Subparsers) -> None:
     parser.add_argument(
         "--height", type=pixels, default=600, metavar="PX", help="of the picture (default: 600)"
     )
+    add_keyframe(parser)
     add_keys(parser)
     parser.set_defaults(execute=execute)
 
 
 def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     """Runs the command and returns the exit status."""
-    from volcontact.simulation import to_start
+    from volcontact.driving import to_keyframe
 
     keys = {"material": dict(arguments.material), "options": dict(arguments.option)}
     model = volcontact.load(arguments.scene, **keys)
     data = mujoco.MjData(model)
-    to_start(model, data)
+    to_keyframe(model, data, arguments.keyframe)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # they are part of the description
         with volcontact.attach(model, **keys) as contact:
