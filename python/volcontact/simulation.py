@@ -18,6 +18,7 @@ from volcontact._mujoco_views import dense
 from volcontact.compiling import require_scene
 from volcontact.driving import Drive, Driver, to_keyframe
 from volcontact.given_keys import GivenKeys, Values
+from volcontact.hints import sunk
 from volcontact.names import name_of
 from volcontact.outside_work import OutsideWork
 from volcontact.probes import Probe, probe
@@ -248,6 +249,7 @@ class RunRecorder:
             mujoco.mj_forward(self._model, data)
             self._keep_evaluation(self._rows, data)
             self._rows += 1
+            self.notes += tuple(sunk(self._model, data, self._probe.sites(data)))
 
     def recording(self, contact: ContactKind, description: dict[str, Any]) -> Recording:
         """Packs what was recorded."""

@@ -58,6 +58,7 @@ def add_to(commands: Subparsers) -> None:
 def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     """Runs the command and returns the exit status."""
     from volcontact.driving import to_keyframe
+    from volcontact.hints import hints
 
     keys = {"material": dict(arguments.material), "options": dict(arguments.option)}
     model = volcontact.load(arguments.scene, **keys)
@@ -69,9 +70,11 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             description = contact.description
             mujoco.mj_forward(model, data)
             sites = contact.sites(data)
+        # After it: a model is itself again.
+        found = list(hints(model, data, description["pairs"]))
     description["userdata"]["line"] = size_line(description["userdata"])
     description["advice"] = _step_advice(model, description)
-    description["warnings"] += _mistakes(model, sites, description)
+    description["warnings"] += [*_mistakes(model, sites, description), *found]
     if arguments.picture is not None:
         _draw(arguments, model, data, sites)
         description["picture"] = str(arguments.picture)
