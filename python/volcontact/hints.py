@@ -59,9 +59,7 @@ def sunk(model: mujoco.MjModel, data: mujoco.MjData, sites: np.ndarray) -> Itera
         small = min(sizes, key=lambda geom: sizes[geom])
         speeds = []
         for geom in geoms:
-            mujoco.mj_objectVelocity(
-                model, data, int(mujoco.mjtObj.mjOBJ_GEOM), geom, velocity, 0
-            )
+            mujoco.mj_objectVelocity(model, data, int(mujoco.mjtObj.mjOBJ_GEOM), geom, velocity, 0)
             speeds.append(float(np.linalg.norm(velocity[3:])))
         if depth > _SINKS * sizes[small] and max(speeds) < _AT_REST:
             a, b = (name_of(model, "geom", geom) for geom in geoms)
