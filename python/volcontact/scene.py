@@ -144,7 +144,7 @@ def attach(
         RuntimeError: the package has no adaptor for this MuJoCo.
     """
     if not isinstance(model, mujoco.MjModel):
-        raise TypeError(f"attach takes an mujoco.MjModel, got {type(model).__name__}")
+        raise TypeError(f"attach takes a mujoco.MjModel, got {type(model).__name__}")
     return Contact(model, GivenKeys(material, options))
 
 
@@ -160,7 +160,7 @@ def contact_forces(data: mujoco.MjData) -> np.ndarray:
             `Contact` itself.
     """
     if not isinstance(data, mujoco.MjData):
-        raise TypeError(f"contact_forces takes an mujoco.MjData, got {type(data).__name__}")
+        raise TypeError(f"contact_forces takes a mujoco.MjData, got {type(data).__name__}")
     fitting = [contact for contact in Contact._open.values() if contact._fits(data)]
     if len(fitting) != 1:
         count = "no attached model has" if not fitting else f"{len(fitting)} attached models have"
@@ -267,6 +267,11 @@ class Contact(Closing):
         model = self._require_open()
         self._check(data)
         count = len(self.sites(data))
+        for name, value in (("site", site), ("resolution", resolution)):
+            if isinstance(value, bool) or not isinstance(value, (int, np.integer)):
+                raise TypeError(
+                    f"{name} takes a whole number, got {type(value).__name__} {value!r}"
+                )
         if not 0 <= site < count:
             raise ValueError(
                 f"site = {site} must be from 0 to {count - 1}: there are {count} sites"
@@ -422,7 +427,7 @@ class Contact(Closing):
     def _check(self, data: mujoco.MjData) -> None:
         """The data fit the model; warns when numbers changed in the model are not valid."""
         if not isinstance(data, mujoco.MjData):
-            raise TypeError(f"takes an mujoco.MjData, got {type(data).__name__}")
+            raise TypeError(f"data takes a mujoco.MjData, got {type(data).__name__}")
         if not self._fits(data):
             raise ValueError("the data are not of the attached model")
         if not self._adaptor.call("is_installed"):
