@@ -44,8 +44,8 @@ def add_to(commands: Subparsers) -> None:
         "--picture",
         type=Path,
         metavar="FILE",
-        help="draw the solids as understood, holes open and materials by colour, with their contacts "
-        "at the start: a PNG file",
+        help="draw the solids as understood, holes open and materials by colour, with their "
+        "contacts at the start: a PNG file",
     )
     parser.add_argument("--camera", metavar="NAME", help="camera of the picture")
     parser.add_argument(

@@ -71,8 +71,8 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             # The comments of the template say what to type next.
             content = source.read_text(encoding="utf-8")
             own = str(folder / name) if name.suffix == ".xml" else str(scene)
-            words = {"SCENE": own, "FOLDER": str(folder)}
-            content = re.sub(r"\b(SCENE|FOLDER)\b", lambda found: words[found[0]], content)
+            for word, meant in (("SCENE", own), ("FOLDER", str(folder))):
+                content = re.sub(rf"\b{word}\b", meant.replace("\\", r"\\"), content)
             target.write_text(content, encoding="utf-8")
             written.append(str(folder / name))
     if terminal.json:

@@ -44,6 +44,7 @@ def geom_triangles(model: mujoco.MjModel, geom: int) -> Triangles | None:
 
 
 def box_triangles(half: np.ndarray) -> Triangles:
+    """A box of these half sizes; its triangles look outwards."""
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * half
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     return corners, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
