@@ -14,4 +14,7 @@ void bind_laws(nanobind::module_& m);
 void bind_own_laws(nanobind::module_& m);
 void bind_model(nanobind::module_& m);
 
+/// Last: has everything that can be called answer wrong arguments by one line that names them.
+void speak_plainly(nanobind::module_& m);
+
 }  // namespace volcontact::python

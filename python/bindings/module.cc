@@ -34,4 +34,5 @@ NB_MODULE(_volcontact, m) {
         "results are the same to the last bit");
   m.def("most_threads", &omp_get_max_threads,
         "How many threads an evaluation may use: the processors, or OMP_NUM_THREADS");
+  volcontact::python::speak_plainly(m);
 }

@@ -17,6 +17,7 @@ from volcontact.given_keys import Values
 from volcontact.recording import ContactKind, Recording
 
 if TYPE_CHECKING:
+    from volcontact.driving import Drive
     from volcontact.report.design_pose import DesignPose
 
 __all__ = ["Convergence", "Estimate", "converge", "estimate"]
@@ -166,6 +167,7 @@ def converge(
     quantities: Sequence[str] = (),
     material: Values | None = None,
     options: Values | None = None,
+    drive: Drive | None = None,
     with_tolerance: bool = True,
     first: Recording | None = None,
     progress: Progress | None = None,
@@ -182,6 +184,7 @@ def converge(
         quantities: words of the names of the figures that are wanted; none: all.
         material: of volumetric contact, as `volcontact.attach` takes it.
         options: likewise.
+        drive: where a run starts and its controls over time, as of `simulate`.
         with_tolerance: whether the finest run is made once more with a tenth of the tolerance.
         first: the run at the longest step, where it is there already.
         progress: called with (steps done, steps in all, which run).
@@ -214,6 +217,7 @@ def converge(
             frame_interval=None,
             material=material,
             options={**dict(options or {}), **dict(extra or {})} or None,
+            drive=drive,
             progress=told,
         )
 

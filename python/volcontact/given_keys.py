@@ -9,12 +9,15 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
+import volcontact._volcontact as core
 from volcontact._adaptor import GIVEN_MATERIAL, Key, adaptor
 
 Value = float | str | Sequence[float]
 Values = Mapping[str, Value]
 
 _OPTION = "volcontact/option/"
+# Keys whose value is a number, of a material and of the options.
+_NUMBERS = {*core.units_of_law_fields(), "tolerance", "threads", "exit_speed"}
 
 
 class GivenKeys:
@@ -60,10 +63,12 @@ class GivenKeys:
         return Key(name.encode(), array, len(numbers))
 
 
-def _require_word(place: str, text: str) -> None:
+def _require_word(place: str, text: str, *, is_number: bool) -> None:
     try:
         float(text)
     except ValueError:
+        if is_number:
+            raise TypeError(f"{place} takes a number, got the text {text!r}") from None
         return
     raise TypeError(f"{place} takes a number, got the text {text!r}: leave the quotes out")
 
@@ -75,7 +80,7 @@ def _keys(what: str, stem: str, values: Values) -> list[tuple[str, list[float]]]
     keys = []
     for name, value in values.items():
         if isinstance(value, str):
-            _require_word(f"{what}[{name!r}]", value)
+            _require_word(f"{what}[{name!r}]", value, is_number=name in _NUMBERS)
             keys.append((f"{stem}{name}/{value}", [1.0]))
             continue
         numbers = np.atleast_1d(value)

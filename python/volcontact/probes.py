@@ -27,12 +27,20 @@ class Probe(Protocol):
         """Structured array of `SITE`."""
         ...
 
+    def contacts(self, data: mujoco.MjData) -> np.ndarray:
+        """All contacts: `geom_a`, `geom_b`, `position`, `force` and `torque` as of `SITE`."""
+        ...
+
     def surfaces(self, data: mujoco.MjData) -> tuple[SiteSurface, ...]:
         """The shape of each site; none under native contact."""
         ...
 
     def energy(self, data: mujoco.MjData) -> volumetric_scene.Energy:
         """Stored and dissipated; zeros under native contact."""
+        ...
+
+    def update_touch(self, data: mujoco.MjData) -> None:
+        """Has touch sensors measure this contact, too."""
         ...
 
     def dropped(self, data: mujoco.MjData) -> int:
@@ -59,9 +67,14 @@ class _VolumetricProbe:
     def __init__(self, contact: volumetric_scene.Contact) -> None:
         self._contact = contact
         self.description: dict[str, Any] = dict(contact.description)
+        touch = int(mujoco.mjtSensor.mjSENS_TOUCH)
+        self._has_touch = bool((contact.model.sensor_type == touch).any())
 
     def sites(self, data: mujoco.MjData) -> np.ndarray:
         return recorded_sites(self._contact.sites(data))
+
+    def contacts(self, data: mujoco.MjData) -> np.ndarray:
+        return self._contact.contact_forces(data)
 
     def surfaces(self, data: mujoco.MjData) -> tuple[SiteSurface, ...]:
         count = len(self._contact.sites(data))
@@ -69,6 +82,10 @@ class _VolumetricProbe:
 
     def energy(self, data: mujoco.MjData) -> volumetric_scene.Energy:
         return self._contact.energy(data)
+
+    def update_touch(self, data: mujoco.MjData) -> None:
+        if self._has_touch:
+            self._contact.update_touch(data)
 
     def dropped(self, data: mujoco.MjData) -> int:
         return int(self._contact.dropped(data))
@@ -82,6 +99,9 @@ class _NativeProbe:
     def sites(self, data: mujoco.MjData) -> np.ndarray:
         return native_sites(self._model, data)
 
+    def contacts(self, data: mujoco.MjData) -> np.ndarray:
+        return self.sites(data)
+
     def surfaces(self, data: mujoco.MjData) -> tuple[SiteSurface, ...]:
         del data
         return ()
@@ -90,6 +110,9 @@ class _NativeProbe:
         del data
         none = volumetric_scene.Channels(0.0, 0.0, 0.0, 0.0)
         return volumetric_scene.Energy(0.0, 0.0, none, none, 0.0, 0.0, 0.0)
+
+    def update_touch(self, data: mujoco.MjData) -> None:
+        """MuJoCo has written them."""
 
     def dropped(self, data: mujoco.MjData) -> int:
         del data

@@ -13,6 +13,7 @@ from typing import Any, Literal
 import numpy as np
 
 from volcontact.audit import Audit, worst_step
+from volcontact.signals import Signal
 from volcontact.surface import SiteSurface
 
 ContactKind = Literal["volumetric", "native"]
@@ -77,6 +78,9 @@ class Recording:
         numerical: what of -work is neither stored nor dissipated but made by the finite step [J],
             shape (n,).
         driven: work of mocap bodies on the contacts since the start [J], shape (n,).
+        outside_work: done since the start by what is neither volumetric contact nor a potential
+            [J], shape (n, 4), columns `volcontact.outside_work.CHANNELS`: actuators, dampers,
+            limits with friction of joints and equalities, contacts of MuJoCo's own.
         made: by the contacts in the step that ended there [J], shape (n,); `audit()` has the worst.
         contact_force: sum over the sites of the magnitude of their force [N], shape (n,).
         largest_site_force: [N], shape (n,).
@@ -91,6 +95,11 @@ class Recording:
         geoms: names of the geoms by id, for the sites.
         sensors: magnitude of each sensor of the scene by name, shape (n,); NAME_x, NAME_y and
             NAME_z are the parts of NAME.
+        signals: every number of sensors, actuators and named joints, signed, by name.
+        wrench_on: by name of each body that can move and has geoms: the sum of the contact forces
+            on these [N] and their torque about the origin of the body frame [N m], world, shape
+            (n, 6).
+        notes: what was left as it is and hardly meant, as keyframes and actuators not used.
         description: what volcontact understood of the scene; {} under native contact.
         weight: of all that moves [N]; 0 without gravity.
     """
@@ -127,6 +136,10 @@ class Recording:
     sensors: dict[str, np.ndarray]
     description: dict[str, Any]
     weight: float
+    outside_work: np.ndarray
+    signals: dict[str, Signal]
+    wrench_on: dict[str, np.ndarray]
+    notes: tuple[str, ...] = ()
 
     @property
     def steps(self) -> int:
@@ -154,6 +167,18 @@ class Recording:
             lambda row: self.sites[self.sites["row"] == row],
             lambda geom: self.geoms[geom],
         )
+
+    def unbalance(self) -> np.ndarray:
+        """What changed the energy of the scene and is in no account [J], shape (n,).
+
+        Kinetic and potential energy, less what contacts, actuators, dampers, limits and mocap
+        bodies did, less its value at the start: the error of the step, and what MuJoCo has no
+        account of (drag before MuJoCo 3, forces that others apply).
+        """
+        account = self.energy + self.dissipated.sum(axis=1) + self.numerical - self.driven
+        account = account - self.outside_work.sum(axis=1)
+        change: np.ndarray = account - account[0]
+        return change
 
     @property
     def microseconds_per_step(self) -> float:

@@ -34,6 +34,7 @@ _DISC_THICKNESS = 0.003  # in scene extents; more than the usual penetration
 _VOLUME_OPACITY = 0.4
 _LIFT = 0.002  # of patches into the moving body, in scene extents: else the other one hides them
 _ARROW_RADIUS = 0.007  # in scene extents
+_HEADLIGHT = {"ambient": 0.35, "diffuse": 0.6, "specular": 0.1}  # of a scene without a light
 _HORIZON = (236, 240, 244)  # background of a scene without sky, RGB
 _ZENITH = (202, 212, 222)
 _SITE_EMISSION = 0.35  # sites keep their colour in the shade
@@ -332,7 +333,17 @@ def _drawable(model: mujoco.MjModel, width: int, height: int) -> mujoco.MjModel:
     model.vis.global_.offwidth = max(width, model.vis.global_.offwidth)
     model.vis.global_.offheight = max(height, model.vis.global_.offheight)
     model.vis.quality.shadowsize = min(_SHADOW_SIZE, model.vis.quality.shadowsize)
+    light_up(model)
     return model
+
+
+def light_up(model: mujoco.MjModel) -> None:
+    """Gives a scene without a light a bright one at the camera; others stay as they are."""
+    if model.nlight > 0:
+        return
+    model.vis.headlight.active = 1
+    for name, strength in _HEADLIGHT.items():
+        dense(getattr(model.vis.headlight, name))[:] = strength
 
 
 def _background(shape: tuple[int, int]) -> np.ndarray:

@@ -16,7 +16,24 @@ from volcontact._adaptor import CONTACT_DTYPE, SITE_DTYPE, RawEnergy, RawSurface
 from volcontact._closing import Closing
 from volcontact.compiling import compile_scene
 from volcontact.given_keys import GivenKeys, Values
+from volcontact.names import name_of
+from volcontact.spelling import nearest
 from volcontact.surface import SiteSurface
+from volcontact.wrenches import wrench_on
+
+
+class Wrench(NamedTuple):
+    """A force and its torque.
+
+    Attributes:
+        force: [N], world frame, shape (3,).
+        torque: [N m], world frame, about `point`, shape (3,).
+        point: [m], world frame, shape (3,).
+    """
+
+    force: np.ndarray
+    torque: np.ndarray
+    point: np.ndarray
 
 
 class Channels(NamedTuple):
@@ -127,7 +144,7 @@ def attach(
         RuntimeError: the package has no adaptor for this MuJoCo.
     """
     if not isinstance(model, mujoco.MjModel):
-        raise TypeError(f"attach takes an mujoco.MjModel, got {type(model).__name__}")
+        raise TypeError(f"attach takes a mujoco.MjModel, got {type(model).__name__}")
     return Contact(model, GivenKeys(material, options))
 
 
@@ -143,7 +160,7 @@ def contact_forces(data: mujoco.MjData) -> np.ndarray:
             `Contact` itself.
     """
     if not isinstance(data, mujoco.MjData):
-        raise TypeError(f"contact_forces takes an mujoco.MjData, got {type(data).__name__}")
+        raise TypeError(f"contact_forces takes a mujoco.MjData, got {type(data).__name__}")
     fitting = [contact for contact in Contact._open.values() if contact._fits(data)]
     if len(fitting) != 1:
         count = "no attached model has" if not fitting else f"{len(fitting)} attached models have"
@@ -250,6 +267,11 @@ class Contact(Closing):
         model = self._require_open()
         self._check(data)
         count = len(self.sites(data))
+        for name, value in (("site", site), ("resolution", resolution)):
+            if isinstance(value, bool) or not isinstance(value, (int, np.integer)):
+                raise TypeError(
+                    f"{name} takes a whole number, got {type(value).__name__} {value!r}"
+                )
         if not 0 <= site < count:
             raise ValueError(
                 f"site = {site} must be from 0 to {count - 1}: there are {count} sites"
@@ -299,6 +321,41 @@ class Contact(Closing):
                 names = [name for name in CONTACT_DTYPE.names or () if name != "reserved"]
                 return rows[:count][names].copy()
             rows = np.empty(count, CONTACT_DTYPE)
+
+    def force_on(self, data: mujoco.MjData, name: str) -> Wrench:
+        """The contact force on a body or a geom at the state of the last evaluation, signed.
+
+        The sum over all contacts, volumetric and MuJoCo's own, of what acts on the geoms of the
+        body itself, not on those of its children, or on the geom alone. A box at rest on a floor
+        feels (0, 0, m g). The same for every target.
+
+        Args:
+            data: of the attached model.
+            name: of a body or of a geom (`geom 3` where it has none); where both have it, of the
+                body.
+
+        Returns:
+            Force [N] and torque [N m] in the world frame, the torque about the centre of mass of
+            the body, or the centre of the geom, which is `point`.
+
+        Raises:
+            ValueError: there is no body or geom of that name.
+        """
+        model = self._require_open()
+        self._check(data)
+        bodies = [name_of(model, "body", i) for i in range(model.nbody)]
+        geoms = [name_of(model, "geom", i) for i in range(model.ngeom)]
+        if name in bodies:
+            body = bodies.index(name)
+            members, point = model.geom_bodyid == body, data.xipos[body].copy()
+        elif name in geoms:
+            geom = geoms.index(name)
+            members, point = np.arange(model.ngeom) == geom, data.geom_xpos[geom].copy()
+        else:
+            known = {*bodies, *geoms}
+            raise ValueError(f"the scene has no body or geom {name!r}{nearest(str(name), known)}")
+        wrench = wrench_on(self.contact_forces(data), members, point)
+        return Wrench(wrench[:3], wrench[3:], point)
 
     def update_touch(self, data: mujoco.MjData) -> None:
         """Writes what touch sensors measure into `data.sensordata`.
@@ -370,7 +427,7 @@ class Contact(Closing):
     def _check(self, data: mujoco.MjData) -> None:
         """The data fit the model; warns when numbers changed in the model are not valid."""
         if not isinstance(data, mujoco.MjData):
-            raise TypeError(f"takes an mujoco.MjData, got {type(data).__name__}")
+            raise TypeError(f"data takes a mujoco.MjData, got {type(data).__name__}")
         if not self._fits(data):
             raise ValueError("the data are not of the attached model")
         if not self._adaptor.call("is_installed"):

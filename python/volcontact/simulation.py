@@ -16,9 +16,15 @@ import numpy as np
 from volcontact import scene as volumetric_scene
 from volcontact._mujoco_views import dense
 from volcontact.compiling import require_scene
+from volcontact.driving import Drive, Driver, to_keyframe
 from volcontact.given_keys import GivenKeys, Values
+from volcontact.hints import sunk
+from volcontact.names import name_of
+from volcontact.outside_work import OutsideWork
 from volcontact.probes import Probe, probe
 from volcontact.recording import CHANNELS, SITE, SITE_IN_RUN, ContactKind, Frame, Recording
+from volcontact.signals import SignalReader
+from volcontact.wrenches import wrenches_on_bodies
 
 Progress = Callable[[int, int], None]
 
@@ -47,9 +53,10 @@ def simulate(
     frame_interval: float | None = 0.2,
     material: Values | None = None,
     options: Values | None = None,
+    drive: Drive | None = None,
     progress: Progress | None = None,
 ) -> Recording:
-    """Steps a scene for a while, from its keyframe `start` if it has one, and records it.
+    """Steps a scene for a while, from a keyframe if it has one, and records it.
 
     Args:
         scene: path of an MJCF file, MJCF text, or a model (which is not changed).
@@ -59,15 +66,17 @@ def simulate(
         frame_interval: time between two frames to draw [s]; None records no frames.
         material: of volumetric contact, as `volcontact.attach` takes it.
         options: likewise.
+        drive: where it starts, and its controls over time; None starts it at the keyframe called
+            `start`, where there is one, and leaves all controls as they are there.
         progress: called now and then with (steps done, steps in all).
 
     Returns:
-        The recording; check `warnings` and `stopped`.
+        The recording; check `warnings`, `stopped` and `notes`.
 
     Raises:
         SimulationError: duration, timestep, interval or kind of contact out of range.
         FileNotFoundError: there is no such file.
-        ValueError: the scene cannot be read or understood.
+        ValueError: the scene cannot be read or understood, or it has no such keyframe or actuator.
     """
     keys = GivenKeys(material, options)
     model = _model_to_run(scene, contact, timestep, keys)
@@ -78,16 +87,20 @@ def simulate(
         raise SimulationError(f"frame interval {frame_interval:g} s must be positive")
     steps = round(duration / step)
     data = mujoco.MjData(model)
-    to_start(model, data)
+    driver = Driver(model, drive or Drive())
+    driver.start(data)
     with probe(contact, model, keys) as reader:
         recorder = RunRecorder(model, reader, steps, frame_interval)
+        recorder.notes = driver.notes()
         every = max(1, steps // _PROGRESS_CALLS)
         for i in range(steps):
+            driver.write(data)
             recorder.step(data)
             if progress is not None and (i + 1) % every == 0:
                 progress(i + 1, steps)
             if recorder.stopped is not None:
                 break
+        driver.write(data)
         recorder.finish(data)
         if progress is not None:
             progress(steps, steps)
@@ -96,9 +109,7 @@ def simulate(
 
 def to_start(model: mujoco.MjModel, data: mujoco.MjData) -> None:
     """Puts data of a model at its keyframe `start`; without one they stay as they are."""
-    key = mujoco.mj_name2id(model, int(mujoco.mjtObj.mjOBJ_KEY), "start")
-    if key >= 0:
-        mujoco.mj_resetDataKeyframe(model, data, key)
+    to_keyframe(model, data, None)
 
 
 def native_model(scene: str | os.PathLike[str]) -> mujoco.MjModel:
@@ -164,6 +175,7 @@ class RunRecorder:
         self._model = model
         self._probe = probe
         self._ids = _bodies_followed(model)
+        self._geom_bodies = model.geom_bodyid.copy()
         rows, bodies = steps + 1, len(self._ids)
         self._rows = 0
         self._time = np.zeros(rows)
@@ -177,6 +189,10 @@ class RunRecorder:
         self._dissipated = np.zeros((rows, len(CHANNELS)))
         self._contact = np.zeros((rows, 4))  # sum and largest of forces, count, depth
         self._sensors = np.zeros((rows, model.nsensordata))
+        self._solid = _bodies_with_geoms(model)
+        self._wrenches = np.zeros((rows, len(self._solid), 6))
+        self._signals = SignalReader(model, rows)
+        self._outside = OutsideWork(model, rows)
         self._microseconds = np.zeros(steps)
         self._frames: list[Frame] = []
         self._sites: list[np.ndarray] = []
@@ -186,6 +202,7 @@ class RunRecorder:
         # The last stage of Runge-Kutta is not the state the step began with, so ask for that one.
         self._evaluate_first = model.opt.integrator == int(mujoco.mjtIntegrator.mjINT_RK4)
         self.stopped: str | None = None
+        self.notes: tuple[str, ...] = ()
 
     def step(self, data: mujoco.MjData) -> None:
         """Takes one step, times it, and records the state it began with."""
@@ -197,6 +214,7 @@ class RunRecorder:
         begin = clock.perf_counter_ns()
         mujoco.mj_step(self._model, data)
         self._microseconds[row] = 1e-3 * (clock.perf_counter_ns() - begin)
+        self._outside.keep_step(row, data, self._qvel[row])
         if any(data.warning[i].number for i in _FATAL_WARNINGS):
             self._stop(data, row)
             return
@@ -216,6 +234,7 @@ class RunRecorder:
             self._microseconds[row - 1] = microseconds
         self._keep_state(row, data)
         mujoco.mj_forward(self._model, data)
+        self._outside.keep_power(row, data, always=not self._evaluate_first)
         self._keep_evaluation(row, data)
         self._rows += 1
         self._warnings = warnings_of(data)
@@ -230,6 +249,7 @@ class RunRecorder:
             mujoco.mj_forward(self._model, data)
             self._keep_evaluation(self._rows, data)
             self._rows += 1
+            self.notes += tuple(sunk(self._model, data, self._probe.sites(data)))
 
     def recording(self, contact: ContactKind, description: dict[str, Any]) -> Recording:
         """Packs what was recorded."""
@@ -240,7 +260,7 @@ class RunRecorder:
         return Recording(
             contact=contact,
             timestep=float(self._model.opt.timestep),
-            bodies=tuple(_body_name(self._model, i) for i in self._ids),
+            bodies=tuple(name_of(self._model, "body", i) for i in self._ids),
             time=self._time[:n],
             qpos=self._qpos[:n],
             qvel=self._qvel[:n],
@@ -256,6 +276,7 @@ class RunRecorder:
             numerical=numerical,
             driven=driven,
             made=made,
+            outside_work=self._outside.work(n),
             contact_force=total,
             largest_site_force=largest,
             site_count=count.astype(np.int64),
@@ -270,7 +291,13 @@ class RunRecorder:
                 name: np.linalg.norm(self._sensors[:n, places], axis=1)
                 for name, places in _sensor_places(self._model).items()
             },
-            geoms=tuple(_geom_name(self._model, i) for i in range(self._model.ngeom)),
+            signals=self._signals.signals(self._qpos[:n], self._qvel[:n]),
+            wrench_on={
+                name_of(self._model, "body", body): self._wrenches[:n, i]
+                for i, body in enumerate(self._solid)
+            },
+            notes=self.notes,
+            geoms=tuple(name_of(self._model, "geom", i) for i in range(self._model.ngeom)),
             description=description,
             weight=float(gravity * self._model.body_mass[self._model.body_weldid != 0].sum()),
         )
@@ -296,7 +323,10 @@ class RunRecorder:
             mujoco.mj_objectVelocity(self._model, data, kind, body, velocity, 0)
             self._spin[row, i] = np.linalg.norm(velocity[:3])
             self._speed[row, i] = np.linalg.norm(velocity[3:])
+        self._outside.keep_power(row, data)
+        self._probe.update_touch(data)
         self._sensors[row] = data.sensordata
+        self._signals.keep(row, data)
         energy = self._probe.energy(data)
         potential, kinetic = dense(data.energy)
         of_contact = energy.elastic, energy.work, energy.numerical, energy.driven, energy.made
@@ -308,6 +338,10 @@ class RunRecorder:
             depth = sites["depth"].max()
             self._contact[row] = forces.sum(), forces.max(), len(sites), depth
             self._sites.append(_in_run(sites, row))
+        contacts = self._probe.contacts(data)
+        if len(contacts):
+            on_bodies = wrenches_on_bodies(contacts, self._geom_bodies, data.xpos)
+            self._wrenches[row] = on_bodies[self._solid]
         if row in self._frame_rows:
             shapes = self._probe.surfaces(data)
             self._frames.append(Frame(row, float(self._time[row]), sites, shapes))
@@ -322,12 +356,9 @@ def _bodies_followed(model: mujoco.MjModel) -> list[int]:
     return free or [b for b in range(1, model.nbody) if model.body_dofnum[b] > 0]
 
 
-def _body_name(model: mujoco.MjModel, body: int) -> str:
-    return mujoco.mj_id2name(model, int(mujoco.mjtObj.mjOBJ_BODY), body) or f"body {body}"
-
-
-def _geom_name(model: mujoco.MjModel, geom: int) -> str:
-    return mujoco.mj_id2name(model, int(mujoco.mjtObj.mjOBJ_GEOM), geom) or f"geom {geom}"
+def _bodies_with_geoms(model: mujoco.MjModel) -> list[int]:
+    """Those that can move and have geoms of their own."""
+    return [b for b in range(1, model.nbody) if model.body_weldid[b] and model.body_geomnum[b]]
 
 
 def _sensor_places(model: mujoco.MjModel) -> dict[str, list[int]]:

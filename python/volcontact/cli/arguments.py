@@ -13,6 +13,7 @@ import shtab
 if TYPE_CHECKING:
     from typing import TypeAlias
 
+    from volcontact.driving import Drive
     from volcontact.given_keys import Value
 
     Subparsers: TypeAlias = argparse._SubParsersAction[argparse.ArgumentParser]
@@ -81,6 +82,70 @@ def add_keys(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_drive(parser: argparse.ArgumentParser) -> None:
+    """Adds --keyframe, --ctrl and --controls."""
+    add_keyframe(parser)
+    parser.add_argument(
+        "--ctrl",
+        type=controls,
+        action="extend",
+        default=[],
+        metavar="NAME=VALUE,...",
+        help="controls of actuators that are held over the run, in the scene's units; may be "
+        "repeated",
+    )
+    add_file(
+        parser,
+        "--controls",
+        metavar="FILE",
+        type=existing,
+        help="controls over time: CSV or Parquet, the column time [s] and one named after each "
+        "actuator; linear in between",
+    )
+
+
+def add_keyframe(parser: argparse.ArgumentParser) -> None:
+    """Adds --keyframe."""
+    parser.add_argument(
+        "--keyframe",
+        metavar="NAME",
+        help="keyframe of the scene to start from (default: that called start, if there is one)",
+    )
+
+
+def drive_of(arguments: argparse.Namespace) -> Drive:
+    """What `add_drive` read."""
+    from volcontact.driving import Drive
+
+    names = [name for name, _ in arguments.ctrl]
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"--ctrl: {name!r} stands there {names.count(name)} times: leave one")
+    return Drive(arguments.keyframe, dict(arguments.ctrl), arguments.controls)
+
+
+def controls(text: str) -> list[tuple[str, float]]:
+    """Reads NAME=VALUE,NAME=VALUE."""
+    pairs = []
+    for part in text.split(","):
+        name, _, value = part.rpartition("=")
+        try:
+            number = float(value)
+        except ValueError:
+            number = math.nan
+        if not name or not math.isfinite(number):
+            raise argparse.ArgumentTypeError(f"{part!r} must be NAME=VALUE with a finite number")
+        pairs.append((name.strip(), number))
+    return pairs
+
+
+def existing(text: str) -> str:
+    """Reads the path of a file."""
+    if not Path(text).is_file():
+        raise argparse.ArgumentTypeError(f"no such file: {text}")
+    return text
+
+
 def key(text: str) -> tuple[str, Value]:
     """Reads a name and a number or word."""
     name, separator, value = text.partition("=")
@@ -94,9 +159,7 @@ def key(text: str) -> tuple[str, Value]:
 
 def scene(text: str) -> str:
     """Reads the path of a scene."""
-    if not Path(text).is_file():
-        raise argparse.ArgumentTypeError(f"no such file: {text}")
-    return text
+    return existing(text)
 
 
 def positive(text: str) -> float:

@@ -17,7 +17,7 @@ from rich.table import Table
 
 import volcontact
 from volcontact._files import appearing
-from volcontact.cli.arguments import add_command, add_keys, pixels
+from volcontact.cli.arguments import add_command, add_keyframe, add_keys, pixels
 from volcontact.cli.terminal import Terminal
 
 if TYPE_CHECKING:
@@ -41,7 +41,11 @@ def add_to(commands: Subparsers) -> None:
         _EXAMPLES,
     )
     parser.add_argument(
-        "--picture", type=Path, metavar="FILE", help="draw the start with its contacts: a PNG file"
+        "--picture",
+        type=Path,
+        metavar="FILE",
+        help="draw the solids as understood, holes open and materials by colour, with their "
+        "contacts at the start: a PNG file",
     )
     parser.add_argument("--camera", metavar="NAME", help="camera of the picture")
     parser.add_argument(
@@ -50,29 +54,33 @@ def add_to(commands: Subparsers) -> None:
     parser.add_argument(
         "--height", type=pixels, default=600, metavar="PX", help="of the picture (default: 600)"
     )
+    add_keyframe(parser)
     add_keys(parser)
     parser.set_defaults(execute=execute)
 
 
 def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     """Runs the command and returns the exit status."""
-    from volcontact.simulation import to_start
+    from volcontact.driving import to_keyframe
+    from volcontact.hints import hints
 
     keys = {"material": dict(arguments.material), "options": dict(arguments.option)}
     model = volcontact.load(arguments.scene, **keys)
     data = mujoco.MjData(model)
-    to_start(model, data)
+    to_keyframe(model, data, arguments.keyframe)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # they are part of the description
         with volcontact.attach(model, **keys) as contact:
             description = contact.description
             mujoco.mj_forward(model, data)
             sites = contact.sites(data)
+            if arguments.picture is not None:
+                _draw(arguments, contact, data)
+        found = list(hints(model, data, description["pairs"]))
     description["userdata"]["line"] = size_line(description["userdata"])
     description["advice"] = _step_advice(model, description)
-    description["warnings"] += _mistakes(model, sites, description)
+    description["warnings"] += [*_mistakes(model, sites, description), *found]
     if arguments.picture is not None:
-        _draw(arguments, model, data, sites)
         description["picture"] = str(arguments.picture)
     if terminal.json:
         terminal.result(description)
@@ -146,23 +154,22 @@ def _geom_name(model: mujoco.MjModel, geom: int) -> str:
     return mujoco.mj_id2name(model, int(mujoco.mjtObj.mjOBJ_GEOM), geom) or f"geom {geom}"
 
 
-def _draw(
-    arguments: argparse.Namespace,
-    model: mujoco.MjModel,
-    data: mujoco.MjData,
-    sites: np.ndarray,
-) -> None:
+def _draw(arguments: argparse.Namespace, contact: volcontact.Contact, data: mujoco.MjData) -> None:
     from volcontact.probes import recorded_sites
-    from volcontact.render import Renderer, SiteStyle
-    from volcontact.report.palette import VOLUMETRIC, rgb
+    from volcontact.render import camera_id
     from volcontact.report.pictures import png
+    from volcontact.report.solids_picture import draw_solids
 
-    forces = np.linalg.norm(sites["force"], axis=1)
-    style = SiteStyle(rgb(VOLUMETRIC), reference_force=float(forces.max(initial=0.0)) or 1.0)
-    with Renderer(model, width=arguments.width, height=arguments.height) as renderer:
-        picture = renderer.draw(
-            data.qpos, sites=recorded_sites(sites), style=style, view=arguments.camera
-        )
+    if arguments.camera is not None:
+        camera_id(contact.model, arguments.camera)
+    picture = draw_solids(
+        contact,
+        data,
+        recorded_sites(contact.sites(data)),
+        width=arguments.width,
+        height=arguments.height,
+        camera=arguments.camera,
+    )
     with appearing(arguments.picture) as file:
         file.write_bytes(png(picture))
 

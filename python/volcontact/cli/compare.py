@@ -15,8 +15,16 @@ from rich.table import Table
 
 import volcontact
 from volcontact._files import appearing_in
-from volcontact.cli.arguments import add_command, add_keys, add_time, pixels, positive
-from volcontact.cli.status import report_warnings
+from volcontact.cli.arguments import (
+    add_command,
+    add_drive,
+    add_keys,
+    add_time,
+    drive_of,
+    pixels,
+    positive,
+)
+from volcontact.cli.status import print_notes, report_warnings
 from volcontact.cli.terminal import Terminal
 
 if TYPE_CHECKING:
@@ -29,6 +37,7 @@ _EXAMPLES = """\
   volcontact compare scene.xml --duration 3 --out report
   volcontact compare scene.xml --frame-interval 0.1 --width 960 --height 720 --camera side
   volcontact compare scene.xml --material stiffness=1e9 --option mesh=exact_or_hull
+  volcontact compare scene.xml --ctrl push=5 --keyframe above --plot peg.force_z:peg.z
   volcontact compare scene.xml --no-frames --json
 """
 
@@ -42,6 +51,7 @@ def add_to(commands: Subparsers) -> None:
         _EXAMPLES,
     )
     add_time(parser, duration=3.0)
+    add_drive(parser)
     add_keys(parser)
     parser.add_argument(
         "--out",
@@ -77,6 +87,15 @@ def add_to(commands: Subparsers) -> None:
         "--no-frames", action="store_true", help="leave the pictures out (needs no OpenGL)"
     )
     parser.add_argument(
+        "--plot",
+        type=str,
+        action="append",
+        default=[],
+        metavar="Y[:X]",
+        help="one more curve: a column of the trajectory over time, or over another one, such as "
+        "shaft.force_z:joint.press.position; may be repeated",
+    )
+    parser.add_argument(
         "--error",
         action="store_true",
         help="say what the step costs under volumetric contact, by two runs more",
@@ -91,6 +110,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     from volcontact.report.design_pose import read_design_pose, read_peak_limits
     from volcontact.simulation import simulate
 
+    drive = drive_of(arguments)
     with contextlib.ExitStack() as stack:
         design = read_design_pose(arguments.scene)
         limits = Limits(
@@ -109,6 +129,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
                 timestep=arguments.timestep,
                 material=dict(arguments.material),
                 options=dict(arguments.option),
+                drive=drive,
                 frame_interval=arguments.frame_interval,
                 progress=bars.task(f"{contact} contact"),
             )
@@ -124,6 +145,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             volcontact_version=volcontact.__version__,
             limits=limits,
             error_of_step=found,
+            plots=tuple(arguments.plot),
         )
         fill_report(
             comparison,
@@ -140,6 +162,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
         if found is not None:
             terminal.out.print()
             print_estimates(found, terminal)
+    print_notes(comparison.runs, terminal)
     more = () if found is None else found.runs[1:]
     return report_warnings((*comparison.runs, *more), terminal)
 
@@ -155,6 +178,7 @@ def _renderer(arguments: argparse.Namespace) -> Renderer:
 
 
 def _print(comparison: Comparison, report: Path, terminal: Terminal) -> None:
+    from volcontact.report.closing import closing_of_two
     from volcontact.report.findings import findings
     from volcontact.report.key_figures import key_figures_side_by_side
 
@@ -167,4 +191,7 @@ def _print(comparison: Comparison, report: Path, terminal: Terminal) -> None:
         terminal.out.print()
         terminal.out.print(f"[{colors[finding.verdict]}]{escape(finding.title)}[/]")
         terminal.out.print(Padding(escape(finding.text), (0, 0, 0, 2)))
-    terminal.out.print(f"\nreport: {report}", markup=False, soft_wrap=True)
+    terminal.out.print()
+    for line in closing_of_two(comparison):
+        terminal.out.print(line, markup=False, soft_wrap=True)
+    terminal.out.print(f"report: {report}", markup=False, soft_wrap=True)

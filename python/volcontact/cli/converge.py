@@ -12,8 +12,8 @@ from rich.markup import escape
 from rich.table import Table
 
 from volcontact._files import appearing
-from volcontact.cli.arguments import add_command, add_keys, add_time, positive
-from volcontact.cli.status import report_warnings
+from volcontact.cli.arguments import add_command, add_drive, add_keys, add_time, drive_of, positive
+from volcontact.cli.status import print_notes, report_warnings
 from volcontact.cli.terminal import Terminal
 
 if TYPE_CHECKING:
@@ -40,6 +40,7 @@ def add_to(commands: Subparsers) -> None:
         _EXAMPLES,
     )
     add_time(parser, duration=3.0)
+    add_drive(parser)
     add_keys(parser)
     parser.add_argument(
         "--levels",
@@ -102,6 +103,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             quantities=arguments.quantities,
             material=dict(arguments.material),
             options=dict(arguments.option),
+            drive=drive_of(arguments),
             progress=told,
         )
     if arguments.out is not None:
@@ -114,6 +116,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
         print_estimates(found, terminal)
         if arguments.out is not None:
             terminal.out.print(f"written to {arguments.out}", markup=False)
+    print_notes(found.runs, terminal)
     return report_warnings(found.runs, terminal)
 
 
@@ -132,6 +135,7 @@ def error_of_step(
         contact=first.contact,
         material=dict(arguments.material),
         options=dict(arguments.option),
+        drive=drive_of(arguments),
         with_tolerance=False,
         first=first,
         progress=lambda done, total, _: task(done, total),

@@ -22,12 +22,14 @@ TEMPLATES = {
     "incline": "a box sticks to a slope",
     "peg_in_hole": "a peg falls through a hole that is cut exactly",
     "mesh_in_hole": "a mesh falls through the hole of another mesh",
+    "insertion": "a shaft is pushed into a chamfered bore, exact and as meshes",
 }
 
 _FOLDER = Path(__file__).parents[1] / "templates"
 _EXAMPLES = """\
   volcontact new my_scene
   volcontact new my_scene --template mesh_in_hole
+  volcontact new my_press --template insertion
   volcontact check my_scene/scene.xml
 """
 
@@ -61,12 +63,17 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     written = []
     with appearing_in(folder) as new:
         for source in sorted(path for path in template.rglob("*") if path.is_file()):
+            if source.suffix == ".pyc":  # an installer has compiled what it found
+                continue
             name = source.relative_to(template)
             target = new / name
             target.parent.mkdir(parents=True, exist_ok=True)
             # The comments of the template say what to type next.
             content = source.read_text(encoding="utf-8")
-            target.write_text(re.sub(r"\bSCENE\b", str(scene), content), encoding="utf-8")
+            own = str(folder / name) if name.suffix == ".xml" else str(scene)
+            for word, meant in (("SCENE", own), ("FOLDER", str(folder))):
+                content = re.sub(rf"\b{word}\b", meant.replace("\\", r"\\"), content)
+            target.write_text(content, encoding="utf-8")
             written.append(str(folder / name))
     if terminal.json:
         terminal.result({"scene": str(scene), "files": written})

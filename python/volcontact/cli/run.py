@@ -16,8 +16,8 @@ from rich.table import Table
 
 import volcontact
 from volcontact._files import appearing_in
-from volcontact.cli.arguments import add_command, add_keys, add_time
-from volcontact.cli.status import report_warnings
+from volcontact.cli.arguments import add_command, add_drive, add_keys, add_time, drive_of
+from volcontact.cli.status import print_notes, report_warnings
 from volcontact.cli.terminal import Terminal
 from volcontact.report.units import digits, quantity
 
@@ -29,6 +29,8 @@ _EXAMPLES = """\
   volcontact run scene.xml
   volcontact run scene.xml --duration 2 --timestep 5e-4 --out results
   volcontact run scene.xml --contact native --json
+  volcontact run scene.xml --keyframe above --ctrl push=5,grip=0.2
+  volcontact run scene.xml --controls motion.csv --out results --plot peg.force_z:peg.z
   volcontact run scene.xml --audit
 """
 _PAIRS_NAMED = 3
@@ -40,6 +42,7 @@ def add_to(commands: Subparsers) -> None:
         commands, "run", "step a scene under one kind of contact and say how it ended", _EXAMPLES
     )
     add_time(parser, duration=3.0)
+    add_drive(parser)
     add_keys(parser)
     parser.add_argument(
         "--contact",
@@ -57,6 +60,14 @@ def add_to(commands: Subparsers) -> None:
         "--audit",
         action="store_true",
         help="say in which step contact made most energy, and where",
+    )
+    parser.add_argument(
+        "--plot",
+        action="append",
+        default=[],
+        metavar="Y[:X]",
+        help="with --out, a curve as SVG and PNG: a column of the trajectory over time, or over "
+        "another one; may be repeated",
     )
     parser.add_argument(
         "--error",
@@ -86,6 +97,8 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     from volcontact.report.design_pose import read_design_pose
     from volcontact.simulation import simulate
 
+    if arguments.plot and arguments.out is None:
+        raise ValueError("--plot draws into the folder of --out DIR: name one")
     design = read_design_pose(arguments.scene)
     with contextlib.ExitStack() as stack:
         # Before the run, so that a place that cannot be written to says so at once.
@@ -100,6 +113,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             timestep=arguments.timestep,
             material=dict(arguments.material),
             options=dict(arguments.option),
+            drive=drive_of(arguments),
             frame_interval=None,
             progress=bars.task(f"{arguments.contact} contact"),
         )
@@ -114,6 +128,11 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             text = json.dumps(summary, indent=2, allow_nan=False) + "\n"
             (folder / files.SUMMARY).write_text(text, encoding="utf-8")
             write_table((recording,), folder / files.TRAJECTORY)
+            if arguments.plot:
+                from volcontact.report.figures import write_figures
+                from volcontact.report.plots import plots_of_run
+
+                write_figures(plots_of_run(recording, arguments.plot), folder / files.FIGURES)
     found = None
     if arguments.error:
         from volcontact.cli.converge import error_of_step, print_estimates
@@ -124,6 +143,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     if terminal.json:
         terminal.result(summary)
     else:
+        from volcontact.report.closing import closing
         from volcontact.report.key_figures import key_figures
 
         table = Table("", arguments.contact, box=None, pad_edge=False)
@@ -135,7 +155,11 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
         if found is not None:
             terminal.out.print()
             print_estimates(found, terminal)
+        terminal.out.print()
+        for line in closing(recording, design):
+            terminal.out.print(line, markup=False, soft_wrap=True)
         if arguments.out is not None:
             terminal.out.print(f"written to {arguments.out}", markup=False)
+    print_notes((recording,), terminal)
     more = () if found is None else found.runs[1:]
     return report_warnings((recording, *more), terminal)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The exit status of commands that ran a scene."""
+"""The exit status of commands that ran a scene, and what they note."""
 
 from __future__ import annotations
 
@@ -32,3 +32,9 @@ def report_warnings(runs: Iterable[Recording], terminal: Terminal) -> int:
             )
             status = TROUBLE
     return status
+
+
+def print_notes(runs: Iterable[Recording], terminal: Terminal) -> None:
+    """Prints what was left as it is and hardly meant, each line once."""
+    for note in dict.fromkeys(note for run in runs for note in run.notes):
+        terminal.note(note)

@@ -78,6 +78,11 @@ class Terminal:
         self.log.print("warning:", style="bold yellow", end=" ")
         self.log.print(" ".join(message.split()), markup=False, soft_wrap=True)
 
+    def note(self, message: str) -> None:
+        """Prints one line that is good to know and no fault."""
+        self.log.print("note:", style="bold", end=" ")
+        self.log.print(" ".join(message.split()), markup=False, soft_wrap=True)
+
     @contextlib.contextmanager
     def python_warnings(self) -> Iterator[None]:
         """Prints what the package warns of as lines of the program, each text once."""

@@ -59,12 +59,12 @@ def fill_report(
     from volcontact.report.pictures import draw_frames, write_frames, write_movie
     from volcontact.report.table import write_table
 
+    made = curves(comparison)  # first: an unknown column is an error before the pictures
     summary = json.dumps(comparison.summary(), indent=2, allow_nan=False) + "\n"
     (folder / files.SUMMARY).write_text(summary, encoding="utf-8")
     write_table(comparison.runs, folder / files.TRAJECTORY)
     pairs = [] if renderer is None else draw_frames(comparison, renderer, camera, progress)
     write_frames(pairs, folder / files.FRAMES)
     write_movie(pairs, folder / files.FILM)
-    made = curves(comparison)
     write_figures(made, folder / files.FIGURES)
     write_page(comparison, pairs, made, folder / files.REPORT)

@@ -10,6 +10,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from volcontact.convergence import Convergence
+from volcontact.outside_work import CHANNELS as OUTSIDE
 from volcontact.recording import Recording
 from volcontact.report.design_pose import DesignPose, angle_between
 
@@ -41,6 +42,7 @@ class Comparison:
         mujoco_version: of the library that ran.
         volcontact_version: of this package.
         limits: of what contacts and sensors may carry.
+        plots: further curves, as `Y` or `Y:X`, columns of the trajectory.
         error_of_step: what the step of the volumetric run costs; None where it was not asked.
     """
 
@@ -52,6 +54,7 @@ class Comparison:
     volcontact_version: str
     limits: Limits = Limits()
     error_of_step: Convergence | None = None
+    plots: tuple[str, ...] = ()
 
     @property
     def runs(self) -> tuple[Recording, Recording]:
@@ -148,16 +151,6 @@ def largest_rise(energy: np.ndarray) -> float:
     return float(np.max(energy - np.minimum.accumulate(energy)))
 
 
-def unbalance(run: Recording) -> np.ndarray:
-    """Mechanical, dissipated and numerical energy, less its value at the start [J], shape (n,).
-
-    That is the change of kinetic and potential energy that the contact forces did not make.
-    """
-    account = run.energy + run.dissipated.sum(axis=1) + run.numerical - run.driven
-    change: np.ndarray = account - account[0]
-    return change
-
-
 def run_summary(run: Recording, design: DesignPose | None) -> dict[str, Any]:
     """One run as plain numbers, ready for JSON."""
     result: dict[str, Any] = {
@@ -180,11 +173,13 @@ def run_summary(run: Recording, design: DesignPose | None) -> dict[str, Any]:
         ),
         "energy_numerical": float(run.numerical[-1]),
         "work_of_contact": float(run.work[-1]),
+        "outside_work": dict(zip(OUTSIDE, run.outside_work[-1].tolist(), strict=True)),
         "audit": run.audit().summary(),
-        "energy_unbalance": float(np.abs(unbalance(run)).max()),
+        "energy_unbalance": float(np.abs(run.unbalance()).max()),
         "first_touch": first_touch(run),
         "max_site_force": peak(run, "force").value,
         "max_site_torque": peak(run, "torque").value,
+        "notes": list(run.notes),
         "max_sensors": {name: float(values.max()) for name, values in run.sensors.items()},
     }
     if design is not None:

@@ -7,6 +7,7 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 
+from volcontact.outside_work import CHANNELS as OUTSIDE
 from volcontact.recording import CHANNELS, Recording
 from volcontact.report import palette
 from volcontact.report.comparison import Comparison
@@ -25,11 +26,11 @@ def draw_volumetric_energy(axes: Axes, comparison: Comparison) -> list[Series]:
 
 
 def draw_native_energy(axes: Axes, comparison: Comparison) -> list[Series]:
-    """What is mechanical, and what nobody accounts for, stacked."""
+    """What is mechanical, and what contact has taken from it, stacked."""
     run = comparison.native
     layers = _mechanical_layers(comparison, run)
-    missing = np.maximum(run.energy[0] - run.energy, 0.0)
-    layers.append(("not accounted for", palette.UNEXPLAINED, missing))
+    taken = np.maximum(-run.outside_work[:, OUTSIDE.index("native")], 0.0)
+    layers.append(("taken by contact", palette.UNEXPLAINED, taken))
     return _stack(axes, run, layers)
 
 
@@ -53,10 +54,14 @@ def _stack(axes: Axes, run: Recording, layers: list[tuple[str, str, np.ndarray]]
         linewidth=0.0,
     )
     start = sum(float(layer[2][0]) for layer in layers)
-    line = start - (run.numerical[rows] - run.numerical[0])
+    # What is there, and what came in besides: a stack that meets it accounts for all.
+    outside = run.outside_work[rows].sum(axis=1) + run.driven[rows]
+    if run.contact == "native":
+        outside -= run.outside_work[rows, OUTSIDE.index("native")]
+    line = start + outside - (run.numerical[rows] - run.numerical[0])
     ink = matplotlib.rcParams["text.color"]
     axes.plot(run.time[rows], line, color=ink, linewidth=0.9, linestyle="--")
-    axes.set_ylim(0.0, 1.1 * max(start, float(np.sum(values, axis=0).max()), 1e-12))
+    axes.set_ylim(0.0, 1.1 * max(float(line.max()), float(np.sum(values, axis=0).max()), 1e-12))
     axes.set_ylabel("energy [J]")
     handles, labels = axes.get_legend_handles_labels()
     axes.legend(

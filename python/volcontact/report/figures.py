@@ -25,6 +25,7 @@ from volcontact.report.svg import INK, LINE, MUTED, inline, standing_alone
 _SIZE = (4.2, 2.8)  # inches: readable when shrunk to a phone
 _FORCE_FLOOR = 1.0  # [N], lowest value of the logarithmic axis
 _DEPTH_FLOOR = 1e-6  # [m]
+_TOWERS = 3.0  # times the 99 % quantile: beyond it a linear axis shows the peak alone
 
 
 _STYLE: dict[Any, Any] = {
@@ -65,7 +66,7 @@ class Curve:
         paper: SVG that stands alone, dark on white.
         data: what the page needs to tell the numbers under the pointer: `left` and `right` of the
             axes in shares of the width, the time `start` and `end` there [s], and the `series`
-            with `label`, `color`, `x` and `y`.
+            with `label`, `color`, `x` and `y`; {} of one that is not over time.
         figure: matplotlib's.
     """
 
@@ -79,6 +80,27 @@ class Curve:
 
 
 @dataclass(frozen=True)
+class Plan:
+    """How a figure is drawn.
+
+    Attributes:
+        name: short, fit for a file name.
+        title: above the figure.
+        caption: one sentence on how to read it.
+        draw: draws runs into axes and returns its lines.
+        across: label of the axis that goes across.
+        is_over_time: whether that is the time.
+    """
+
+    name: str
+    title: str
+    caption: str
+    draw: Callable[[Axes, tuple[Recording, ...]], list[Series]]
+    across: str = "time [s]"
+    is_over_time: bool = True
+
+
+@dataclass(frozen=True)
 class _Plan:
     name: str
     title: str
@@ -88,7 +110,20 @@ class _Plan:
 
 def curves(comparison: Comparison) -> list[Curve]:
     """All figures of the report, in reading order."""
-    return [_curve(plan, comparison) for plan in _plans(comparison)]
+    from volcontact.report.plots import plans, plans_of_signals
+
+    def bound(plan: _Plan) -> Plan:
+        return Plan(
+            plan.name, plan.title, plan.caption, lambda axes, _: plan.draw(axes, comparison)
+        )
+
+    runs = comparison.runs
+    every = [
+        *plans(runs, comparison.plots),
+        *map(bound, _plans(comparison)),
+        *plans_of_signals(runs),
+    ]
+    return [curve_of_plan(plan, runs) for plan in every]
 
 
 def write_figures(made: list[Curve], folder: Path) -> list[Path]:
@@ -110,6 +145,13 @@ def _plans(comparison: Comparison) -> list[_Plan]:
             "Contact force",
             "Magnitudes of all site forces added up; logarithmic.",
             _draw_force,
+        ),
+        _Plan(
+            "force_linear",
+            "Contact force, linear",
+            "The same, linear; cut off above what one instant in a hundred exceeds, where peaks "
+            "tower.",
+            _draw_force_linear,
         ),
         _Plan(
             "penetration",
@@ -163,21 +205,27 @@ def thin(x: np.ndarray, y: np.ndarray, points: int = POINTS) -> tuple[np.ndarray
         y: shape (n,).
         points: at most about this many are returned.
     """
-    intervals = points // 2
-    if len(x) <= 2 * intervals:
-        return x, y
-    edges = np.linspace(0, len(x), intervals + 1).astype(int)
-    keep = {0, len(x) - 1}
-    for begin, end in itertools.pairwise(edges):
-        keep.add(begin + int(np.argmin(y[begin:end])))
-        keep.add(begin + int(np.argmax(y[begin:end])))
-    rows = np.array(sorted(keep))
+    rows = thin_rows(y, points)
     return x[rows], y[rows]
 
 
-def _curve(plan: _Plan, comparison: Comparison) -> Curve:
+def thin_rows(y: np.ndarray, points: int = POINTS) -> np.ndarray:
+    """The rows that `thin` keeps."""
+    intervals = points // 2
+    if len(y) <= 2 * intervals:
+        return np.arange(len(y))
+    edges = np.linspace(0, len(y), intervals + 1).astype(int)
+    keep = {0, len(y) - 1}
+    for begin, end in itertools.pairwise(edges):
+        keep.add(begin + int(np.argmin(y[begin:end])))
+        keep.add(begin + int(np.argmax(y[begin:end])))
+    return np.array(sorted(keep))
+
+
+def curve_of_plan(plan: Plan, runs: tuple[Recording, ...]) -> Curve:
+    """Draws the figure of a plan."""
     with matplotlib.rc_context({**_STYLE, "svg.hashsalt": plan.name}):
-        figure, axes, series = _drawn(plan, comparison)
+        figure, axes, series = _drawn(plan, runs)
         paper = standing_alone(figure)
         figure.set_layout_engine("none")  # the places are found
         place = axes.get_position()  # after the layout, which drawing makes
@@ -192,18 +240,23 @@ def _curve(plan: _Plan, comparison: Comparison) -> Curve:
                 for s in series
             ],
         }
+        if not plan.is_over_time:
+            data = {}
         in_page = inline(paper, plan.name)
         return Curve(plan.name, plan.title, plan.caption, in_page, paper, data, figure)
 
 
-def _drawn(plan: _Plan, comparison: Comparison) -> tuple[Figure, Axes, list[Series]]:
+def _drawn(plan: Plan, runs: tuple[Recording, ...]) -> tuple[Figure, Axes, list[Series]]:
     figure = Figure(figsize=_SIZE, layout="constrained")
     axes = figure.add_subplot()
     axes.tick_params(length=0)
-    series = plan.draw(axes, comparison)
-    axes.set_xlabel("time [s]")
+    series = plan.draw(axes, runs)
+    axes.set_xlabel(plan.across)
     axes.xaxis.set_major_locator(MaxNLocator(6))
-    axes.set_xlim(0.0, max(run.time[-1] for run in comparison.runs) or 1.0)
+    if plan.is_over_time:
+        axes.set_xlim(0.0, max(run.time[-1] for run in runs) or 1.0)
+    if len(runs) > 1 and not axes.get_legend():
+        _legend(axes)
     return figure, axes, series
 
 
@@ -278,6 +331,18 @@ def _draw_force(axes: Axes, comparison: Comparison) -> list[Series]:
         _dashed(axes, weight, "weight")
     axes.set_yscale("log")
     axes.set_ylim(bottom=1.25 * _FORCE_FLOOR)  # hides the line along the floor
+    axes.set_ylabel("force [N]")
+    _legend(axes, columns=3)
+    return series
+
+
+def _draw_force_linear(axes: Axes, comparison: Comparison) -> list[Series]:
+    series = _both(axes, comparison, lambda run: run.contact_force)
+    if comparison.volumetric.weight > 0.0:
+        _dashed(axes, comparison.volumetric.weight, "weight")
+    usual = max(float(np.quantile(run.contact_force, 0.99)) for run in comparison.runs)
+    most = max(float(run.contact_force.max()) for run in comparison.runs)
+    axes.set_ylim(0.0, 1.1 * (usual if most > _TOWERS * usual > 0.0 else most) or 1.0)
     axes.set_ylabel("force [N]")
     _legend(axes, columns=3)
     return series

@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from volcontact.outside_work import CHANNELS as OUTSIDE
 from volcontact.recording import CHANNELS, Recording
 from volcontact.report.comparison import (
     Comparison,
@@ -17,13 +18,20 @@ from volcontact.report.comparison import (
     largest_rise,
     offset_from,
     peak,
-    unbalance,
 )
 from volcontact.report.design_pose import DesignPose, angle_between
 from volcontact.report.units import angle, area, digits, nominal, quantity, ratio
 
 _AT_REST = 1e-3  # [m/s]
-_SETTLED_SHARE = 0.1  # the last tenth of a run counts as its end
+_NO_WORK = 1e-12  # of a channel that is not told [J]
+_RISE = 1e-6  # of an energy that is worth a word [J], and of its range [-]
+_NATIVE = OUTSIDE.index("native")
+_WORKERS = {
+    "actuators": "actuators",
+    "dampers": "dampers",
+    "limits": "limits and friction of joints, and equalities,",
+    "native": "contacts that are left to MuJoCo",
+}
 
 Verdict = Literal["good", "bad", "plain"]
 
@@ -142,7 +150,7 @@ def _forces(comparison: Comparison) -> Iterator[Finding]:
         sentences.append(
             f"{_name(run)} begins at {digits(touch)} s and peaks with "
             f"{quantity(run.contact_force[peak], 'N')} at {digits(float(run.time[peak]))} s; at "
-            f"the end its forces add up to {quantity(_settled(run.contact_force), 'N')}"
+            f"the end its forces add up to {quantity(float(run.contact_force[-1]), 'N')}"
             f"{_share_of_weight(run)}."
         )
     a, b = (float(run.contact_force.max()) for run in comparison.runs)
@@ -207,14 +215,8 @@ def _sensors(comparison: Comparison) -> Iterator[Finding]:
 def _share_of_weight(run: Recording) -> str:
     if run.weight <= 0.0:
         return ""
-    share = _settled(run.contact_force) / run.weight
+    share = float(run.contact_force[-1]) / run.weight
     return f", {digits(share)} times the weight of {quantity(run.weight, 'N')}"
-
-
-def _settled(values: np.ndarray) -> float:
-    """Median over the last part of a run."""
-    count = max(1, round(_SETTLED_SHARE * len(values)))
-    return float(np.median(values[-count:]))
 
 
 def _penetration(comparison: Comparison) -> Iterator[Finding]:
@@ -226,7 +228,7 @@ def _penetration(comparison: Comparison) -> Iterator[Finding]:
         f"The deepest site reaches {quantity(a.penetration.max(), 'm')} under volumetric and "
         f"{quantity(b.penetration.max(), 'm')} under native contact "
         f"(native {ratio(b.penetration.max(), a.penetration.max())}); at the end it is "
-        f"{quantity(_settled(a.penetration), 'm')} and {quantity(_settled(b.penetration), 'm')}.",
+        f"{quantity(a.penetration[-1], 'm')} and {quantity(b.penetration[-1], 'm')}.",
     )
 
 
@@ -259,22 +261,58 @@ def _energy(comparison: Comparison) -> Finding:
         for name, value in zip(CHANNELS, a.dissipated[-1], strict=True)
         if spent > 0.0 and value > 1e-3 * spent
     )
-    text = (
-        f"Under volumetric contact the forces take {quantity(-float(a.work[-1]), 'J')} from the "
-        f"motion and {quantity(spent, 'J')} are dissipated"
-        f"{f' ({channels})' if channels else ''}{_made_by_step(a)}. "
-        f"Unaccounted for: {quantity(float(np.abs(unbalance(a)).max()), 'J')} at most, "
-        f"{quantity(abs(float(unbalance(a)[-1])), 'J')} at the end."
-    )
-    change = b.energy[-1] - b.energy[0]
-    verb = "gains" if change > 0.0 else "loses"
-    text += (
-        f" Native contact {verb} {quantity(abs(change), 'J')} of mechanical energy and does not "
-        "say where"
-    )
-    rise = largest_rise(b.energy)
-    text += f"; it once stood {quantity(rise, 'J')} above an earlier value." if rise > 1e-6 else "."
+    text = "Volumetric contact does nothing."
+    if a.site_count.any() or spent > 0.0:
+        text = (
+            f"Volumetric contact {_does(float(a.work[-1]))}, and {quantity(spent, 'J')} are "
+            f"dissipated{f' ({channels})' if channels else ''}{_made_by_step(a)}."
+        )
+    text += _outside(a, native=False) + _unaccounted(a)
+    by_contact = float(b.outside_work[-1, _NATIVE])
+    did = _does(by_contact) if b.site_count.any() else "does nothing"
+    text += f" Native contact {did}.{_outside(b, native=True)}{_unaccounted(b)}"
+    if b.site_count.any():
+        text += " It keeps no account of what it stores and dissipates."
+    rise = largest_rise(b.energy - b.outside_work[:, :_NATIVE].sum(axis=1))
+    if rise > max(_RISE, _RISE * float(np.ptp(b.energy))):
+        text += (
+            f" What it left, less what others put in, once stood {quantity(rise, 'J')} above an "
+            "earlier value."
+        )
     return Finding("Energy", text)
+
+
+def _does(work: float) -> str:
+    """What contact forces do on the motion."""
+    verb = "take" if work <= 0.0 else "give"
+    return f"{verb}s {quantity(abs(work), 'J')} {'from' if work <= 0.0 else 'to'} the motion"
+
+
+def _outside(run: Recording, *, native: bool) -> str:
+    """What else does work: actuators, dampers, limits, and in mixed scenes native contact."""
+    told = []
+    for i, name in enumerate(OUTSIDE):
+        work = run.outside_work[:, i]
+        if (native and i == _NATIVE) or float(np.abs(work).max()) <= _NO_WORK:
+            continue
+        who = _WORKERS[name]
+        told.append(
+            f"{who} {'put in' if work[-1] >= 0.0 else 'take'} {quantity(abs(float(work[-1])), 'J')}"
+        )
+    if run.driven.any():
+        told.append(f"mocap bodies put in {quantity(float(run.driven[-1]), 'J')}")
+    if not told:
+        return ""
+    sentence = ", ".join(told)
+    return f" {sentence[0].upper()}{sentence[1:]}."
+
+
+def _unaccounted(run: Recording) -> str:
+    rest = run.unbalance()
+    return (
+        f" Unaccounted for: {quantity(float(np.abs(rest).max()), 'J')} at most, "
+        f"{quantity(abs(float(rest[-1])), 'J')} at the end."
+    )
 
 
 def _made_by_step(run: Recording) -> str:

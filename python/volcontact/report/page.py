@@ -59,6 +59,7 @@ def page(comparison: Comparison, pairs: list[FramePair], made: list[Curve]) -> s
         tables=[table for table in parts if len(table.rows) <= 12],
         long_tables=[table for table in parts if len(table.rows) > 12],
         scene_warnings=run.description.get("warnings", ()),
+        notes=tuple(dict.fromkeys(note for each in comparison.runs for note in each.notes)),
         step_error=comparison.error_of_step,
         step_words=step_error,
         reference=quantity(reference_force(comparison), "N"),
@@ -95,7 +96,7 @@ _MOST_ROWS = 40  # of the sites of a frame; more are counted, not listed
 def _script_data(comparison: Comparison, made: list[Curve]) -> Markup:
     """What the page's script reads: the numbers of the curves, and the sites of every frame."""
     data = {
-        "curves": {curve.name: curve.data for curve in made},
+        "curves": {curve.name: curve.data for curve in made if curve.data},
         "sites": {
             run.contact: [_site_rows(run, frame) for frame in run.frames] for run in comparison.runs
         },

@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.csv as csv
 import pyarrow.parquet as pq
 
+from volcontact.outside_work import CHANNELS as OUTSIDE
 from volcontact.printable import cell
 from volcontact.recording import CHANNELS, Recording
 
@@ -27,10 +28,13 @@ _UNITS = {
     **{f"dissipated_{channel}": "J" for channel in CHANNELS},
     "work": "J",
     "numerical": "J",
+    **{f"work_of_{channel}": "J" for channel in OUTSIDE},
 }
 _POSE = (("x", "m"), ("y", "m"), ("z", "m"), ("qw", "1"), ("qx", "1"), ("qy", "1"), ("qz", "1"))
-
-
+_WRENCH = (
+    *((f"force_{axis}", "N") for axis in "xyz"),
+    *((f"torque_{axis}", "N m") for axis in "xyz"),
+)
 _SITE_UNITS = {
     "position": "m",
     "normal": "1",
@@ -109,18 +113,27 @@ def _cells(column: pa.ChunkedArray) -> pa.Array:
     return pa.array([cell(text) for text in column.to_pylist()], pa.string())
 
 
-def _table(run: Recording) -> pa.Table:
-    columns: dict[str, tuple[pa.Array, str]] = {
-        "contact": (pa.array([run.contact] * len(run.time)).dictionary_encode(), "1")
-    }
-    for name, unit in _UNITS.items():
-        columns[name] = (pa.array(_column(run, name)), unit)
+def columns_of(run: Recording) -> dict[str, tuple[np.ndarray, str]]:
+    """All numbers of a run that have one value an instant: values, shape (n,), and unit by name."""
+    columns = {name: (_column(run, name), unit) for name, unit in _UNITS.items()}
     for i, body in enumerate(run.bodies):
         pose = np.hstack([run.position[:, i], run.quaternion[:, i]])
         for j, (name, unit) in enumerate(_POSE):
-            columns[f"{body}.{name}"] = (pa.array(pose[:, j]), unit)
-        columns[f"{body}.speed"] = (pa.array(run.speed[:, i]), "m/s")
-        columns[f"{body}.spin"] = (pa.array(run.spin[:, i]), "rad/s")
+            columns[f"{body}.{name}"] = (pose[:, j], unit)
+        columns[f"{body}.speed"] = (run.speed[:, i], "m/s")
+        columns[f"{body}.spin"] = (run.spin[:, i], "rad/s")
+    for body, wrench in run.wrench_on.items():
+        for i, (name, unit) in enumerate(_WRENCH):
+            columns[f"{body}.{name}"] = (wrench[:, i], unit)
+    columns |= {name: (signal.values, signal.unit) for name, signal in run.signals.items()}
+    return columns
+
+
+def _table(run: Recording) -> pa.Table:
+    kind = pa.array([run.contact] * len(run.time)).dictionary_encode()
+    columns: dict[str, tuple[pa.Array, str]] = {"contact": (kind, "1")}
+    for name, (values, unit) in columns_of(run).items():
+        columns[name] = (pa.array(np.ascontiguousarray(values)), unit)
     for name, rows, unit in (("qpos", run.qpos, "m, rad"), ("qvel", run.qvel, "m/s, rad/s")):
         if rows.shape[1] > 0:
             columns[name] = (_lists(rows), unit)
@@ -137,6 +150,8 @@ def _table(run: Recording) -> pa.Table:
 def _column(run: Recording, name: str) -> np.ndarray:
     if name.startswith("dissipated_"):
         return run.dissipated[:, CHANNELS.index(name.removeprefix("dissipated_"))]
+    if name.startswith("work_of_"):
+        return run.outside_work[:, OUTSIDE.index(name.removeprefix("work_of_"))]
     if name == "step_microseconds":  # the last row is a state after which no step was taken
         return np.append(run.step_microseconds, np.nan)
     return np.asarray(getattr(run, name))

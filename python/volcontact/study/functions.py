@@ -9,8 +9,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from volcontact.spelling import nearest
 from volcontact.study.settings import StudyError
-from volcontact.study.table import nearest
 
 
 class Functions:

@@ -8,8 +8,8 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from volcontact.spelling import nearest
 from volcontact.study.settings import Condition, StudyError
-from volcontact.study.table import nearest
 from volcontact.study.targets import joint_place
 from volcontact.watched import Kind, Number, Range, number
 

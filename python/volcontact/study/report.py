@@ -17,12 +17,12 @@ from matplotlib.figure import Figure
 from volcontact._files import appearing
 from volcontact.printable import printable
 from volcontact.report.svg import standing_alone
+from volcontact.spelling import nearest
 from volcontact.study import figures
 from volcontact.study.driver import settings_of
 from volcontact.study.estimates import rare_event, sensitivity, wilson
 from volcontact.study.results import Folder
 from volcontact.study.settings import Settings, StudyError
-from volcontact.study.table import nearest
 
 _PAGE = """\
 <!doctype html>

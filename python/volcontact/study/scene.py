@@ -11,10 +11,10 @@ import numpy as np
 from volcontact import scene as volumetric_scene
 from volcontact.given_keys import GivenKeys
 from volcontact.simulation import native_model
+from volcontact.spelling import nearest
 from volcontact.study.ending import Ending
 from volcontact.study.quantities import Quantities, keyframe_id
 from volcontact.study.settings import Settings, StudyError
-from volcontact.study.table import nearest
 from volcontact.study.targets import LiveNumbers, Target
 from volcontact.watched import Watch
 

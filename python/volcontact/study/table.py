@@ -3,24 +3,14 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Iterable
 from typing import Any
 
+from volcontact.spelling import nearest
 from volcontact.study.settings import Condition, StudyError
 
 _REQUIRED = object()
-
-
-def nearest(word: str, words: Iterable[str]) -> str:
-    """The hint `; did you mean ...?`, or what there is."""
-    known = sorted(words)
-    near = difflib.get_close_matches(word, known, n=1)
-    if near:
-        return f"; did you mean {near[0]!r}?"
-    shown = ", ".join(known[:12]) + (", ..." if len(known) > 12 else "")
-    return f"; there is {shown}" if known else "; there is none"
 
 
 class Table:

@@ -9,6 +9,7 @@ from typing import Any
 import mujoco
 
 from volcontact.recording import CHANNELS
+from volcontact.spelling import nearest
 from volcontact.study.control import POLICIES, check_control, make_controller
 from volcontact.study.designs import trial_generator
 from volcontact.study.episode import Episode, Watcher
@@ -16,7 +17,6 @@ from volcontact.study.functions import Functions
 from volcontact.study.mjcf import Document
 from volcontact.study.scene import Scene
 from volcontact.study.settings import ADAPTIVE, Settings, StudyError
-from volcontact.study.table import nearest
 from volcontact.study.targets import changed_text, targets_of
 
 Row = dict[str, Any]

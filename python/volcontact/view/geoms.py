@@ -25,17 +25,17 @@ def geom_triangles(model: mujoco.MjModel, geom: int) -> Triangles | None:
         corners = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]) * [*half, 0.0]
         return corners, np.array([[0, 1, 2], [0, 2, 3]])
     if kind == int(kinds.mjGEOM_BOX):
-        return _box(size)
+        return box_triangles(size)
     if kind == int(kinds.mjGEOM_SPHERE):
-        return _round(_arc(size[0], 0.0))
+        return turned(arc(size[0], 0.0))
     if kind == int(kinds.mjGEOM_ELLIPSOID):
-        points, faces = _round(_arc(1.0, 0.0))
+        points, faces = turned(arc(1.0, 0.0))
         return points * size, faces
     if kind == int(kinds.mjGEOM_CAPSULE):
-        return _round(_arc(size[0], size[1]))
+        return turned(arc(size[0], size[1]))
     if kind == int(kinds.mjGEOM_CYLINDER):
         radius, half = size[0], size[1]
-        return _round(np.array([[0.0, -half], [radius, -half], [radius, half], [0.0, half]]))
+        return turned(np.array([[0.0, -half], [radius, -half], [radius, half], [0.0, half]]))
     if kind == int(kinds.mjGEOM_MESH):
         return _mesh(model, int(model.geom_dataid[geom]))
     if kind == int(kinds.mjGEOM_HFIELD):
@@ -43,13 +43,14 @@ def geom_triangles(model: mujoco.MjModel, geom: int) -> Triangles | None:
     return None
 
 
-def _box(half: np.ndarray) -> Triangles:
+def box_triangles(half: np.ndarray) -> Triangles:
+    """A box of these half sizes; its triangles look outwards."""
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * half
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     return corners, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
 
 
-def _arc(radius: float, half_length: float) -> np.ndarray:
+def arc(radius: float, half_length: float) -> np.ndarray:
     """Outline of a ball, or of a capsule, from pole to pole: radius and height, shape (n, 2)."""
     angles = np.linspace(-np.pi / 2, np.pi / 2, _SIDES // 2 + 1)
     heights = radius * np.sin(angles)
@@ -62,7 +63,7 @@ def _arc(radius: float, half_length: float) -> np.ndarray:
     return np.concatenate([lower - shift, upper + shift])
 
 
-def _round(outline: np.ndarray) -> Triangles:
+def turned(outline: np.ndarray) -> Triangles:
     """The solid that an outline sweeps about the z axis; its triangles look outwards."""
     turn = 2.0 * np.pi * np.arange(_SIDES) / _SIDES
     circle = np.column_stack([np.cos(turn), np.sin(turn)])

@@ -7,11 +7,13 @@ import math
 import re
 import shutil
 import subprocess
+from pathlib import Path
 
 import pytest
 
 from volcontact.cli import main, make_parser
 from volcontact.cli.new import TEMPLATES
+from volcontact.driving import Drive
 from volcontact.simulation import simulate
 from volcontact.typed_solids import SHAPES
 
@@ -31,7 +33,9 @@ def test_template_runs_at_once_and_comes_to_rest(template, tmp_path, monkeypatch
     assert made["scene"] == "mine/scene.xml"
     assert main(["check", "mine/scene.xml"]) == 0
     assert capsys.readouterr().err == ""
-    run = simulate("mine/scene.xml", duration=1.5)
+    press = Path("mine/press.csv")
+    drive = Drive(table=press if press.exists() else None)
+    run = simulate("mine/scene.xml", duration=1.5, drive=drive)
     assert not run.warnings and run.stopped is None
     assert run.site_count[-1] > 0
     assert run.speed[-1].max() < 1e-3

@@ -11,7 +11,6 @@ from volcontact.report.comparison import (
     Limits,
     first_touch,
     largest_rise,
-    unbalance,
 )
 from volcontact.report.figures import curves
 from volcontact.report.findings import findings
@@ -22,7 +21,7 @@ def test_figures_of_a_run():
     run = recording()
     assert first_touch(run) == pytest.approx(1.0)
     assert first_touch(dataclasses.replace(run, site_count=np.zeros(101, int))) is None
-    assert np.abs(unbalance(run)).max() < 1e-12
+    assert np.abs(run.unbalance()).max() < 1e-12
     assert largest_rise(np.array([5.0, 3.0, 4.5, 1.0, 2.0])) == 1.5
     assert largest_rise(np.array([3.0, 2.0, 1.0])) == 0.0
 
@@ -87,10 +86,11 @@ def test_findings_compare_pose_force_depth_places_energy_and_cost():
     assert "At most 2 sites at once under volumetric and 8 contact points" in places
     assert "200 cm²" in places
     energy = sentence(made, "Energy")
-    assert "the forces take 30.0 J from the motion and 30.0 J are dissipated" in energy
+    assert "Volumetric contact takes 30.0 J from the motion, and 30.0 J are dissipated" in energy
     assert "(normal 30.0 J). Unaccounted for: " in energy
-    assert "loses 23.0 J" in energy  # 30 J of height less the 7 J of motion that appear
-    assert "it once stood 7.00 J above an earlier value" in energy
+    assert "Native contact takes 30.0 J from the motion." in energy
+    assert "Unaccounted for: 7.00 J at most, 7.00 J at the end. It keeps" in energy  # of motion
+    assert "once stood 7.00 J above an earlier value" in energy
     assert "20.0 µs under volumetric and 10.0 µs" in sentence(made, "Cost")
     assert "2.00 times" in sentence(made, "Cost")
 
@@ -163,7 +163,7 @@ def test_energy_says_what_the_step_made_of_impacts():
     work = 0.9 * run.work
     short = dataclasses.replace(run, work=work, numerical=-work - run.dissipated[:, 0])
     text = sentence(comparison(volumetric=short), "Energy")
-    assert "take 27.0 J from the motion and 30.0 J are dissipated" in text
+    assert "takes 27.0 J from the motion, and 30.0 J are dissipated" in text
     assert "(normal 30.0 J): 3.00 J too much, which is the error of a finite step" in text
     # The scene lost 30 J, and the forces took 27 of them.
     assert "Unaccounted for: 3.00 J at most, 3.00 J at the end." in text

@@ -10,6 +10,7 @@ from volcontact.report import Comparison
 from volcontact.report.design_pose import DesignPose
 from volcontact.report.findings import findings
 from volcontact.report.pictures import FramePair
+from volcontact.signals import Signal
 
 DESIGN = DesignPose(
     body="box",
@@ -77,11 +78,17 @@ def recording(contact: str = "volumetric", **changes) -> Recording:
         kinetic=np.zeros(n),
         potential=potential,
         elastic=np.zeros(n),
-        dissipated=dissipated,
+        dissipated=dissipated if contact == "volumetric" else np.zeros((n, 4)),
         work=-dissipated[:, 0],
         numerical=np.zeros(n),
         driven=np.zeros(n),
         made=np.zeros(n),
+        # Native contact, the last channel, takes what the box loses.
+        outside_work=np.zeros((n, 4))
+        if contact == "volumetric"
+        else np.column_stack([np.zeros((n, 3)), -dissipated[:, 0]]),
+        signals={"joint.slide.position": Signal(height - 0.5, "m")},
+        wrench_on={"box": np.zeros((n, 6))},
         contact_force=np.where(touching, 100.0, 0.0),
         largest_site_force=np.where(touching, 50.0, 0.0),
         site_count=np.where(touching, 2, 0),
