@@ -204,6 +204,8 @@ def converge(
     if not 0.0 < within < 1.0:
         raise SimulationError(f"within = {within:g} must be above 0 and below 1")
 
+    design = None if isinstance(scene, mujoco.MjModel) else read_design_pose(str(scene))
+
     def run(step: float | None, name: str, extra: Values | None = None) -> Recording:
         def told(done: int, total: int) -> None:
             if progress is not None:
@@ -218,10 +220,10 @@ def converge(
             material=material,
             options={**dict(options or {}), **dict(extra or {})} or None,
             drive=drive,
+            follow=() if design is None else (design.body,),
             progress=told,
         )
 
-    design = None if isinstance(scene, mujoco.MjModel) else read_design_pose(str(scene))
     runs = [first if first is not None else run(timestep, "1")]
     longest = runs[0].timestep
     steps = tuple(longest / 2**level for level in range(levels))

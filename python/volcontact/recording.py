@@ -61,7 +61,8 @@ class Recording:
     Attributes:
         contact: "volumetric" or "native".
         timestep: [s].
-        bodies: names of the bodies followed: those with a free joint, else all that can move.
+        bodies: names of the bodies followed: those asked for, and those with a free joint, else all
+            that have joints.
         time: [s], shape (n,).
         qpos: shape (n, nq).
         qvel: shape (n, nv).

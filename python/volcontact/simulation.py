@@ -54,6 +54,7 @@ def simulate(
     material: Values | None = None,
     options: Values | None = None,
     drive: Drive | None = None,
+    follow: Sequence[str] = (),
     progress: Progress | None = None,
 ) -> Recording:
     """Steps a scene for a while, from a keyframe if it has one, and records it.
@@ -68,6 +69,7 @@ def simulate(
         options: likewise.
         drive: where it starts, and its controls over time; None starts it at the keyframe called
             `start`, where there is one, and leaves all controls as they are there.
+        follow: names of bodies to follow besides, as one that another carries.
         progress: called now and then with (steps done, steps in all).
 
     Returns:
@@ -90,7 +92,7 @@ def simulate(
     driver = Driver(model, drive or Drive())
     driver.start(data)
     with probe(contact, model, keys) as reader:
-        recorder = RunRecorder(model, reader, steps, frame_interval)
+        recorder = RunRecorder(model, reader, steps, frame_interval, follow)
         recorder.notes = driver.notes()
         every = max(1, steps // _PROGRESS_CALLS)
         for i in range(steps):
@@ -167,14 +169,20 @@ class RunRecorder:
         probe: of its contact.
         steps: there will be at most.
         frame_interval: time between two frames to draw [s]; None records no frames.
+        follow: names of bodies to follow besides.
     """
 
     def __init__(
-        self, model: mujoco.MjModel, probe: Probe, steps: int, frame_interval: float | None
+        self,
+        model: mujoco.MjModel,
+        probe: Probe,
+        steps: int,
+        frame_interval: float | None,
+        follow: Sequence[str] = (),
     ) -> None:
         self._model = model
         self._probe = probe
-        self._ids = _bodies_followed(model)
+        self._ids = _bodies_followed(model, follow)
         self._geom_bodies = model.geom_bodyid.copy()
         rows, bodies = steps + 1, len(self._ids)
         self._rows = 0
@@ -347,13 +355,15 @@ class RunRecorder:
             self._frames.append(Frame(row, float(self._time[row]), sites, shapes))
 
 
-def _bodies_followed(model: mujoco.MjModel) -> list[int]:
+def _bodies_followed(model: mujoco.MjModel, names: Sequence[str]) -> list[int]:
     free = [
         int(model.jnt_bodyid[j])
         for j in range(model.njnt)
         if model.jnt_type[j] == int(mujoco.mjtJoint.mjJNT_FREE)
     ]
-    return free or [b for b in range(1, model.nbody) if model.body_dofnum[b] > 0]
+    found = free or [b for b in range(1, model.nbody) if model.body_dofnum[b] > 0]
+    asked = [mujoco.mj_name2id(model, int(mujoco.mjtObj.mjOBJ_BODY), name) for name in names]
+    return [*(body for body in asked if body > 0 and body not in found), *found]
 
 
 def _bodies_with_geoms(model: mujoco.MjModel) -> list[int]:

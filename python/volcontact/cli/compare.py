@@ -130,6 +130,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
                 material=dict(arguments.material),
                 options=dict(arguments.option),
                 drive=drive,
+                follow=() if design is None else (design.body,),
                 frame_interval=arguments.frame_interval,
                 progress=bars.task(f"{contact} contact"),
             )

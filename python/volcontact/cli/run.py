@@ -114,6 +114,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             material=dict(arguments.material),
             options=dict(arguments.option),
             drive=drive_of(arguments),
+            follow=() if design is None else (design.body,),
             frame_interval=None,
             progress=bars.task(f"{arguments.contact} contact"),
         )
