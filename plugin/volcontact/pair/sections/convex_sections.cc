@@ -28,8 +28,8 @@ constexpr double kLeastSeen = 1e-12;
 constexpr int kLeastArcs = 4;         // where no corners are known
 constexpr double kWidestAngle = 2.3;  // of an arc between corners [rad]
 
-// The shortest turn of one direction to another that is not opposite. Eigen's FromTwoVectors, in the
-// same bits, without the singular values that it needs for opposite ones: seconds to compile.
+// The shortest turn of one direction to another that is not opposite. Eigen's FromTwoVectors, in
+// the same bits, without the singular values that it needs for opposite ones: seconds to compile.
 Mat3 turn_between(const Vec3& from, const Vec3& to) {
   const Vec3 v0 = from.normalized(), v1 = to.normalized();
   const double s = std::sqrt((1.0 + v1.dot(v0)) * 2.0);
