@@ -15,11 +15,14 @@ using Mat3 = Eigen::Matrix3d;
 // than its operators, and leave few types. They round as Eigen does: the same bits.
 namespace vector_operators {
 
-/// A vector of three, or an expression of Eigen's for one.
+/// A vector of three, or an expression for one whose numbers Eigen can load in pairs. Others, such
+/// as the transpose of a row, stay its own: of them it adds in another order.
 template <typename T>
-concept Column =
-    std::derived_from<T, Eigen::MatrixBase<T>> && std::same_as<typename T::Scalar, double> &&
-    T::RowsAtCompileTime == 3 && T::ColsAtCompileTime == 1;
+concept Column = std::same_as<T, Vec3> ||
+                 (std::derived_from<T, Eigen::MatrixBase<T>> &&
+                  std::same_as<typename T::Scalar, double> && T::RowsAtCompileTime == 3 &&
+                  T::ColsAtCompileTime == 1 &&
+                  (Eigen::internal::evaluator<T>::Flags & Eigen::PacketAccessBit) != 0);
 template <typename T>
 concept Number = std::is_arithmetic_v<T>;
 template <typename T>
@@ -55,10 +58,13 @@ VOLCONTACT_VECTOR_INLINE Vec3 multiple(double s, const Vec3& a) {
 VOLCONTACT_VECTOR_INLINE Vec3 quotient(const Vec3& a, double s) {
   return {a.x() / s, a.y() / s, a.z() / s};
 }
-/// Row i of m times a. Of three, Eigen adds the last two first.
-template <Square M>
-VOLCONTACT_VECTOR_INLINE double row_times(const M& m, int i, double x, double y, double z) {
-  return at(m, i, 0) * x + (at(m, i, 1) * y + at(m, i, 2) * z);
+
+/// x + y + z as Eigen adds them. It makes the first two rows of a product as a pair, from its left
+/// factor column by column, and the third by itself.
+template <Square A, bool kTransposedToo = false>
+VOLCONTACT_VECTOR_INLINE double sum_of_row(int i, double x, double y, double z) {
+  const bool from_left = Transposed<A> ? !kTransposedToo : i < 2;
+  return from_left ? (x + y) + z : x + (y + z);
 }
 
 }  // namespace vector_operators
@@ -90,16 +96,20 @@ VOLCONTACT_VECTOR_INLINE Vec3 operator/(const A& a, S s) {
 
 template <vector_operators::Square M, vector_operators::Column A>
 VOLCONTACT_VECTOR_INLINE Vec3 operator*(const M& m, const A& a) {
-  using vector_operators::row_times;
+  using vector_operators::at;
   const Vec3& v = vector_operators::plain(a);
-  return {row_times(m, 0, v.x(), v.y(), v.z()), row_times(m, 1, v.x(), v.y(), v.z()),
-          row_times(m, 2, v.x(), v.y(), v.z())};
+  const auto entry = [&](int i) {
+    return vector_operators::sum_of_row<M>(i, at(m, i, 0) * v.x(), at(m, i, 1) * v.y(),
+                                           at(m, i, 2) * v.z());
+  };
+  return {entry(0), entry(1), entry(2)};
 }
 template <vector_operators::Square A, vector_operators::Square B>
 VOLCONTACT_VECTOR_INLINE Mat3 operator*(const A& a, const B& b) {
   using vector_operators::at;
   const auto entry = [&](int i, int j) {
-    return vector_operators::row_times(a, i, at(b, 0, j), at(b, 1, j), at(b, 2, j));
+    return vector_operators::sum_of_row<A, vector_operators::Transposed<B>>(
+        i, at(a, i, 0) * at(b, 0, j), at(a, i, 1) * at(b, 1, j), at(a, i, 2) * at(b, 2, j));
   };
   Mat3 c;
   c.coeffRef(0, 0) = entry(0, 0);

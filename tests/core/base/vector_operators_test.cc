@@ -65,6 +65,14 @@ TEST(VectorOperators, ProductsHaveEigensBits) {
     EXPECT_EQ(m * n, Mat3(m.operator*(n)));
     EXPECT_EQ(m.transpose() * n, Mat3(m.transpose().operator*(n)));
     EXPECT_EQ(m * n.transpose(), Mat3(m.operator*(n.transpose())));
+    EXPECT_EQ(m.transpose() * n.transpose(), Mat3(m.transpose().operator*(n.transpose())));
+    EXPECT_EQ(m * n.col(1), Vec3(m.operator*(n.col(1))));
+    // Not a column that can be loaded in pairs: of Eigen's type, which adds in another order.
+    const auto row = m.row(0).transpose() - a;
+    static_assert(!std::is_same_v<std::decay_t<decltype(row)>, Vec3>);
+    EXPECT_EQ((m.col(0) - a).norm(), m.col(0).operator-(a).norm());
+    EXPECT_EQ((a - 2.0 * m.col(1)).dot(n.col(2)),
+              a.operator-(m.col(1).operator*(2.0)).dot(n.col(2)));
   }
 }
 
