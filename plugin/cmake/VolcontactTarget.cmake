@@ -18,6 +18,7 @@ function(volcontact_target name)
     VISIBILITY_INLINES_HIDDEN ON
     POSITION_INDEPENDENT_CODE ON
     UNITY_BUILD ${VOLCONTACT_UNITY}
+    UNITY_BUILD_RELOCATABLE ON  # the same text in every checkout, for the compiler cache
     COMPILE_WARNING_AS_ERROR ${VOLCONTACT_WARNINGS_AS_ERRORS})
 endfunction()
 
@@ -29,6 +30,9 @@ function(volcontact_unity_by_folder name)
   foreach(source IN LISTS sources)
     cmake_path(GET source PARENT_PATH folder)
     string(MAKE_C_IDENTIFIER "${folder}" group)
+    if(NOT folder)
+      set(group of_target)
+    endif()
     if(NOT source IN_LIST argument_ALONE)
       set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
     endif()
@@ -38,7 +42,8 @@ endfunction()
 
 option(VOLCONTACT_PRECOMPILE "Parse the headers that most sources need once for all of them" ON)
 
-# Headers that most sources of a target need, by full paths or as <name>. A source must still include
+# Headers that most sources of a target need, as <name>: a path would differ from checkout to
+# checkout, and the compiler cache with it. A source must still include
 # what it uses: the build under the sanitizers precompiles nothing. FROM another target of the same
 # flags takes what that one has.
 function(volcontact_precompile name)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import shutil
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -85,9 +86,21 @@ def prepared(release: str | None = None, *, tests: bool = False) -> Environment:
             if not _is_up_to_date(located(release), tests):
                 need_system()
                 use_compiler_cache()
-                build_core_if_older()
-                _install_package(_made(release), tests)
+                # Compiling waits for processors, installing for the network.
+                with ThreadPoolExecutor(1) as beside:
+                    core = beside.submit(build_core_if_older)
+                    environment = _made(release)
+                    _install_requirements(environment, tests)
+                    core.result()
+                _install_package(environment)
     return located(release)
+
+
+def furnish(release: str) -> None:
+    """Makes the environment of a release with all that its tests need, without volcontact."""
+    with locked():
+        if not _is_up_to_date(located(release), tests=True):
+            _install_requirements(_made(release), tests=True)
 
 
 # The stamp holds the checkout's path: a moved checkout is set up anew.
@@ -123,14 +136,25 @@ def _made(release: str) -> Environment:
     return environment
 
 
-def _install_package(environment: Environment, tests: bool) -> None:
-    say(f"building volcontact for MuJoCo {environment.version}")
-    mujoco = f"mujoco=={environment.version}"
-    environment.install(mujoco, "scikit-build-core", "nanobind")
+def _install_requirements(environment: Environment, tests: bool) -> None:
+    """All that volcontact needs there to be built and run."""
     wanted = environment.venv / ".tests"
     if tests:
         wanted.touch()
-    extras = "[test]" if wanted.exists() else "[gym,report,study,view]"
+    extras = (word for extra in _extras(environment) for word in ("--extra", extra))
+    environment.install(
+        f"mujoco=={environment.version}", "scikit-build-core", "nanobind",
+        "-r", ROOT / "pyproject.toml", *extras,
+    )  # fmt: skip
+
+
+def _extras(environment: Environment) -> list[str]:
+    wants_tests = (environment.venv / ".tests").exists()
+    return ["test"] if wants_tests else ["gym", "report", "study", "view"]
+
+
+def _install_package(environment: Environment) -> None:
+    say(f"building volcontact for MuJoCo {environment.version}")
     started = environment.venv / ".building"  # older than any edit made during the build
     started.write_text(f"{ROOT}\n")
     settings = {
@@ -147,10 +171,10 @@ def _install_package(environment: Environment, tests: bool) -> None:
         f"-Cbuild-dir={environment.tree}",
         *(f"-Ccmake.define.{name}={value}" for name, value in settings.items()),
         "-e",
-        f"{ROOT}{extras}",
-        mujoco,
+        f"{ROOT}[{','.join(_extras(environment))}]",
+        f"mujoco=={environment.version}",
     )
-    if wanted.exists() and environment == located("newest"):
+    if (environment.venv / ".tests").exists() and environment == located("newest"):
         _install_hosts(environment)
     started.replace(environment.venv / ".ready")
 

@@ -68,8 +68,11 @@ def use_compiler_cache() -> None:
             "CMAKE_CXX_COMPILER_LAUNCHER": "ccache",
             "CCACHE_BASEDIR": str(ROOT),
             "CCACHE_NOHASHDIR": "1",
-            # Precompiled headers: their contents count, not when they were written.
-            "CCACHE_SLOPPINESS": "pch_defines,time_macros,include_file_mtime,include_file_ctime",
+            # The headers are looked at after the compiler has read them, and nothing is kept where
+            # one is newer than its start. Else the cache reads them twice, and what was compiled
+            # from a header in the middle of an edit is kept as made from the one before it.
+            "CCACHE_DEPEND": "1",
+            "CCACHE_SLOPPINESS": "pch_defines,time_macros",  # precompiled headers ask for both
         }
 
 

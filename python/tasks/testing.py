@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import shutil
@@ -12,7 +13,7 @@ from pathlib import Path
 
 from tasks.building import CORE, build, build_core, configure
 from tasks.cgal import NoCgal, build_cgal, link_cgal
-from tasks.environments import BASELINE, Environment, NoPython, prepared
+from tasks.environments import BASELINE, Environment, NoPython, furnish, prepared
 from tasks.fmi_sim import NoFmiSim, build_fmi_sim
 from tasks.shell import BUILD, JOBS, RESULTS, ROOT, TOOLS, run, stop
 from tasks.sites import build_site
@@ -52,8 +53,10 @@ def _need_packages(arguments: list[str]) -> None:
 def _test_all(stages: Stages) -> None:
     site = stages.beside("Documentation", lambda: build_site(quiet=True))
     releases = [release] if (release := os.environ.get("MUJOCO")) else ["newest", BASELINE]
+    furnished = stages.beside("Python environments", lambda: _furnish(releases))
     core = stages.run("Core: build of its tests", _build_core_tests)
     site()
+    furnished()
     cgal = stages.beside("The CGAL program", lambda: _build_cgal(stages))
     if core:
         stages.run("Core: C++ tests", lambda: ctest(CORE, "cpp-core"))
@@ -61,6 +64,13 @@ def _test_all(stages: Stages) -> None:
     stages.run("fmi-sim, a master of FMUs", lambda: _build_fmi_sim(stages))
     for number, release in enumerate(releases):
         _test_release(stages, release, everything=number == 0)
+
+
+def _furnish(releases: list[str]) -> None:
+    """What comes from the network, while the compiler works."""
+    for release in releases:
+        with contextlib.suppress(NoPython):  # said where the release is tested
+            furnish(release)
 
 
 def _build_core_tests() -> None:

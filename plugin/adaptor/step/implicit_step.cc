@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adaptor/step/implicit_step.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "adaptor/mujoco/sizes.h"
+#include "volcontact/base/symmetric_eigen.h"
 
 namespace volcontact::adaptor {
 namespace {
@@ -73,7 +73,7 @@ void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& fa
   }
   // Where the force acts, times the force.
   const Vec2 moment(-torque[1], torque[0]);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal(spread);
+  const auto principal = symmetric_eigen(spread);
   const double number = step * step * k;
   const double share =
       parts == ImplicitParts::kStiff ? implicit_share(number * mobility(0, 0)) : 1.0;
@@ -83,8 +83,8 @@ void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& fa
   double reach[2] = {0.0, 0.0}, lean[2] = {0.0, 0.0};
   bool split[2] = {false, false};
   for (int i = 0; i < 2; ++i) {
-    const Vec2 axis = principal.eigenvectors().col(i);
-    const double square = std::max(0.0, principal.eigenvalues()[i]);
+    const Vec2 axis = principal.vectors.col(i);
+    const double square = std::max(0.0, principal.values[i]);
     const Vec2 turn(axis[1], -axis[0]);
     const double turn_number =
         number * square * turn.dot(mobility.bottomRightCorner<2, 2>() * turn);
@@ -102,8 +102,8 @@ void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& fa
     if (!split[0] && s0 > 0.0) continue;
     for (const double s1 : {-1.0, 1.0}) {
       if (!split[1] && s1 > 0.0) continue;
-      const Vec2 at = place + s0 * reach[0] * principal.eigenvectors().col(0) +
-                      s1 * reach[1] * principal.eigenvectors().col(1);
+      const Vec2 at = place + s0 * reach[0] * principal.vectors.col(0) +
+                      s1 * reach[1] * principal.vectors.col(1);
       Point& point = site.points[size(site.point_count++)];
       point.motion = {1.0, at.y(), -at.x()};
       point.constant = std::max(0.0, (force + s0 * lean[0] + s1 * lean[1]) / count);
@@ -125,7 +125,7 @@ void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& fa
   site.rolls.setZero();
   for (int i = 0; i < 2; ++i) {
     if (split[i]) continue;
-    const Vec2 axis = principal.eigenvectors().col(i);
+    const Vec2 axis = principal.vectors.col(i);
     const Vec3 turn(0.0, axis[1], -axis[0]);
     const double about = turn.dot(tangent.damping * turn);
     site.rolls.col(1 + i) = std::sqrt(std::max(0.0, about)) * turn;

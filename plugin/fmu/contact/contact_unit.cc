@@ -33,13 +33,13 @@ void find_states(const vc_model* model, int& first, int& last) {
 
 constexpr std::ptrdiff_t kMemoryHead = 4;  // of Memory, packed: then the values
 
+}  // namespace
+
 void check(int code) {
   if (code >= 0) return;
   if (code == VC_ERROR_ARGUMENT || code == VC_ERROR_RESULT) throw Discarded(vc_error());
   throw std::runtime_error(vc_error());
 }
-
-}  // namespace
 
 std::vector<double> Memory::packed() const {
   std::vector<double> out{time, step_before, touching_before, is_stepping};

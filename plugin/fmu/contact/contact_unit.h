@@ -11,6 +11,9 @@
 
 namespace volcontact::fmu {
 
+/// Throws where a function of the C container returned an error.
+void check(int code);
+
 /// All of a contact unit that lasts.
 struct Memory {
   double time = 0.0;

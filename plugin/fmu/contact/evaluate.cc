@@ -29,12 +29,6 @@ double distance(const SiteHead& a, const SiteHead& b) {
   return (Eigen::Map<const Vec3>(a.point_A) - Eigen::Map<const Vec3>(b.point_A)).norm();
 }
 
-void check(int code) {
-  if (code >= 0) return;
-  if (code == VC_ERROR_ARGUMENT || code == VC_ERROR_RESULT) throw Discarded(vc_error());
-  throw std::runtime_error(vc_error());
-}
-
 }  // namespace
 
 void ContactUnit::update() {

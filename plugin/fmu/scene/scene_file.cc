@@ -4,7 +4,7 @@
 namespace volcontact::fmu {
 namespace {
 
-constexpr int kMost = 1000000;
+constexpr int kMostCount = 1000000;
 
 std::string library_name(TextReader& reader) {
   const std::string name(reader.word("the name of a library"));
@@ -13,8 +13,8 @@ std::string library_name(TextReader& reader) {
 }
 
 std::vector<int> read_geoms(TextReader& reader) {
-  std::vector<int> geoms(static_cast<std::size_t>(reader.count("a count of geoms", kMost)));
-  for (int& geom : geoms) geom = reader.count("a geom", kMost);
+  std::vector<int> geoms(static_cast<std::size_t>(reader.count("a count of geoms", kMostCount)));
+  for (int& geom : geoms) geom = reader.count("a geom", kMostCount);
   return geoms;
 }
 
@@ -27,7 +27,7 @@ void read_line(TextReader& reader, std::string_view word, SceneFile& scene) {
     scene.timestep = reader.number("the timestep");
   } else if (word == "key") {
     SceneFile::Key key{std::string(reader.word("a key")), {}};
-    key.numbers.resize(static_cast<std::size_t>(reader.count("a count of numbers", kMost)));
+    key.numbers.resize(static_cast<std::size_t>(reader.count("a count of numbers", kMostCount)));
     for (double& number : key.numbers) number = reader.number("a number");
     scene.keys.push_back(std::move(key));
   } else if (word == "pair") {
@@ -47,8 +47,9 @@ SceneFile read_scene(const std::string& folder) {
   SceneFile scene;
   try {
     TextReader reader(text);
-    require(reader.word("volcontact_scene") == "volcontact_scene" && reader.count("1", kMost) == 1,
-            "this is no scene unit of version 1; export the FMU again with this volcontact");
+    require(
+        reader.word("volcontact_scene") == "volcontact_scene" && reader.count("1", kMostCount) == 1,
+        "this is no scene unit of version 1; export the FMU again with this volcontact");
     while (!reader.at_end()) {
       const std::string word(reader.word("a key"));
       if (!read_value_line(reader, word, scene)) read_line(reader, word, scene);

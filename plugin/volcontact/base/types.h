@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "volcontact/base/vector_operators.h"
+
 namespace volcontact {
 
 // Frame notation, used in every name of the project:
@@ -15,10 +17,14 @@ namespace volcontact {
 // Letters: W world, A and B the two bodies of a pair, C the centroid of a contact site.
 // Units are SI throughout: m, kg, s, N, rad.
 
-using Vec3 = Eigen::Vector3d;
-using Mat3 = Eigen::Matrix3d;
+// Vec3 and Mat3 are in vector_operators.h.
 
 inline constexpr double kPi = 3.14159265358979323846;
+
+/// Whether all are finite; a number that is not is NaN when it is taken from itself.
+inline bool is_finite(const Vec3& v) {
+  return ((v.x() - v.x()) + (v.y() - v.y())) + (v.z() - v.z()) == 0.0;
+}
 
 /// Rigid transform X_AB: `rotation` R_AB is orthonormal, `translation` p_AB is in metres.
 struct Pose {
@@ -34,7 +40,10 @@ struct Pose {
     const Mat3 transposed = rotation.transpose();
     return {transposed, -(transposed * translation)};
   }
-  bool is_finite() const { return rotation.allFinite() && translation.allFinite(); }
+  bool is_finite() const {
+    return volcontact::is_finite(rotation.col(0)) && volcontact::is_finite(rotation.col(1)) &&
+           volcontact::is_finite(rotation.col(2)) && volcontact::is_finite(translation);
+  }
 };
 
 /// Motion of a body frame: angular velocity [rad/s] and velocity of the frame origin [m/s].

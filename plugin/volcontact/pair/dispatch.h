@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 #include <tuple>
 #include <type_traits>
 #include <variant>
@@ -13,33 +15,6 @@
 
 namespace volcontact {
 namespace dispatch {
-
-/// Whether E serves the two in either order.
-template <typename E, typename A, typename B>
-constexpr bool kServes = E::template serves<A, B>() || E::template serves<B, A>();
-
-template <typename E, typename A, typename B>
-bool reaches(const A& a, const B& b) noexcept {
-  if constexpr (E::template serves<A, B>()) {
-    return E::reaches(a, b);
-  } else {
-    return E::reaches(b, a);
-  }
-}
-
-/// Whether E takes part where `asked` is asked for. E serves the two in one order at least.
-template <typename E, typename A, typename B>
-constexpr bool takes_part(Engine asked) {
-  if (asked != Engine::kAuto) return asked == E::kWord || E::stands_in_for(asked);
-  if constexpr (E::template serves<A, B>()) {
-    return E::template in_auto<A, B>();
-  } else {
-    return E::template in_auto<B, A>();
-  }
-}
-
-template <typename A, typename B>
-constexpr bool kUnbounded = std::is_same_v<A, HalfSpace> && std::is_same_v<B, HalfSpace>;
 
 /// Metrics made for (B, A) as those of (A, B).
 inline VolumeMetrics mirrored(const VolumeMetrics& metrics_B, const Pose& X_AB) {
@@ -60,21 +35,19 @@ inline void set_status(Status status, Interference& out) {
 
 /// Whether the numbers of the sites and their sum can be those of an overlap. Each site is looked
 /// at: wrong ones may cancel.
-template <typename A, typename B>
-bool are_possible(const A& a, const B& b, const Pose& X_AB, const Interference& out) {
+inline bool are_possible(const OverlapLimits& a, const OverlapLimits& b, const Pose& X_AB,
+                         const Interference& out) {
   if (out.sites.empty()) return !out.total.touching() && is_finite(out.total);
-  const OverlapLimits limits_a = limits_of(a), limits_b = limits_of(b);
   const auto possible = [&](const VolumeMetrics& metrics) {
-    return is_possible(metrics, limits_a, limits_b, X_AB);
+    return is_possible(metrics, a, b, X_AB);
   };
   return possible(out.total) &&
          (out.sites.size() == 1 || std::all_of(out.sites.begin(), out.sites.end(), possible));
 }
 
 /// Of every site and of their sum; see bound_depth_moment.
-template <typename A, typename B>
-void bound_depth_moments(const A& a, const B& b, Interference& out) {
-  const double longest = longest_line(limits_of(a), limits_of(b));
+inline void bound_depth_moments(const OverlapLimits& a, const OverlapLimits& b, Interference& out) {
+  const double longest = longest_line(a, b);
   double sum = 0.0;
   for (VolumeMetrics& site : out.sites) {
     bound_depth_moment(longest, site);
@@ -82,6 +55,35 @@ void bound_depth_moments(const A& a, const B& b, Interference& out) {
   }
   out.total.depth_moment = sum;
 }
+
+inline OverlapLimits limits_of_shape(const Shape& shape) {
+  return std::visit([](const auto& solid) { return limits_of(solid); }, shape);
+}
+
+/// What is asked, of solids of any types.
+struct Asked {
+  const Shape& a;
+  const Shape& b;
+  const Pose& X_AB;
+  const InterferenceOptions& options;
+};
+
+/// One engine and two types of solids that it serves: all that the way from engine to engine needs
+/// to know. The functions take the solids in the order that the engine serves.
+template <typename Scratch>
+struct Service {
+  Engine word = Engine::kAuto;
+  unsigned asked_as = 0;   ///< bit i: takes part where the engine number i is asked for
+  bool is_mirror = false;  ///< the engine serves the two in the other order
+  bool by_formula = false, one_site = false, exact = false, has_bounds = false;  ///< EngineBase
+  bool (*reaches)(const Shape& a, const Shape& b) = nullptr;  ///< null: all solids of these types
+  Answer (*run)(const Asked& asked, Scratch& scratch, Interference& out) = nullptr;
+
+  bool takes_part(Engine asked, const Shape& a, const Shape& b) const {
+    if (!(asked_as >> static_cast<unsigned>(asked) & 1u)) return false;
+    return !reaches || (is_mirror ? reaches(b, a) : reaches(a, b));
+  }
+};
 
 /// A tuple of every type of some lists, once.
 template <typename Tuple, typename... Lists>
@@ -96,6 +98,10 @@ struct Memory<std::tuple<Have...>, TypeList<First, More...>, Lists...>
                                 std::tuple<Have..., First>>,
              TypeList<More...>, Lists...> {};
 
+/// Of the dispatcher D, all services for A and B in the order of its engines.
+template <typename D, typename A, typename B>
+inline constexpr auto kServices = D::template services<A, B>();
+
 }  // namespace dispatch
 
 template <typename List>
@@ -103,7 +109,8 @@ class Dispatch;
 
 /// Asks the engines of a list in their order, and does once for all of them what is not theirs:
 /// mirror images, poses that are no numbers, two unbounded solids, the way on from an engine to the
-/// next, and whether what it answers can be.
+/// next, and whether what it answers can be. What depends on the types of the solids is in tables,
+/// one for each two types.
 template <typename... Engines>
 class Dispatch<TypeList<Engines...>> {
  public:
@@ -111,118 +118,188 @@ class Dispatch<TypeList<Engines...>> {
   using Scratch = typename dispatch::Memory<std::tuple<>, typename Engines::Scratch...>::Type;
 
   /// Whether an engine of this word integrates the two, in either order.
-  template <typename A, typename B>
-  static bool serves(Engine word, const A& a, const B& b) noexcept {
-    return word == Engine::kAuto || (serves_by<Engines>(word, a, b) || ...);
+  static bool serves(Engine word, const Shape& a, const Shape& b) noexcept {
+    if (word == Engine::kAuto) return true;
+    const Services services = services_of(a, b);
+    return std::any_of(services.begin(), services.end(), [&](const Service& service) {
+      return service.word == word && service.takes_part(word, a, b);
+    });
   }
 
   /// The word of the first engine that kAuto asks; kAuto where there is none.
-  template <typename A, typename B>
-  static Engine first(const A& a, const B& b) noexcept {
-    Engine word = Engine::kAuto;
-    static_cast<void>((is_first<Engines>(a, b, word) || ...));
-    return word;
+  static Engine first(const Shape& a, const Shape& b) noexcept {
+    for (const Service& service : services_of(a, b)) {
+      if (service.takes_part(Engine::kAuto, a, b)) return service.word;
+    }
+    return Engine::kAuto;
   }
 
   /// See `interference`, which is this with the engines that there are.
-  static void interference(const Shape& shape_a, const Shape& shape_b, const Pose& X_AB,
+  static void interference(const Shape& a, const Shape& b, const Pose& X_AB,
                            const InterferenceOptions& options, Scratch& scratch,
                            Interference& out) noexcept {
-    std::visit(
-        [&](const auto& a, const auto& b) {
-          using A = std::decay_t<decltype(a)>;
-          using B = std::decay_t<decltype(b)>;
-          const Question<A, B> question{a, b, shape_a, shape_b, X_AB, options};
-          Round<A, B>{question, scratch, out}.run();
-        },
-        shape_a, shape_b);
+    Round{{a, b, X_AB, options}, services_of(a, b), scratch, out}.run();
+  }
+
+  using Service = dispatch::Service<Scratch>;
+
+  /// All that serve A and B in either order.
+  template <typename A, typename B>
+  static constexpr auto services() {
+    std::array<Service, (std::size_t{kServes<Engines, A, B>} + ... + 0)> table;
+    std::size_t i = 0;
+    const auto add = [&]<typename E>(TypeTag<E>) {
+      if constexpr (E::template serves<A, B>()) {
+        table[i++] = service<E, A, B>(false);
+      } else if constexpr (E::template serves<B, A>()) {
+        table[i++] = service<E, B, A>(true);
+      }
+    };
+    (add(TypeTag<Engines>{}), ...);
+    return table;
   }
 
  private:
+  using Services = std::span<const Service>;
+
   template <typename E, typename A, typename B>
-  static bool serves_by(Engine word, const A& a, const B& b) noexcept {
-    if constexpr (dispatch::kServes<E, A, B>) {
-      return word == E::kWord && dispatch::reaches<E>(a, b);
-    } else {
-      return false;
-    }
+  static constexpr bool kServes = E::template serves<A, B>() || E::template serves<B, A>();
+  template <typename A, typename B>
+  static constexpr bool kUnbounded = std::is_same_v<A, HalfSpace> && std::is_same_v<B, HalfSpace>;
+
+  // Whether E looks at the types of solids alone.
+  template <typename E, typename A, typename B>
+  static constexpr bool kReachesAll =
+      requires { requires& E::template reaches<A, B> == &EngineBase::template reaches<A, B>; };
+
+  static Services services_of(const Shape& a, const Shape& b) {
+    static constexpr auto kTables = tables(Shapes{});
+    return kTables[a.index()][b.index()];
+  }
+  template <typename... As>
+  static constexpr auto tables(TypeList<As...> shapes) {
+    return std::array{tables_with<As>(shapes)...};
+  }
+  template <typename A, typename... Bs>
+  static constexpr auto tables_with(TypeList<Bs...>) {
+    return std::array{Services(dispatch::kServices<Dispatch, A, Bs>)...};
   }
 
   template <typename E, typename A, typename B>
-  static bool is_first(const A& a, const B& b, Engine& word) noexcept {
-    if constexpr (dispatch::kServes<E, A, B>) {
-      if (dispatch::takes_part<E, A, B>(Engine::kAuto) && dispatch::reaches<E>(a, b)) {
-        word = E::kWord;
-        return true;
-      }
+  static constexpr Service service(bool is_mirror) {
+    Service service{.word = E::kWord,
+                    .is_mirror = is_mirror,
+                    .by_formula = E::kByFormula,
+                    .one_site = E::kOneSite,
+                    .exact = E::kExact,
+                    .has_bounds = E::kHasBounds};
+    for (const Engine asked : kEngines) {
+      if (takes_part<E, A, B>(asked)) service.asked_as |= 1u << static_cast<unsigned>(asked);
     }
-    return false;
+    if constexpr (!kReachesAll<E, A, B>) service.reaches = reaches<E, A, B>;
+    if constexpr (!kUnbounded<A, B>) service.run = run<E, A, B>;
+    return service;
+  }
+  template <typename E, typename A, typename B>
+  static constexpr bool takes_part(Engine asked) {
+    if (asked != Engine::kAuto) return asked == E::kWord || E::stands_in_for(asked);
+    return E::template in_auto<A, B>();
+  }
+
+  // Compiled once for two types of solids, whichever of them is A.
+  template <typename E, typename A, typename B>
+  static bool reaches(const Shape& a, const Shape& b) {
+    return E::reaches(*std::get_if<A>(&a), *std::get_if<B>(&b));
+  }
+  template <typename E, typename A, typename B>
+  static Answer run(const dispatch::Asked& asked, Scratch& scratch, Interference& out) {
+    const A& a = *std::get_if<A>(&asked.a);
+    const B& b = *std::get_if<B>(&asked.b);
+    const Question<A, B> question{a, b, asked.a, asked.b, asked.X_AB, asked.options};
+    const Answer answer = call<E>(question, scratch, out, typename E::Scratch{});
+    if constexpr (E::kByFormula) {
+      const bool is_number = std::isfinite(out.total.volume);
+      const bool possible = !is_number || is_possible_volume(out.total, limits_of(a), limits_of(b));
+      return possible ? answer : Answer::kBeyond;
+    }
+    return answer;
+  }
+  template <typename E, typename A, typename B, typename... Parts>
+  static Answer call(const Question<A, B>& question, Scratch& scratch, Interference& out,
+                     TypeList<Parts...>) {
+    return E::run(question, std::get<Parts>(scratch)..., out);
   }
 
   // One question on its way from engine to engine.
-  template <typename A, typename B>
   class Round {
    public:
-    Round(const Question<A, B>& question, Scratch& scratch, Interference& out)
-        : q_(question), scratch_(scratch), out_(out) {}
+    Round(const dispatch::Asked& asked, Services services, Scratch& scratch, Interference& out)
+        : q_(asked), services_(services), scratch_(scratch), out_(out) {}
 
     void run() {
-      asked_ = q_.options.engine;
-      if (asked_ != Engine::kAuto && !serves(asked_, q_.a, q_.b)) asked_ = Engine::kAuto;
-      if (!q_.X_AB.is_finite() || dispatch::kUnbounded<A, B>) {
-        out_.engine = asked_ != Engine::kAuto ? asked_ : first(q_.a, q_.b);
-        return dispatch::set_status(q_.X_AB.is_finite() ? Status::kUnbounded : Status::kInvalid,
-                                    out_);
+      word_ = q_.options.engine;
+      if (word_ != Engine::kAuto && !serves(word_, q_.a, q_.b)) word_ = Engine::kAuto;
+      const bool unbounded =
+          std::holds_alternative<HalfSpace>(q_.a) && std::holds_alternative<HalfSpace>(q_.b);
+      if (unbounded || !q_.X_AB.is_finite()) {
+        out_.engine = word_ != Engine::kAuto ? word_ : first(q_.a, q_.b);
+        const Status status = q_.X_AB.is_finite() ? Status::kUnbounded : Status::kInvalid;
+        return dispatch::set_status(status, out_);
       }
-      if ((settles<Engines>() || ...)) return;
+      for (const Service& service : services_) {
+        if (takes_part(service) && settles(service)) return;
+      }
       dispatch::set_status(Status::kInvalid, out_);
     }
 
    private:
-    template <typename E>
-    bool takes_part() const {
-      if constexpr (dispatch::kServes<E, A, B>) {
-        return (!bounds_only_ || E::kHasBounds) && dispatch::takes_part<E, A, B>(asked_) &&
-               dispatch::reaches<E>(q_.a, q_.b);
-      } else {
-        return false;
-      }
+    bool takes_part(const Service& service) const {
+      return (!bounds_only_ || service.has_bounds) && service.takes_part(word_, q_.a, q_.b);
     }
 
-    // Whether E answers, and so that no other need be asked.
-    template <typename E>
-    bool settles() {
-      if constexpr (dispatch::kServes<E, A, B> && !dispatch::kUnbounded<A, B>) {
-        if (!takes_part<E>()) return false;
-        out_.engine = E::kWord;
-        bounds_only_ = E::kOneSite;
-        const Answer answer = ask<E>();
-        if constexpr (E::kByFormula) {
-          if (!std::isfinite(out_.total.volume)) return settle_no_number();
-          return answer == Answer::kGiven &&
-                 is_possible_volume(out_.total, limits_of(q_.a), limits_of(q_.b));
-        } else {
-          return answer == Answer::kGiven && accepts<E>();
-        }
-      } else {
-        return false;
-      }
+    // Whether it answers, and so that no other need be asked.
+    bool settles(const Service& service) {
+      out_.engine = service.word;
+      bounds_only_ = service.one_site;
+      const Answer answer = ask(service);
+      if (service.by_formula && !std::isfinite(out_.total.volume)) return settle_no_number();
+      if (answer == Answer::kBeyond) return false;
+      return service.by_formula || accepts(service);
     }
 
-    template <typename E>
-    bool accepts() {
-      if constexpr (!E::kHasBounds && !E::kExact) {
-        if (is_doubtful(out_.total, limits_of(q_.a), limits_of(q_.b))) return false;
+    Answer ask(const Service& service) {
+      if (!service.is_mirror) {
+        const Answer answer = service.run(q_, scratch_, out_);
+        if (service.one_site) dispatch::set_one_site(out_);
+        return answer;
       }
-      const bool possible = dispatch::are_possible(q_.a, q_.b, q_.X_AB, out_);
-      if constexpr (E::kExact) {
+      const Pose X_BA = q_.X_AB.inverse();
+      const Answer answer = service.run({q_.b, q_.a, X_BA, q_.options}, scratch_, out_);
+      if (answer == Answer::kBeyond) return answer;
+      out_.total = dispatch::mirrored(out_.total, q_.X_AB);
+      if (service.one_site) {
+        dispatch::set_one_site(out_);
+      } else {
+        for (VolumeMetrics& site : out_.sites) site = dispatch::mirrored(site, q_.X_AB);
+      }
+      return answer;
+    }
+
+    bool accepts(const Service& service) {
+      // Nothing of what follows compares an answer of zeros with the limits.
+      const bool compares = !out_.sites.empty() || out_.total.volume_error > 0.0;
+      const OverlapLimits a = compares ? dispatch::limits_of_shape(q_.a) : OverlapLimits{};
+      const OverlapLimits b = compares ? dispatch::limits_of_shape(q_.b) : OverlapLimits{};
+      if (!service.has_bounds && !service.exact && is_doubtful(out_.total, a, b)) return false;
+      const bool possible = dispatch::are_possible(a, b, q_.X_AB, out_);
+      if (service.exact) {
         const bool is_number = possible || is_finite(out_.total);
         if (!is_number || out_.total.status == Status::kApproximate) {
-          if (another_after<E>()) return false;
+          if (another_after(service)) return false;
           if (!is_number) return settle_no_number();
         }
       }
-      if (possible) dispatch::bound_depth_moments(q_.a, q_.b, out_);
+      if (possible) dispatch::bound_depth_moments(a, b, out_);
       return possible;
     }
 
@@ -231,48 +308,19 @@ class Dispatch<TypeList<Engines...>> {
       return true;
     }
 
-    // Whether an engine after E takes part that is no last resort.
-    template <typename E>
-    bool another_after() const {
-      bool behind = false, found = false;
-      const auto look = [&]<typename Other>(TypeTag<Other>) {
-        found = found || (behind && !Other::kHasBounds && this->template takes_part<Other>());
-        behind = behind || std::is_same_v<Other, E>;
-      };
-      (look(TypeTag<Engines>{}), ...);
-      return found;
+    // Whether an engine after this one takes part that is no last resort.
+    bool another_after(const Service& service) const {
+      const Service* const end = services_.data() + services_.size();
+      return std::any_of(&service + 1, end, [&](const Service& other) {
+        return !other.has_bounds && takes_part(other);
+      });
     }
 
-    template <typename E>
-    Answer ask() {
-      if constexpr (E::template serves<A, B>()) {
-        const Answer answer = call<E>(q_, typename E::Scratch{});
-        if constexpr (E::kOneSite) dispatch::set_one_site(out_);
-        return answer;
-      } else {
-        const Pose X_BA = q_.X_AB.inverse();
-        const Question<B, A> mirror{q_.b, q_.a, q_.shape_b, q_.shape_a, X_BA, q_.options};
-        const Answer answer = call<E>(mirror, typename E::Scratch{});
-        if (answer == Answer::kBeyond) return answer;
-        out_.total = dispatch::mirrored(out_.total, q_.X_AB);
-        if constexpr (E::kOneSite) {
-          dispatch::set_one_site(out_);
-        } else {
-          for (VolumeMetrics& site : out_.sites) site = dispatch::mirrored(site, q_.X_AB);
-        }
-        return answer;
-      }
-    }
-
-    template <typename E, typename First, typename Second, typename... Parts>
-    Answer call(const Question<First, Second>& question, TypeList<Parts...>) {
-      return E::run(question, std::get<Parts>(scratch_)..., out_);
-    }
-
-    const Question<A, B>& q_;
+    const dispatch::Asked q_;
+    const Services services_;
     Scratch& scratch_;
     Interference& out_;
-    Engine asked_ = Engine::kAuto;
+    Engine word_ = Engine::kAuto;  // asked for
     bool bounds_only_ = false;
   };
 };

@@ -21,18 +21,10 @@ InterferenceWorkspace::InterferenceWorkspace(InterferenceWorkspace&&) noexcept =
 InterferenceWorkspace& InterferenceWorkspace::operator=(InterferenceWorkspace&&) noexcept = default;
 
 bool serves(Engine engine, const Shape& a, const Shape& b) {
-  return std::visit(
-      [=](const auto& solid_a, const auto& solid_b) {
-        return Dispatcher::serves(engine, solid_a, solid_b);
-      },
-      a, b);
+  return Dispatcher::serves(engine, a, b);
 }
 
-Engine engine_for(const Shape& a, const Shape& b) {
-  return std::visit(
-      [](const auto& solid_a, const auto& solid_b) { return Dispatcher::first(solid_a, solid_b); },
-      a, b);
-}
+Engine engine_for(const Shape& a, const Shape& b) { return Dispatcher::first(a, b); }
 
 void interference(const Shape& a, const Shape& b, const Pose& X_AB,
                   const InterferenceOptions& options, InterferenceWorkspace& workspace,

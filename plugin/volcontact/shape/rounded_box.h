@@ -48,13 +48,15 @@ class RoundedBox {
   }
   double signed_distance(const Vec3& p) const {
     const Vec3 excess = p.cwiseAbs() - inner_;
-    return excess.cwiseMax(0.0).norm() + std::min(excess.maxCoeff(), 0.0) - p_.radius;
+    const Vec3 outside = excess.cwiseMax(0.0);
+    return outside.norm() + std::min(excess.maxCoeff(), 0.0) - p_.radius;
   }
   Vec3 gradient(const Vec3& p) const {
     const Vec3 excess = p.cwiseAbs() - inner_;
     Eigen::Index i;
     if (excess.maxCoeff(&i) <= 0.0) return std::copysign(1.0, p[i]) * Vec3::Unit(i);
-    Vec3 direction = excess.cwiseMax(0.0).normalized();
+    const Vec3 outside = excess.cwiseMax(0.0);
+    Vec3 direction = outside.normalized();
     for (int k = 0; k < 3; ++k) direction[k] = std::copysign(direction[k], p[k]);
     return direction;
   }

@@ -15,7 +15,7 @@ struct Aabb {
   Vec3 min;
   Vec3 max;
 
-  bool bounded() const { return min.allFinite() && max.allFinite(); }
+  bool bounded() const { return is_finite(min) && is_finite(max); }
   Vec3 center() const { return 0.5 * (min + max); }
   Vec3 half_sizes() const { return 0.5 * (max - min); }
 };

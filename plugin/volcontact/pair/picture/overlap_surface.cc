@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/picture/overlap_surface.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
+
+#include "volcontact/base/symmetric_eigen.h"
 
 namespace volcontact {
 namespace {
@@ -32,16 +33,14 @@ Frame frame_of(const VolumeMetrics& site) {
   const Mat3 covariance = site.second_moment() / site.volume;
   Vec3 normal = site.normal();
   if (normal.isZero()) {  // contained: across its thinnest direction
-    normal = Eigen::SelfAdjointEigenSolver<Mat3>(covariance).eigenvectors().col(0);
+    normal = symmetric_eigen(covariance).vectors.col(0);
   }
   const Mat3 basis = basis_with_z(normal);
   const Eigen::Matrix2d flat =
       (basis.leftCols<2>().transpose() * covariance * basis.leftCols<2>()).eval();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(flat);
-  const auto spread = [&](int i) {
-    return kReach * std::sqrt(std::max(axes.eigenvalues()[i], 0.0));
-  };
-  const Vec3 u = basis.leftCols<2>() * axes.eigenvectors().col(1);
+  const auto axes = symmetric_eigen(flat);
+  const auto spread = [&](int i) { return kReach * std::sqrt(std::max(axes.values[i], 0.0)); };
+  const Vec3 u = basis.leftCols<2>() * axes.vectors.col(1);
   const double thick = 4.0 * std::sqrt(std::max(normal.dot(covariance * normal), 0.0));
   return {site.centroid,
           u,

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/pressure/pressure_columns.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "volcontact/base/symmetric_eigen.h"
 #include "volcontact/pair/quadrature/outer_rule.h"
 
 namespace volcontact {
@@ -53,12 +53,8 @@ class ColumnField {
   // Columns along the normal; across them, axes in which the overlap has the spread 1.
   void choose_frame(const VolumeMetrics& site) {
     const Mat3 spread = site.second_moment() / site.volume;
-    Eigen::SelfAdjointEigenSolver<Mat3> solver;
     t_ = site.normal();
-    if (t_.isZero(0.0)) {  // no direction: the shortest one
-      solver.computeDirect(spread);
-      t_ = solver.eigenvectors().col(0);
-    }
+    if (t_.isZero(0.0)) t_ = direct_eigenvectors(spread).col(0);  // no direction: the shortest one
     const Mat3 basis = basis_with_z(t_);
     const Eigen::Matrix2d across = basis.leftCols<2>().transpose() * spread * basis.leftCols<2>();
     const double l00 = std::sqrt(across(0, 0)), l10 = across(1, 0) / l00;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/pressure/pressure_meshes.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "volcontact/base/symmetric_eigen.h"
 #include "volcontact/pair/pressure/triangles_near.h"
 #include "volcontact/pair/quadrature/gauss.h"
 
@@ -90,9 +90,8 @@ class MeshField {
     finest_ = kInfinity;
     for (const VolumeMetrics& metrics : site.sites) {
       volume_ += metrics.volume;
-      Eigen::SelfAdjointEigenSolver<Mat3> solver;
-      solver.computeDirect(metrics.second_moment() / metrics.volume, Eigen::EigenvaluesOnly);
-      finest_ = std::min(finest_, kFinest * std::sqrt(std::max(0.0, solver.eigenvalues()[1])));
+      const Vec3 spread = direct_eigenvalues(metrics.second_moment() / metrics.volume);
+      finest_ = std::min(finest_, kFinest * std::sqrt(std::max(0.0, spread[1])));
     }
     reach_ = site.metrics().depth;
   }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/shape/mesh/obb_tree.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
 #include "volcontact/base/fields.h"
+#include "volcontact/base/symmetric_eigen.h"
 
 namespace volcontact {
 namespace {
@@ -78,8 +78,8 @@ class TreeBuilder {
     if (!(weight > 0.0)) return upright;
     mean /= weight;
     const Mat3 covariance = second / weight - mean * mean.transpose();
-    const Eigen::SelfAdjointEigenSolver<Mat3> solver(covariance);
-    const Obb turned = around(solver.eigenvectors().transpose(), first, last, stride);
+    const Mat3 axes = symmetric_eigen(covariance).vectors;
+    const Obb turned = around(axes.transpose(), first, last, stride);
     return upright.half.prod() < 0.9 * turned.half.prod() ? upright : turned;
   }
 
