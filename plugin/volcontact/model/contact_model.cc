@@ -173,7 +173,7 @@ ContactModel::ContactModel(std::vector<GeometricPair> pairs, ContactLaws laws,
 
 void ContactModel::evaluate(std::span<const GeometricPair> pairs, const BodyMotion& motion,
                             const SiteMemory& memory, Workspace& workspace,
-                            ContactReport& report) const noexcept {
+                            ContactReport& report) const {
   report.sites.clear();
   report.memory.clear();
   report.p_WA = motion.X_WA.translation;

@@ -112,13 +112,13 @@ class Dispatch<TypeList<Engines...>> {
 
   /// Whether an engine of this word integrates the two, in either order.
   template <typename A, typename B>
-  static bool serves(Engine word, const A& a, const B& b) noexcept {
+  static bool serves(Engine word, const A& a, const B& b) {
     return word == Engine::kAuto || (serves_by<Engines>(word, a, b) || ...);
   }
 
   /// The word of the first engine that kAuto asks; kAuto where there is none.
   template <typename A, typename B>
-  static Engine first(const A& a, const B& b) noexcept {
+  static Engine first(const A& a, const B& b) {
     Engine word = Engine::kAuto;
     static_cast<void>((is_first<Engines>(a, b, word) || ...));
     return word;
@@ -127,7 +127,7 @@ class Dispatch<TypeList<Engines...>> {
   /// See `interference`, which is this with the engines that there are.
   static void interference(const Shape& shape_a, const Shape& shape_b, const Pose& X_AB,
                            const InterferenceOptions& options, Scratch& scratch,
-                           Interference& out) noexcept {
+                           Interference& out) {
     std::visit(
         [&](const auto& a, const auto& b) {
           using A = std::decay_t<decltype(a)>;
@@ -140,7 +140,7 @@ class Dispatch<TypeList<Engines...>> {
 
  private:
   template <typename E, typename A, typename B>
-  static bool serves_by(Engine word, const A& a, const B& b) noexcept {
+  static bool serves_by(Engine word, const A& a, const B& b) {
     if constexpr (dispatch::kServes<E, A, B>) {
       return word == E::kWord && dispatch::reaches<E>(a, b);
     } else {
@@ -149,7 +149,7 @@ class Dispatch<TypeList<Engines...>> {
   }
 
   template <typename E, typename A, typename B>
-  static bool is_first(const A& a, const B& b, Engine& word) noexcept {
+  static bool is_first(const A& a, const B& b, Engine& word) {
     if constexpr (dispatch::kServes<E, A, B>) {
       if (dispatch::takes_part<E, A, B>(Engine::kAuto) && dispatch::reaches<E>(a, b)) {
         word = E::kWord;
@@ -214,7 +214,15 @@ class Dispatch<TypeList<Engines...>> {
       if constexpr (!E::kHasBounds && !E::kExact) {
         if (is_doubtful(out_.total, limits_of(q_.a), limits_of(q_.b))) return false;
       }
-      const bool possible = dispatch::are_possible(q_.a, q_.b, q_.X_AB, out_);
+      bool possible = dispatch::are_possible(q_.a, q_.b, q_.X_AB, out_);
+      if constexpr (E::kHasBounds) {
+        // None is asked after it: of an overlap much smaller than its cells, V and its error are
+        // left.
+        if (!possible && out_.total.status != Status::kInvalid) {
+          possible = keep_possible(limits_of(q_.a), limits_of(q_.b), out_.total);
+          dispatch::set_one_site(out_);
+        }
+      }
       if constexpr (E::kExact) {
         const bool is_number = possible || is_finite(out_.total);
         if (!is_number || out_.total.status == Status::kApproximate) {

@@ -36,7 +36,7 @@ Engine engine_for(const Shape& a, const Shape& b) {
 
 void interference(const Shape& a, const Shape& b, const Pose& X_AB,
                   const InterferenceOptions& options, InterferenceWorkspace& workspace,
-                  Interference& out) noexcept {
+                  Interference& out) {
   Dispatcher::interference(a, b, X_AB, options, workspace.scratch().of_engines, out);
 }
 
