@@ -274,6 +274,7 @@ void apply_contact(const SceneContact& contact, const mjModel* m, mjData* d,
     fill_slot(contact, m, d, our, account, scratch);
   } catch (...) {
     our.drop_newest();  // half filled: the next evaluation goes on from the one before
+    scratch = EvaluationScratch();
     throw;
   }
 }

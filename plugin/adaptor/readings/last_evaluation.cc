@@ -27,8 +27,13 @@ bool revisit(const SceneContact& contact, const mjModel* m, const mjData* d,
     before = {our.slot(1).states(), our.slot(0).time() - our.slot(1).time()};
   }
   scratch.mocaps = MocapMotion(our.slot(0).mocaps());
-  evaluate_pairs(contact, m, d, before, scratch);
-  recall_solved(our, scratch);
+  try {
+    evaluate_pairs(contact, m, d, before, scratch);
+    recall_solved(our, scratch);
+  } catch (...) {
+    scratch = EvaluationScratch();
+    throw;
+  }
   return true;
 }
 

@@ -9,6 +9,7 @@
 #include "core/support/fail_allocations.h"
 #include "core/support/meshes.h"
 #include "core/support/random_shapes.h"
+#include "volcontact/force/laws.h"
 #include "volcontact/model/contact_model.h"
 #include "volcontact/pair/interference.h"
 
@@ -28,6 +29,7 @@ Shape some_polytope() {
 }
 const Shape kGem = some_polytope();
 const Shape kMesh = test::mesh_of(test::box_soup(Vec3(0.2, 0.16, 0.12), 3));
+const Shape kFineMesh = test::mesh_of(test::box_soup(Vec3(0.2, 0.16, 0.12), 12));
 const Shape kBored = Csg(Csg::Operation::kDifference, Csg(Box({.half_sizes = Vec3(0.2, 0.16, 0.12)})),
                          Csg(Cylinder({.radius = 0.08, .half_length = 0.3})));
 
@@ -49,7 +51,7 @@ const std::vector<Pairing> kPairings{
     {"bored with bored", kBored, kBored},
     {"surface sweep", kBored, kEgg, Engine::kSurfaceSweep},
     {"mesh with mesh", kMesh, kMesh},
-    {"mesh with mesh, threads", kMesh, kMesh, Engine::kAuto, 3},
+    {"mesh with mesh, threads", kFineMesh, kFineMesh, Engine::kAuto, 3},
     {"mesh with ball", kMesh, kBall},
     {"mesh with can", kMesh, kCan},
     {"mesh with torus", kMesh, kRing},

@@ -12,9 +12,10 @@ namespace {
 constexpr double kTubeRestError = 1e-6;  // of V; as measured
 // Of a tube's radius: planes nearer than the first touch the circle in its middle, which the lines
 // begin at. The solid is then looked at from both sides of them, moved by the second.
-constexpr double kGrazes = 1e-3, kBothSides = 5e-3;
+constexpr double kGrazes = 8e-3, kBothSides = 2e-2;
 constexpr double kBothSidesError = 1e-4;  // of V, at least; as measured
-constexpr double kMostChange = 0.1;       // of V, from one side to the other
+constexpr double kFarSidesError = 0.5;    // of what the mean changes by from twice as far
+constexpr double kMostChange = 0.2;       // of V, from one side to the other
 constexpr double kBeside = 0.05;          // of a tube's radius: so near is by
 constexpr int kLooks = 64;                // at the circle
 
@@ -77,32 +78,40 @@ class TorusColumns {
     return false;
   }
 
-  // V and all that belongs to it change smoothly there; only the lines do not.
+  // V and all that belongs to it change smoothly there; only the lines do not. Twice as far the
+  // mean of both sides is four times as far from V.
   bool add_from_both_sides(const Vec3& normal) {
-    VolumeMetrics mean;
-    double volumes[2];
-    for (const int side : {0, 1}) {
-      const double way = (side == 0 ? 1.0 : -1.0) * kBothSides * b_.minor_radius();
-      const Pose X{X_AB_.rotation, X_AB_.translation + way * (X_AB_.rotation * normal)};
-      TorusColumns moved(a_, b_, X, options_, s_, out_);
-      if (!moved.find_patches() || !moved.add_sites()) return false;
-      volumes[side] = out_.total.volume;
-      mean = mean + out_.total;
+    VolumeMetrics mean, far;
+    if (!add_mean(2.0 * kBothSides * normal, far) || !add_mean(kBothSides * normal, mean)) {
+      return false;
     }
-    const double change = std::abs(volumes[1] - volumes[0]);
-    if (change > kMostChange * mean.volume) return false;
-    const double doubt = kBothSides * change;
+    const double change = mean.volume - far.volume, scale = 0.5 * (1.0 + change / 3.0 / mean.volume);
     for (double* x : {&mean.volume, &mean.area, &mean.counter_area, &mean.depth_moment,
                       &mean.volume_error}) {
-      *x *= 0.5;
+      *x *= scale;
     }
-    mean.inertia *= 0.5;
-    mean.area_vector *= 0.5;
-    mean.area_moment *= 0.5;
-    mean.volume_error += doubt + kBothSidesError * mean.volume;
+    mean.inertia *= scale;
+    mean.area_vector *= scale;
+    mean.area_moment *= scale;
+    mean.volume_error += kFarSidesError * std::abs(change) + kBothSidesError * mean.volume;
+    if (mean.volume_error > options_.tolerance * mean.volume) mean.status = Status::kApproximate;
     out_.total = mean;
     out_.sites.assign(mean.touching() ? 1 : 0, mean);
     return is_finite(mean);
+  }
+
+  // The sum of what comes of the torus moved both ways, by so many of its tube's radii.
+  bool add_mean(const Vec3& way, VolumeMetrics& sum) {
+    double volumes[2];
+    for (const int side : {0, 1}) {
+      const Vec3 moved = (side == 0 ? 1.0 : -1.0) * b_.minor_radius() * way;
+      const Pose X{X_AB_.rotation, X_AB_.translation + X_AB_.rotation * moved};
+      TorusColumns aside(a_, b_, X, options_, s_, out_);
+      if (!aside.find_patches() || !aside.add_sites()) return false;
+      volumes[side] = out_.total.volume;
+      sum = sum + out_.total;
+    }
+    return std::abs(volumes[1] - volumes[0]) <= kMostChange * sum.volume && sum.touching();
   }
 
   bool add_sites() {
