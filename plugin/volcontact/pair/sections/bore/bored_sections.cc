@@ -20,6 +20,7 @@ constexpr double kOnFace = 1e-6;   // of an apex from a face, per its distance f
 constexpr double kOnWall = 1e-12;  // of a place from the wall, per the size of the numbers
 constexpr double kEndError =
     5.0;  // error by its estimate where an arc ends in nothing, as measured
+constexpr double kInnerCone = 1e-4;   // error of the rule along a half-plane, from an apex, per V
 constexpr double kThroughBore = 0.5;  // of radii: between places outside of the wall nothing is
 
 class BoreRun {
@@ -374,7 +375,8 @@ class BoreRun {
                      (1.0 - share) * length * sums.depth_moment;
     m.depth = share * across * sums.bore.depth + (1.0 - share) * length * height;
     const double error = std::max(error_, open_);
-    m.volume_error = error + outer_rule::kInnerError * m.volume;
+    m.volume_error =
+        error + (frame_.central ? kInnerCone : outer_rule::kInnerError) * m.volume;
     if (error > options_.tolerance * m.volume) m.status = Status::kApproximate;
     LinesRegion& region = regions_.add();
     region.metrics = transformed(m, Pose{Mat3::Identity(), frame_.center});

@@ -23,6 +23,7 @@ constexpr double kOnAxis = 1e-8;        // of a plane from the axis, per radius
 constexpr double kEndError = 5.0;       // error by its estimate where an arc ends in nothing
 constexpr double kTarget = 1e-2;   // share of the tolerance asked of an arc: kinks may be hidden
 constexpr double kGapError = 3.0;  // error of V by the gap on a first look, at most as measured
+constexpr double kLeftOver = 1e-4;  // of a surface: so little of the other is told by rounding
 constexpr double kWhole = 0.999;   // share of a solid in the overlap, that is all of it
 
 class TorusSectionsRun {
@@ -257,6 +258,7 @@ class TorusSectionsRun {
     sum.first = Vec3(m[1], m[2], m[3]);
     sum.second << m[4], m[5], m[7], m[5], m[6], m[8], m[7], m[8], m[9];
     set_surface(sum);
+    shorten_vector(sum);
     VolumeMetrics metrics = sum.metrics();
     if (!metrics.touching()) return;
     const double error = std::max(error_, open_);
@@ -305,6 +307,15 @@ class TorusSectionsRun {
     } else {
       sum.area_vector = of_body;
     }
+  }
+
+  // Where a solid is nearly all within the other, the area vector is the rest of a large sum: no
+  // longer than what is left of the smaller surface.
+  static void shorten_vector(MomentSum& sum) {
+    const double least = std::min(sum.area, sum.counter_area), length = sum.area_vector.norm();
+    if (!(length > least) || least > kLeftOver * std::max(sum.area, sum.counter_area)) return;
+    sum.area_vector *= least / length;
+    sum.area_moment *= least / length;
   }
 
   Vec3 vector_of_body() const {
