@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <string>
 
 #include "adaptor/mujoco/mujoco_compat.h"
@@ -30,7 +31,7 @@ bool is_refused(const mjModel* m) noexcept {
          refused.times >= kMostRefusals;
 }
 
-void refuse(const mjModel* m, const std::string& why) noexcept {
+void refuse(const mjModel* m, const std::string& why) {
   if (refused.model != m || refused.names != m->nnames || refused.userdata != m->nuserdata) {
     refused = {m, m->nnames, m->nuserdata, 0};
   }
@@ -38,7 +39,7 @@ void refuse(const mjModel* m, const std::string& why) noexcept {
   write_warning("volcontact: contact stays native: " + why);
 }
 
-void attach(mjModel* m, Wish wish) noexcept {
+void attach(mjModel* m, Wish wish) {
   std::string problem;
   try {
     for (const std::string& warning : attach_scene(m, {}, Attacher::kItself)) {
@@ -48,6 +49,8 @@ void attach(mjModel* m, Wish wish) noexcept {
       std::fprintf(stderr, "volcontact: the contact of model '%s' is volumetric\n", m->names);
     }
     return;
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     problem = error.what();
   } catch (...) {
@@ -61,7 +64,7 @@ void attach(mjModel* m, Wish wish) noexcept {
 bool attaches_by_itself() noexcept { return is_on.load(std::memory_order_relaxed); }
 void set_attaches_by_itself(bool on) noexcept { is_on = on; }
 
-const SceneContact* contact_by_itself(const mjModel* m, Wish wish) noexcept {
+const SceneContact* contact_by_itself(const mjModel* m, Wish wish) {
   // The host's own model, which its program may write; it does not know that it asked for this.
   auto* model = const_cast<mjModel*>(m);
   const SceneContact* contact = contact_of(m);

@@ -19,7 +19,8 @@ enum class Wish : int {
 
 /// The contact of a model, which is attached when no one has done so and there is a wish; null
 /// where there is none, and for the one evaluation at which native contact is turned off, since
-/// that has its native contacts already. What goes wrong becomes a MuJoCo warning. Never throws.
-const SceneContact* contact_by_itself(const mjModel* m, Wish wish) noexcept;
+/// that has its native contacts already. What goes wrong becomes a MuJoCo warning. Throws
+/// std::bad_alloc alone.
+const SceneContact* contact_by_itself(const mjModel* m, Wish wish);
 
 }  // namespace volcontact::adaptor

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "adaptor/mujoco/mujoco_compat.h"
+#include "adaptor/out_of_memory.h"
 #include "adaptor/scene_registry.h"
 
 namespace volcontact::adaptor {
@@ -27,7 +28,9 @@ struct Wrapper;
 template <typename Model, typename Data, typename Contact>
 struct Wrapper<int (*)(Model, Data, Contact, int, int, mjtNum)> {
   static int collide(Model m, Data d, Contact found, int a, int b, mjtNum margin) {
-    if (is_claimed(m, a, b)) return 0;
+    bool claimed = false;
+    if (!has_memory_for([&] { claimed = is_claimed(m, a, b); })) stop_step();
+    if (claimed) return 0;
     const auto [first, second] = std::minmax(m->geom_type[a], m->geom_type[b]);
     return originals[first][second](m, d, found, a, b, margin);
   }

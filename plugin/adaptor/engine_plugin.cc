@@ -13,6 +13,7 @@
 #include "adaptor/auto_attach.h"
 #include "adaptor/evaluation/apply_contact.h"
 #include "adaptor/mujoco/plugin_room.h"
+#include "adaptor/out_of_memory.h"
 #include "adaptor/passive_callback.h"
 #include "adaptor/readings/drawing.h"
 #include "adaptor/scene/largest_state.h"
@@ -23,7 +24,7 @@ namespace volcontact::adaptor {
 namespace {
 
 // The contact of a model with our instance; null where it is refused.
-const SceneContact* contact_in_plugin(const mjModel* m) noexcept {
+const SceneContact* contact_in_plugin(const mjModel* m) {
   return contact_by_itself(m, Wish::kByPlugin);
 }
 
@@ -40,7 +41,8 @@ int init(const mjModel* m, mjData* /*d*/, int /*instance*/) {
     std::snprintf(message, sizeof message, "volcontact: %s", error.what());
   }
   if (message[0] != '\0') mju_error("%s", message);
-  contact_in_plugin(m);  // so that native contact is off before the first evaluation
+  // So that native contact is off before the first evaluation.
+  if (!has_memory_for([&] { contact_in_plugin(m); })) stop_step();
   return 0;
 }
 
@@ -50,15 +52,20 @@ void reset(const mjModel* m, mjtNum* state, void* /*data*/, int instance) {
 
 void compute(const mjModel* m, mjData* d, int /*instance*/, int /*capability*/) {
   if (is_looking_ahead()) return;
-  if (const SceneContact* contact = contact_in_plugin(m)) {
-    apply_contact(*contact, m, d, thread_scratch());
-  };
+  const bool done = has_memory_for([&] {
+    const SceneContact* contact = contact_in_plugin(m);
+    if (contact) apply_contact(*contact, m, d, thread_scratch());
+  });
+  if (!done) stop_step();
 }
 
 void visualize(const mjModel* m, mjData* d, const mjvOption* option, mjvScene* scene,
                int /*instance*/) {
-  const SceneContact* contact = contact_of(m);
-  if (contact) draw_sites(*contact, m, d, option, scene, thread_scratch());
+  const bool done = has_memory_for([&] {
+    const SceneContact* contact = contact_of(m);
+    if (contact) draw_sites(*contact, m, d, option, scene, thread_scratch());
+  });
+  if (!done) stop_step();
 }
 
 }  // namespace

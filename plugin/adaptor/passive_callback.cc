@@ -5,6 +5,7 @@
 
 #include "adaptor/auto_attach.h"
 #include "adaptor/evaluation/apply_contact.h"
+#include "adaptor/out_of_memory.h"
 #include "adaptor/scene_registry.h"
 #include "adaptor/step/look_ahead.h"
 #include "adaptor/volcontact_mujoco.h"
@@ -62,10 +63,11 @@ extern "C" void volcontact_passive(const mjModel* m, mjData* d) {
   if (is_inside && may_be_called_back) return;
   call_previous(m, d);
   if (is_looking_ahead()) return;
-  const SceneContact* contact =
-      attaches_by_itself() ? contact_by_itself(m, Wish::kByKeys) : contact_of(m);
-  // The engine plugin steps its own scenes.
-  if (contact && !contact->is_in_plugin()) {
-    apply_contact(*contact, m, d, thread_scratch());
-  }
+  const bool done = has_memory_for([&] {
+    const SceneContact* contact =
+        attaches_by_itself() ? contact_by_itself(m, Wish::kByKeys) : contact_of(m);
+    // The engine plugin steps its own scenes.
+    if (contact && !contact->is_in_plugin()) apply_contact(*contact, m, d, thread_scratch());
+  });
+  if (!done) stop_step();
 }

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <mutex>
+#include <new>
 #include <stdexcept>
 #include <vector>
 
@@ -91,6 +92,8 @@ VariantPointer variant_for(AttachedScene& scene, const mjModel* m) {
     auto contact = make_contact(m, before.keys().given, &before);
     require_same_structure(before, *contact);
     scene.last_valid = std::move(contact);
+  } catch (const std::bad_alloc&) {
+    throw;  // the numbers may be valid all the same
   } catch (const std::exception& invalid) {
     error = invalid.what();
   }
@@ -204,17 +207,13 @@ int scenes_of_the_callback() {
                     [](const AttachedScene& scene) { return !scene.last_valid->is_in_plugin(); }));
 }
 
-const SceneContact* contact_of(const mjModel* m) noexcept {
-  try {
-    const Variant* variant = find_variant(m);
-    if (!variant) return nullptr;
-    if (!variant->error.empty() && !variant->reported.exchange(true)) {
-      write_warning("volcontact goes on with the last valid numbers: " + variant->error);
-    }
-    return variant->contact.get();
-  } catch (...) {
-    return nullptr;  // out of memory
+const SceneContact* contact_of(const mjModel* m) {
+  const Variant* variant = find_variant(m);
+  if (!variant) return nullptr;
+  if (!variant->error.empty() && !variant->reported.exchange(true)) {
+    write_warning("volcontact goes on with the last valid numbers: " + variant->error);
   }
+  return variant->contact.get();
 }
 
 std::string live_error(const mjModel* m) {

@@ -32,9 +32,9 @@ int scenes_of_the_callback();
 /// The contact of an attached model, or of a copy of one; null for any other. Follows changes of
 /// the numbers in the model (materials, sizes): the next call returns a contact that has them.
 /// Where the changed numbers are not valid the last valid ones stay in force, and live_error() says
-/// why. Cheap, without locks, as long as nothing changes; never throws. Valid until this thread
-/// asks for another model.
-const SceneContact* contact_of(const mjModel* m) noexcept;
+/// why. Cheap, without locks, as long as nothing changes. Valid until this thread asks for another
+/// model. Throws std::bad_alloc alone.
+const SceneContact* contact_of(const mjModel* m);
 
 /// Why the present numbers of an attached model are not in force; empty when they are.
 std::string live_error(const mjModel* m);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -30,7 +31,7 @@ namespace volcontact::adaptor {
 namespace {
 
 // Copies as much of `text` as there is room for; returns the length of all of it.
-int copy_text(const std::string& text, char* buffer, int capacity) {
+int copy_text(std::string_view text, char* buffer, int capacity) {
   if (buffer && capacity > 0) {
     const std::size_t count = std::min(text.size(), static_cast<std::size_t>(capacity - 1));
     std::memcpy(buffer, text.data(), count);
@@ -62,6 +63,9 @@ int guarded(char* message, int message_size, Function&& function) noexcept {
   } catch (const std::logic_error& error) {
     copy_text(error.what(), message, message_size);
     return VOLCONTACT_ERROR_STATE;
+  } catch (const std::bad_alloc&) {
+    copy_text("out of memory", message, message_size);
+    return VOLCONTACT_ERROR_MEMORY;
   } catch (const std::exception& error) {
     copy_text(error.what(), message, message_size);
     return VOLCONTACT_ERROR_INTERNAL;

@@ -24,7 +24,8 @@ enum {
   VOLCONTACT_ERROR_SCENE = -1,    // the scene cannot be used: the message says what to change
   VOLCONTACT_ERROR_VERSION = -2,  // built for another MuJoCo
   VOLCONTACT_ERROR_STATE = -3,    // attached already, or not attached
-  VOLCONTACT_ERROR_INTERNAL = -4
+  VOLCONTACT_ERROR_INTERNAL = -4,
+  VOLCONTACT_ERROR_MEMORY = -5  // out of memory; nothing was changed
 };
 
 // One contact site: a connected region in which two geoms overlap.

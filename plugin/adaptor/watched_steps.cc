@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "adaptor/mujoco/mjgeoms.h"
+#include "adaptor/out_of_memory.h"
 #include "adaptor/passive_callback.h"
 #include "adaptor/readings/last_evaluation.h"
 #include "adaptor/scene_registry.h"
@@ -194,7 +195,7 @@ int step_watched(const mjModel* m, mjData* d, int most, volcontact_watch& watch)
   while (steps < most && watch.outcome == VOLCONTACT_GOES_ON) {
     const double began = d->time;
     scratch.cull.near.clear();  // nothing acts where the passive forces are off
-    mj_step(m, d);
+    step_or_throw(m, d);
     ++steps;
     if (has_diverged(d)) {
       watch.outcome = VOLCONTACT_DIVERGED;

@@ -9,6 +9,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "python_distance.h"
+#include "signals.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact::python {
@@ -44,7 +45,8 @@ InterferenceMetrics compute(const Shape& a, const Shape& b, const std::optional<
   std::unique_ptr<Memory> memory = spare ? std::move(spare) : std::make_unique<Memory>();
   clear_distance_error();
   {
-    nb::gil_scoped_release release;
+    const nb::gil_scoped_release release;
+    const SignalScope signals;
     interference(a, b, pose, options, memory->workspace, memory->out);
   }
   rethrow_distance_error();
@@ -83,7 +85,7 @@ Returns:
 Raises:
     ValueError: X_AB is no pose, a value is out of range, the engine does not serve the pair, or a
         SignedDistance returned no numbers of the right shape
-    whatever a SignedDistance raised itself)");
+    whatever a SignedDistance raised itself, and KeyboardInterrupt where Ctrl-C ends it)");
 }
 
 }  // namespace volcontact::python

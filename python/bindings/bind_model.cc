@@ -8,6 +8,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "python_law.h"
+#include "signals.h"
 #include "volcontact/model/contact_model.h"
 #include "volcontact/model/contact_tangent.h"
 #include "volcontact/model/model_text.h"
@@ -56,7 +57,8 @@ PyReport evaluate(const ContactModel& model, const std::optional<Matrix4>& X_WA,
   memory.elapsed = elapsed;
   thread_local ContactModel::Workspace workspace;
   {
-    nb::gil_scoped_release release;
+    const nb::gil_scoped_release release;
+    const SignalScope signals;
     model.evaluate(motion, memory, workspace, report);
     if (tangent) report.tangent = contact_tangent(model, report);
   }

@@ -65,6 +65,7 @@ CONTACT_DTYPE = np.dtype(
 _ERROR_VERSION = -2
 _ERROR_STATE = -3
 _ERROR_INTERNAL = -4
+_ERROR_MEMORY = -5
 _MESSAGE_SIZE = 4096
 _PREFIX, _SUFFIX = "libvolcontact_mujoco-", ".so"
 
@@ -269,12 +270,11 @@ class Adaptor:
         return self._library.volcontact_passive
 
     def function(self, name: str) -> Callable[..., int]:
-        """A function without a message that fails only in a library that does not fit."""
+        """A function without a message; it fails without memory, or in a library of another MuJoCo."""
         native = self._functions[name]
 
         def checked(*arguments: Any) -> int:
-            result = native(*arguments)
-            return result if result >= 0 else self.call(name, *arguments)
+            return _checked(name, native(*arguments), "")
 
         return checked
 
@@ -288,6 +288,7 @@ class Adaptor:
         Raises:
             ValueError: the scene, or the state of the model, does not allow it.
             RuntimeError: the library does not fit, or failed.
+            MemoryError: there was too little memory; nothing was changed.
         """
         if not _SIGNATURES[name].has_message:
             result = self._functions[name](*arguments)
@@ -296,13 +297,7 @@ class Adaptor:
             buffer = ctypes.create_string_buffer(_MESSAGE_SIZE)
             result = self._functions[name](*arguments, buffer, _MESSAGE_SIZE)
             message = buffer.value.decode("utf-8", "replace")
-        if result in (_ERROR_VERSION, _ERROR_INTERNAL):
-            raise RuntimeError(f"volcontact: {message or name + ' failed'}")
-        if result == _ERROR_STATE and not message:
-            message = "the model is not attached"
-        if result < 0:
-            raise ValueError(_in_words_of_python(message))
-        return result, message
+        return _checked(name, result, message), message
 
     def text(self, name: str, *arguments: Any) -> str:
         """Calls a function that writes a text of any length."""
@@ -312,6 +307,19 @@ class Adaptor:
         buffer = ctypes.create_string_buffer(length + 1)
         self.call(name, *arguments, buffer, length + 1)
         return buffer.value.decode("utf-8", "replace")
+
+
+def _checked(name: str, result: int, message: str) -> int:
+    """The result of a function, unless it is an error."""
+    if result >= 0:
+        return result
+    if result == _ERROR_MEMORY:
+        raise MemoryError(f"volcontact: out of memory in {name}; nothing was changed")
+    if result in (_ERROR_VERSION, _ERROR_INTERNAL):
+        raise RuntimeError(f"volcontact: {message or name + ' failed'}")
+    if result == _ERROR_STATE and not message:
+        message = "the model is not attached"
+    raise ValueError(_in_words_of_python(message))
 
 
 def _in_words_of_python(message: str) -> str:

@@ -171,5 +171,8 @@ class Watch:
 
         The model may be attached or not. Contact is watched at the state each step began with,
         everything else at the state it led to.
+
+        Raises:
+            MemoryError: there was too little memory for a step, which is not made.
         """
         return self._step(model._address, data._address, steps, ctypes.byref(self.felt))

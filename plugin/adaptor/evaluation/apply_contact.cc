@@ -34,7 +34,7 @@ bool any(const std::vector<char>& flags, std::size_t count) {
 }
 
 void solve_implicit(const SceneContact& contact, const mjModel* m, mjData* d,
-                    EvaluationScratch& scratch) noexcept {
+                    EvaluationScratch& scratch) {
   ImplicitStep& implicit = scratch.implicit;
   implicit.clear();
   const double fall = fall_of(m);
@@ -88,7 +88,7 @@ void solve_implicit(const SceneContact& contact, const mjModel* m, mjData* d,
 
 // What the step that ends here released: solved pairs know when they are, others at its end.
 void release(const AccountKeeper& account, EnergyAccount& now,
-             EvaluationScratch& scratch) noexcept {
+             EvaluationScratch& scratch) {
   if (!account.continues()) return;
   const EnergyAccount before = account.begin().energy();
   now.released = before.released + before.releasing;
@@ -98,7 +98,7 @@ void release(const AccountKeeper& account, EnergyAccount& now,
 // The forces that act, in place of what the laws say at this evaluation.
 void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
                    const UserdataBlock& our, const AccountKeeper& account, EnergyAccount& now,
-                   EvaluationScratch& scratch) noexcept {
+                   EvaluationScratch& scratch) {
   const bool is_rk4 = m->opt.integrator == mjINT_RK4;
   const double* begin = account.continues() ? account.begin().states() : nullptr;
   if (account.is_within_step()) {
@@ -131,7 +131,7 @@ void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
 }
 
 // Writes what the sites of this evaluation keep; false when there was no room for all.
-bool keep_sites(const SceneContact& contact, double* states, EvaluationScratch& scratch) noexcept {
+bool keep_sites(const SceneContact& contact, double* states, EvaluationScratch& scratch) {
   const SitePool<double> pool(states, contact.sites());
   pool.clear();
   if (contact.sites().rows == 0) return true;
@@ -152,7 +152,7 @@ bool keep_sites(const SceneContact& contact, double* states, EvaluationScratch& 
 }
 
 void write_forces(const SceneContact& contact, const mjModel* m, mjData* d, bool goes_on,
-                  EvaluationScratch& scratch) noexcept {
+                  EvaluationScratch& scratch) {
   const UserdataBlock our = contact.block(m, d);
   BodyForces& forces = scratch.forces;
   const bool cartesian = contact.options().target == Target::kXfrc;
@@ -209,7 +209,7 @@ void write_forces(const SceneContact& contact, const mjModel* m, mjData* d, bool
 // How the mocap bodies move, into the slot of this evaluation. Returns the work that they did on
 // the contacts since the last [J].
 double follow_mocaps(const mjModel* m, const mjData* d, const UserdataBlock& our,
-                     const AccountKeeper& account, EvaluationScratch& scratch) noexcept {
+                     const AccountKeeper& account, EvaluationScratch& scratch) {
   scratch.mocaps = MocapMotion(our.slot(0).mocaps());
   if (m->nmocap == 0) return 0.0;
   if (!account.continues()) {
@@ -223,16 +223,9 @@ double follow_mocaps(const mjModel* m, const mjData* d, const UserdataBlock& our
   return account.is_within_step() ? 0.0 : scratch.mocaps.work_since(m, before, elapsed);
 }
 
-}  // namespace
-
-void apply_contact(const SceneContact& contact, const mjModel* m, mjData* d,
-                   EvaluationScratch& scratch) noexcept {
-  if (!contact.has_room(m)) return;
-  const UserdataBlock our = contact.block(m, d);
-  our.claim();
-  // Nobody tells a block beside mjData of a reset; to it a time that goes back is one.
-  if (!contact.is_beside()) follow_clock(m, d, our, scratch.way);
-  const AccountKeeper account(our, d->time, m->opt.timestep, m->opt.integrator == mjINT_RK4);
+// Fills the slot that `account` has opened, and writes the forces.
+void fill_slot(const SceneContact& contact, const mjModel* m, mjData* d, const UserdataBlock& our,
+               const AccountKeeper& account, EvaluationScratch& scratch) {
   const double* committed = account.continues() ? our.slot(1).states() : nullptr;
   const bool goes_on = account.is_within_step();
   const double driven = follow_mocaps(m, d, our, account, scratch);
@@ -243,7 +236,6 @@ void apply_contact(const SceneContact& contact, const mjModel* m, mjData* d,
   if (contact.is_implicit()) choose_forces(contact, m, d, our, account, now, scratch);
   bool kept = keep_sites(contact, our.slot(0).states(), scratch);
   if (contact.is_implicit()) kept = keep_energies(contact, our.slot(0).states(), scratch) && kept;
-  if (!kept) our.forgotten() += 1.0;
 
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const ContactReport& report = scratch.reports[k];
@@ -261,10 +253,30 @@ void apply_contact(const SceneContact& contact, const mjModel* m, mjData* d,
   }
   now.elastic -= now.unpaid;
   write_forces(contact, m, d, goes_on, scratch);
+  if (!kept) our.forgotten() += 1.0;
   now.force_power = power_of(our.slot(0).forces(), d->qvel, m->nv);
   keep_motion(m, d, our);
   account.write(now, account.continues() ? power_of(our.slot(1).forces(), d->qvel, m->nv) : 0.0,
                 driven);
+}
+
+}  // namespace
+
+void apply_contact(const SceneContact& contact, const mjModel* m, mjData* d,
+                   EvaluationScratch& scratch) {
+  if (!contact.has_room(m)) return;
+  const UserdataBlock our = contact.block(m, d);
+  our.claim();
+  // Nobody tells a block beside mjData of a reset; to it a time that goes back is one.
+  if (!contact.is_beside()) follow_clock(m, d, our, scratch.way);
+  const AccountKeeper account(our, d->time, m->opt.timestep, m->opt.integrator == mjINT_RK4);
+  try {
+    fill_slot(contact, m, d, our, account, scratch);
+  } catch (...) {
+    our.drop_newest();  // half filled: the next evaluation goes on from the one before
+    scratch = EvaluationScratch();
+    throw;
+  }
 }
 
 void release_contact(const SceneContact& contact, const mjModel* m, mjData* d) noexcept {

@@ -9,7 +9,7 @@ namespace volcontact::adaptor {
 /// What the passive callback does: evaluates all pairs at the poses and velocities in `d` and
 /// writes the forces to the target. The same result however often it is called at one time.
 void apply_contact(const SceneContact& contact, const mjModel* m, mjData* d,
-                   EvaluationScratch& scratch) noexcept;
+                   EvaluationScratch& scratch);
 
 /// Takes our part out of the force array of the target.
 void release_contact(const SceneContact& contact, const mjModel* m, mjData* d) noexcept;

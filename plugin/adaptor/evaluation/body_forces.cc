@@ -11,14 +11,14 @@ void BodyForces::reset(const mjModel* m) {
 }
 
 void BodyForces::add(const mjModel* m, const mjData* d, int body, const Vec3& point,
-                     const Vec3& force, const Vec3& torque) noexcept {
+                     const Vec3& force, const Vec3& torque) {
   if (m->body_weldid[body] == 0) return;  // the world takes any force
   const Vec3 com = vec3_at(d->subtree_com, m->body_rootid[body]);
   at_tree_com_[static_cast<std::size_t>(body)] += Wrench{torque, force}.about(com - point);
   any_ = true;
 }
 
-std::vector<double>& BodyForces::generalized(const mjModel* m, const mjData* d) noexcept {
+std::vector<double>& BodyForces::generalized(const mjModel* m, const mjData* d) {
   numbers_.assign(static_cast<std::size_t>(m->nv), 0.0);
   if (!any_) return numbers_;
   // A joint carries the forces on all bodies beyond it; parents have lower numbers.
@@ -35,7 +35,7 @@ std::vector<double>& BodyForces::generalized(const mjModel* m, const mjData* d) 
   return numbers_;
 }
 
-std::vector<double>& BodyForces::cartesian(const mjModel* m, const mjData* d) noexcept {
+std::vector<double>& BodyForces::cartesian(const mjModel* m, const mjData* d) {
   numbers_.assign(6 * static_cast<std::size_t>(m->nbody), 0.0);
   if (!any_) return numbers_;
   for (int body = 1; body < m->nbody; ++body) {
@@ -50,7 +50,7 @@ std::vector<double>& BodyForces::cartesian(const mjModel* m, const mjData* d) no
   return numbers_;
 }
 
-bool drop_non_finite(std::vector<double>& numbers) noexcept {
+bool drop_non_finite(std::vector<double>& numbers) {
   bool dropped = false;
   for (double& number : numbers) {
     if (number - number == 0.0) continue;

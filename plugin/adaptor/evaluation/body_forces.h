@@ -17,16 +17,16 @@ class BodyForces {
 
   /// A force [N] at `point`, a point of the world [m], and a torque [N m], on a body, world frame.
   void add(const mjModel* m, const mjData* d, int body, const Vec3& point, const Vec3& force,
-           const Vec3& torque) noexcept;
+           const Vec3& torque);
 
   // Both return the same memory of this object, which the caller may change. Ask for each once at
   // most, and for `generalized` last.
 
   /// The generalized force J^T f, nv numbers: what mj_applyFT, summed over all forces, would give.
-  std::vector<double>& generalized(const mjModel* m, const mjData* d) noexcept;
+  std::vector<double>& generalized(const mjModel* m, const mjData* d);
 
   /// Force and torque about each body's centre of mass, 6 nbody numbers as in xfrc_applied.
-  std::vector<double>& cartesian(const mjModel* m, const mjData* d) noexcept;
+  std::vector<double>& cartesian(const mjModel* m, const mjData* d);
 
  private:
   std::vector<Wrench> at_tree_com_;  // of each body, about its tree's centre of mass
@@ -35,6 +35,6 @@ class BodyForces {
 };
 
 /// Sets what is not a finite number to zero; returns whether there was any.
-bool drop_non_finite(std::vector<double>& numbers) noexcept;
+bool drop_non_finite(std::vector<double>& numbers);
 
 }  // namespace volcontact::adaptor

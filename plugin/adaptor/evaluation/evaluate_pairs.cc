@@ -9,6 +9,7 @@
 
 #include "adaptor/evaluation/work_sharing.h"
 #include "adaptor/mujoco/mjgeoms.h"
+#include "volcontact/base/first_failure.h"
 
 namespace volcontact::adaptor {
 namespace {
@@ -57,7 +58,7 @@ Work plan_work(const SceneContact& contact, int threads, EvaluationScratch& scra
 
 void evaluate_one(const SceneContact& contact, const mjModel* m, const mjData* d,
                   const SitesBefore& before, int k, ContactModel::Workspace& workspace,
-                  EvaluationScratch& scratch) noexcept {
+                  EvaluationScratch& scratch) {
   const std::size_t index = static_cast<std::size_t>(k);
   const int pair_index = scratch.cull.near[index];
   const PairContact& pair = contact.pair(pair_index);
@@ -99,7 +100,7 @@ void evaluate_one(const SceneContact& contact, const mjModel* m, const mjData* d
 }  // namespace
 
 void evaluate_pairs(const SceneContact& contact, const mjModel* m, const mjData* d,
-                    const SitesBefore& before, EvaluationScratch& scratch) noexcept {
+                    const SitesBefore& before, EvaluationScratch& scratch) {
   contact.cull().run(d, scratch.cull);
   scratch.joined.build(contact, d, scratch.cull.near);
   const std::vector<int>& near = scratch.cull.near;
@@ -128,16 +129,17 @@ void evaluate_pairs(const SceneContact& contact, const mjModel* m, const mjData*
   const int single = work.own_sharing + work.single_tasks;
   const int tasks = work.single_tasks + (work.pairs - single + kPairsPerTask - 1) / kPairsPerTask;
   const bool is_shared = work.threads > 1 && tasks > 1;
+  FirstFailure failure;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(work.threads) if (is_shared)
   for (int task = 0; task < tasks; ++task) {
     const int thread = is_shared ? omp_get_thread_num() : 0;
-    if (task < work.single_tasks) {
-      evaluate_some(work.own_sharing + task, work.own_sharing + task + 1, thread);
-    } else {
-      const int first = single + (task - work.single_tasks) * kPairsPerTask;
-      evaluate_some(first, std::min(first + kPairsPerTask, work.pairs), thread);
-    }
+    const bool is_single = task < work.single_tasks;
+    const int first = is_single ? work.own_sharing + task
+                                : single + (task - work.single_tasks) * kPairsPerTask;
+    const int last = is_single ? first + 1 : std::min(first + kPairsPerTask, work.pairs);
+    failure.guard([&] { evaluate_some(first, last, thread); });
   }
+  failure.rethrow();
   if (!is_free) return;
   choice.took(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
 }

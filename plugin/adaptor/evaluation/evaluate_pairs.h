@@ -16,6 +16,6 @@ struct SitesBefore {
 /// Finds the pairs that are near and evaluates them at the poses and velocities in `d`, into
 /// `scratch.reports`, by as many threads as are worth it: the same bits by any number.
 void evaluate_pairs(const SceneContact& contact, const mjModel* m, const mjData* d,
-                    const SitesBefore& before, EvaluationScratch& scratch) noexcept;
+                    const SitesBefore& before, EvaluationScratch& scratch);
 
 }  // namespace volcontact::adaptor

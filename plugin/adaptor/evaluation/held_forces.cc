@@ -80,7 +80,7 @@ class Kept {
 }  // namespace
 
 void keep_solved(const SceneContact& contact, const UserdataBlock& our,
-                 const EvaluationScratch& scratch) noexcept {
+                 const EvaluationScratch& scratch) {
   int count = 0;
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const std::vector<SiteReport>& sites = scratch.reports[k].sites;
@@ -91,7 +91,7 @@ void keep_solved(const SceneContact& contact, const UserdataBlock& our,
   our.set_solved(count);
 }
 
-void recall_solved(const UserdataBlock& our, EvaluationScratch& scratch) noexcept {
+void recall_solved(const UserdataBlock& our, EvaluationScratch& scratch) {
   Kept kept(our);
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     kept.take(k, scratch);
@@ -99,7 +99,7 @@ void recall_solved(const UserdataBlock& our, EvaluationScratch& scratch) noexcep
 }
 
 void hold_solved(const SceneContact& contact, const mjModel* m, mjData* d, const UserdataBlock& our,
-                 EvaluationScratch& scratch) noexcept {
+                 EvaluationScratch& scratch) {
   Kept kept(our);
   scratch.stiff.clear();
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
@@ -114,7 +114,7 @@ void hold_solved(const SceneContact& contact, const mjModel* m, mjData* d, const
   }
 }
 
-void postpone_stiff(const SceneContact& contact, EvaluationScratch& scratch) noexcept {
+void postpone_stiff(const SceneContact& contact, EvaluationScratch& scratch) {
   std::size_t site = 0;
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     ContactReport& report = scratch.reports[k];
@@ -129,7 +129,7 @@ void postpone_stiff(const SceneContact& contact, EvaluationScratch& scratch) noe
 }
 
 void add_held(const SceneContact& contact, const mjModel* m, const mjData* d,
-              const UserdataBlock& our, BodyForces& forces) noexcept {
+              const UserdataBlock& our, BodyForces& forces) {
   for (int i = 0; i < our.solved(); ++i) {
     const HeldSite site = our.solved_site(i);
     const GeomPair& geoms = contact.pair(site.pair()).geoms;

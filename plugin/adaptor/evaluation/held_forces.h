@@ -12,21 +12,21 @@ namespace volcontact::adaptor {
 
 /// Keeps the forces of the pairs that other forces act on than their laws say.
 void keep_solved(const SceneContact& contact, const UserdataBlock& our,
-                 const EvaluationScratch& scratch) noexcept;
+                 const EvaluationScratch& scratch);
 
 /// Puts what was kept into the reports of its pairs.
-void recall_solved(const UserdataBlock& our, EvaluationScratch& scratch) noexcept;
+void recall_solved(const UserdataBlock& our, EvaluationScratch& scratch);
 
 /// The same at a later stage of Runge-Kutta, and marks what that cannot hold in `scratch.stiff`.
 void hold_solved(const SceneContact& contact, const mjModel* m, mjData* d, const UserdataBlock& our,
-                 EvaluationScratch& scratch) noexcept;
+                 EvaluationScratch& scratch);
 
 /// What a later stage of Runge-Kutta cannot hold, and was not solved when the step began, waits
 /// for the next.
-void postpone_stiff(const SceneContact& contact, EvaluationScratch& scratch) noexcept;
+void postpone_stiff(const SceneContact& contact, EvaluationScratch& scratch);
 
 /// Adds what was kept to the forces on the bodies.
 void add_held(const SceneContact& contact, const mjModel* m, const mjData* d,
-              const UserdataBlock& our, BodyForces& forces) noexcept;
+              const UserdataBlock& our, BodyForces& forces);
 
 }  // namespace volcontact::adaptor

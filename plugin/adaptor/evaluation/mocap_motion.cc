@@ -28,7 +28,7 @@ int body_of(const mjModel* m, int mocap) {
 }  // namespace
 
 Twist MocapMotion::at(const mjModel* m, const mjData* d, int body,
-                      const Vec3& point) const noexcept {
+                      const Vec3& point) const {
   const int mocap = mocap_of(m, body);
   if (mocap < 0 || !rows_) return {};
   const MocapRow row = this->row(mocap);
@@ -37,7 +37,7 @@ Twist MocapMotion::at(const mjModel* m, const mjData* d, int body,
 }
 
 void MocapMotion::read(const mjModel* m, const mjData* d, const MocapMotion* before, double elapsed,
-                       bool goes_on) const noexcept {
+                       bool goes_on) const {
   for (int mocap = 0; mocap < m->nmocap; ++mocap) {
     const int body = body_of(m, mocap);
     const MocapRow now = row(mocap);
@@ -67,7 +67,7 @@ void MocapMotion::read(const mjModel* m, const mjData* d, const MocapMotion* bef
 }
 
 void MocapMotion::add_load(const mjModel* m, const mjData* d, int body, const Vec3& point,
-                           const Vec3& force, const Vec3& torque) const noexcept {
+                           const Vec3& force, const Vec3& torque) const {
   const int mocap = mocap_of(m, body);
   if (mocap < 0) return;
   const MocapRow row = this->row(mocap);
@@ -76,7 +76,7 @@ void MocapMotion::add_load(const mjModel* m, const mjData* d, int body, const Ve
 }
 
 double MocapMotion::work_since(const mjModel* m, const MocapMotion& before,
-                               double elapsed) const noexcept {
+                               double elapsed) const {
   double power = 0.0;
   for (int mocap = 0; mocap < m->nmocap; ++mocap) {
     const MocapRow now = row(mocap), last = before.row(mocap);

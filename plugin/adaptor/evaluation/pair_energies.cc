@@ -17,7 +17,7 @@ struct ExplicitShare {
 
 // The share of the explicit forces of a pair that does no more work than the pair may.
 ExplicitShare share_of(const SceneContact& contact, const mjModel* m, std::size_t k,
-                       const PairEnergy::Now& now, const EvaluationScratch& scratch) noexcept {
+                       const PairEnergy::Now& now, const EvaluationScratch& scratch) {
   const double h = m->opt.timestep;
   const double fall = fall_of(m);
   const PairContact& pair = contact.pair(scratch.cull.near[k]);
@@ -42,7 +42,7 @@ double fall_of(const mjModel* m) {
 }
 
 double read_energies(const SceneContact& contact, const double* committed, double elapsed,
-                     bool is_rk4, EvaluationScratch& scratch) noexcept {
+                     bool is_rk4, EvaluationScratch& scratch) {
   const std::size_t count = scratch.cull.near.size();
   scratch.energies.assign(count, PairEnergy());
   double unpaid = 0.0;
@@ -79,7 +79,7 @@ double read_energies(const SceneContact& contact, const double* committed, doubl
 }
 
 bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m,
-                       EvaluationScratch& scratch) noexcept {
+                       EvaluationScratch& scratch) {
   constexpr double kRounding = 1e-9;
   bool some = false;
   std::size_t first = 0;  // of the pair's sites
@@ -108,7 +108,7 @@ bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m,
 }
 
 bool limit_explicit(const SceneContact& contact, const mjModel* m,
-                    EvaluationScratch& scratch) noexcept {
+                    EvaluationScratch& scratch) {
   bool limited = false;
   for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
     PairEnergy& energy = scratch.energies[k];
@@ -130,7 +130,7 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m,
 }
 
 bool keep_energies(const SceneContact& contact, double* states,
-                   EvaluationScratch& scratch) noexcept {
+                   EvaluationScratch& scratch) {
   const SitePool<double> pool(states + contact.sites().size(), contact.energies());
   pool.clear();
   scratch.kept.clear();

@@ -14,20 +14,20 @@ double fall_of(const mjModel* m);
 /// What the pairs hold of the energy of the bodies, after the step that ends here, into
 /// `scratch.energies`. Returns the elastic energy that nobody paid [J].
 double read_energies(const SceneContact& contact, const double* committed, double elapsed,
-                     bool is_rk4, EvaluationScratch& scratch) noexcept;
+                     bool is_rk4, EvaluationScratch& scratch);
 
 /// Runge-Kutta's stages are exact enough, but for what no motion put in: pairs that would give it
 /// back count as stiff. Returns whether there are some.
 bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m,
-                       EvaluationScratch& scratch) noexcept;
+                       EvaluationScratch& scratch);
 
 /// The same bound for pairs whose forces are explicit. Returns whether some are less than their
 /// laws say.
 bool limit_explicit(const SceneContact& contact, const mjModel* m,
-                    EvaluationScratch& scratch) noexcept;
+                    EvaluationScratch& scratch);
 
 /// Writes the rows behind those of the sites; false when there was no room for all.
 bool keep_energies(const SceneContact& contact, double* states,
-                   EvaluationScratch& scratch) noexcept;
+                   EvaluationScratch& scratch);
 
 }  // namespace volcontact::adaptor

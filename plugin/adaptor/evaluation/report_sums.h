@@ -7,7 +7,7 @@
 namespace volcontact::adaptor {
 
 /// The sums of a report whose sites have changed.
-inline void total_up(ContactReport& report) noexcept {
+inline void total_up(ContactReport& report) {
   report.elastic_energy = 0.0;
   report.bristle_energy = {};
   report.power = {};
@@ -22,7 +22,7 @@ inline void total_up(ContactReport& report) noexcept {
 
 /// A share of all that acts at the sites of a report that keeps its inputs. Friction keeps what it
 /// holds under what presses then.
-inline void take_share(double share, const ContactModel& model, ContactReport& report) noexcept {
+inline void take_share(double share, const ContactModel& model, ContactReport& report) {
   for (std::size_t i = 0; i < report.sites.size(); ++i) {
     SiteReport& site = report.sites[i];
     site.normal_force *= share;

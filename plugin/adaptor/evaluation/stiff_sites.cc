@@ -15,7 +15,7 @@ namespace {
 // How much an impulse along the normal at a point changes the speed there of one body against the
 // other, at the present pose [1/kg].
 double mobility_along(const mjModel* m, mjData* d, const GeomPair& geoms, const Vec3& point,
-                      const Vec3& normal, std::vector<double>& row) noexcept {
+                      const Vec3& normal, std::vector<double>& row) {
   const auto nv = static_cast<std::size_t>(m->nv);
   row.assign(2 * nv, 0.0);
   for (const int geom : {geoms.a, geoms.b}) {
@@ -65,7 +65,7 @@ bool shakes(const PairContact& pair, ContactReport& report, std::size_t site,
 }  // namespace
 
 bool is_stiff(const mjModel* m, mjData* d, const PairContact& pair, ContactReport& report,
-              std::size_t site, ExplicitBounds most, EvaluationScratch& scratch) noexcept {
+              std::size_t site, ExplicitBounds most, EvaluationScratch& scratch) {
   const double h = m->opt.timestep;
   const InverseMass inverse = inverse_mass(m, pair.geoms);
   const Friction* friction = pair.model.laws().friction.get();
@@ -95,7 +95,7 @@ bool is_stiff(const mjModel* m, mjData* d, const PairContact& pair, ContactRepor
 }
 
 bool find_stiff_sites(const SceneContact& contact, const mjModel* m, mjData* d,
-                      EvaluationScratch& scratch) noexcept {
+                      EvaluationScratch& scratch) {
   const bool all = contact.options().implicit == Implicit::kAlways;
   const auto most = ExplicitBounds::of(m->opt.integrator == mjINT_RK4);
   scratch.stiff.clear();

@@ -74,7 +74,7 @@ class PairRules {
 };
 
 // With -max instead of max both ends are lower bounds of the same kind.
-Cull::Box world_bounds(const Shape& solid, const Pose& X_WG) noexcept {
+Cull::Box world_bounds(const Shape& solid, const Pose& X_WG) {
   return std::visit(
       [&](const auto& s) {
         Cull::Box box;
@@ -92,14 +92,14 @@ Cull::Box world_bounds(const Shape& solid, const Pose& X_WG) noexcept {
 
 // Apart along an axis when min_a >= max_b or min_b >= max_a. Comparisons with NaN are false, so
 // that a pose that is no number reaches the engine, which reports it.
-bool are_apart(const Cull::Box& a, const Cull::Box& b) noexcept {
+bool are_apart(const Cull::Box& a, const Cull::Box& b) {
   const auto apart = (a.ends[0] + b.reverse[0] >= 0.0) | (a.ends[1] + b.reverse[1] >= 0.0) |
                      (a.ends[2] + b.reverse[2] >= 0.0);
   return (apart[0] | apart[1]) != 0;
 }
 
 // Whether some of the solid at X_WG is below the plane geom's surface.
-bool reaches_plane(const mjData* d, int plane, const Shape& solid, const Pose& X_WG) noexcept {
+bool reaches_plane(const mjData* d, int plane, const Shape& solid, const Pose& X_WG) {
   const Pose X_WP = pose_of_geom(d, plane);
   const Vec3 normal = X_WP.rotation.col(2);
   const Vec3 down_G = -(X_WG.rotation.transpose() * normal);
@@ -155,7 +155,7 @@ Cull::Cull(const std::vector<GeomPair>& pairs, const std::vector<Shape>& solids)
 }
 
 // The pair of two geoms, -1 where they cannot touch.
-int Cull::pair_of(int a, int b) const noexcept {
+int Cull::pair_of(int a, int b) const {
   if (a > b) std::swap(a, b);
   const auto begin = pairs_->begin() + row_[static_cast<std::size_t>(a)];
   const auto end = pairs_->begin() + row_[static_cast<std::size_t>(a) + 1];
@@ -164,7 +164,7 @@ int Cull::pair_of(int a, int b) const noexcept {
   return found != end && found->b == b ? static_cast<int>(found - pairs_->begin()) : -1;
 }
 
-void Cull::find_all(Scratch& scratch) const noexcept {
+void Cull::find_all(Scratch& scratch) const {
   for (std::size_t i = 0; i < pairs_->size(); ++i) {
     const GeomPair& pair = (*pairs_)[i];
     const int a = bounded_of_geom_[static_cast<std::size_t>(pair.a)];
@@ -179,7 +179,7 @@ void Cull::find_all(Scratch& scratch) const noexcept {
 }
 
 // Along the axis on which the solids are spread most: each with those that begin before it ends.
-void Cull::sweep(Scratch& scratch) const noexcept {
+void Cull::sweep(Scratch& scratch) const {
   const std::size_t count = bounded_.size();
   int axis = 0;
   double widest = -1.0;
@@ -229,7 +229,7 @@ void Cull::sweep(Scratch& scratch) const noexcept {
   }
 }
 
-void Cull::run(const mjData* d, Scratch& scratch) const noexcept {
+void Cull::run(const mjData* d, Scratch& scratch) const {
   scratch.boxes.resize(bounded_.size());
   for (std::size_t i = 0; i < bounded_.size(); ++i) {
     scratch.boxes[i] = world_bounds(bounded_[i].solid, pose_of_geom(d, bounded_[i].geom));

@@ -57,7 +57,7 @@ class Cull {
     std::vector<int> near;  ///< result: indices of pairs, ascending
   };
 
-  void run(const mjData* d, Scratch& scratch) const noexcept;
+  void run(const mjData* d, Scratch& scratch) const;
 
  private:
   struct Bounded {
@@ -68,9 +68,9 @@ class Cull {
     int pair, plane;
     int other;  // index into bounded_
   };
-  int pair_of(int a, int b) const noexcept;
-  void find_all(Scratch& scratch) const noexcept;
-  void sweep(Scratch& scratch) const noexcept;
+  int pair_of(int a, int b) const;
+  void find_all(Scratch& scratch) const;
+  void sweep(Scratch& scratch) const;
 
   const std::vector<GeomPair>* pairs_;
   std::vector<int> row_;  // by geom: its first pair as `a`; one more at the end

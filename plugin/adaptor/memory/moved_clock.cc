@@ -44,7 +44,7 @@ bool goes_on(const mjModel* m, const mjData* d, const UserdataBlock& block, doub
 }  // namespace
 
 void follow_clock(const mjModel* m, const mjData* d, const UserdataBlock& block,
-                  std::vector<double>& difference) noexcept {
+                  std::vector<double>& difference) {
   if (block.count() == 0 || is_in_time(m, d->time, block)) return;
   difference.resize(static_cast<std::size_t>(m->nv));
   for (const double elapsed : {block.slot(0).step(), 0.0}) {
@@ -56,7 +56,7 @@ void follow_clock(const mjModel* m, const mjData* d, const UserdataBlock& block,
   }
 }
 
-void keep_motion(const mjModel* m, const mjData* d, const UserdataBlock& block) noexcept {
+void keep_motion(const mjModel* m, const mjData* d, const UserdataBlock& block) {
   const auto number = [](mjtNum x) { return std::isfinite(x) ? x : 0.0; };
   double* const velocities = std::transform(d->qpos, d->qpos + m->nq, block.motion(), number);
   std::transform(d->qvel, d->qvel + m->nv, velocities, number);

@@ -17,10 +17,10 @@ namespace volcontact::adaptor {
 /// those evaluations are moved to the new time. Call it before open_slot(). `difference`: memory
 /// that is reused.
 void follow_clock(const mjModel* m, const mjData* d, const UserdataBlock& block,
-                  std::vector<double>& difference) noexcept;
+                  std::vector<double>& difference);
 
 /// Keeps positions and velocities of this evaluation for the next call of follow_clock(); zeros for
 /// what is no number.
-void keep_motion(const mjModel* m, const mjData* d, const UserdataBlock& block) noexcept;
+void keep_motion(const mjModel* m, const mjData* d, const UserdataBlock& block);
 
 }  // namespace volcontact::adaptor

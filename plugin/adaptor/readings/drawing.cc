@@ -9,7 +9,7 @@ namespace {
 
 // A geom of the drawing whose z axis is along `axis`; null when the drawing is full.
 void draw(mjvScene* scene, mjtGeom type, const Vec3& size, const Vec3& position, const Vec3& axis,
-          const float* rgba) noexcept {
+          const float* rgba) {
   if (scene->ngeom >= scene->maxgeom) return;
   mjtNum quaternion[4], rotation[9];
   mju_quatZ2Vec(quaternion, axis.data());
@@ -22,7 +22,7 @@ void draw(mjvScene* scene, mjtGeom type, const Vec3& size, const Vec3& position,
 }  // namespace
 
 void draw_sites(const SceneContact& contact, const mjModel* m, const mjData* d,
-                const mjvOption* option, mjvScene* scene, EvaluationScratch& scratch) noexcept {
+                const mjvOption* option, mjvScene* scene, EvaluationScratch& scratch) {
   const bool patches = option->flags[mjVIS_CONTACTPOINT] != 0;
   const bool forces = option->flags[mjVIS_CONTACTFORCE] != 0;
   if (!patches && !forces) return;

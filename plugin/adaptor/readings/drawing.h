@@ -13,6 +13,6 @@ namespace volcontact::adaptor {
 /// the force on the second geom, scaled by the model's `vis.map.force`. Draws as many as there is
 /// room for.
 void draw_sites(const SceneContact& contact, const mjModel* m, const mjData* d,
-                const mjvOption* option, mjvScene* scene, EvaluationScratch& scratch) noexcept;
+                const mjvOption* option, mjvScene* scene, EvaluationScratch& scratch);
 
 }  // namespace volcontact::adaptor

@@ -18,7 +18,7 @@ bool has_evaluation(const UserdataBlock& block, const mjData* d, bool is_beside)
 }  // namespace
 
 bool revisit(const SceneContact& contact, const mjModel* m, const mjData* d,
-             EvaluationScratch& scratch) noexcept {
+             EvaluationScratch& scratch) {
   if (!contact.has_room(m)) return false;
   const UserdataBlock our = contact.block(m, d);
   if (!has_evaluation(our, d, contact.is_beside())) return false;
@@ -27,24 +27,29 @@ bool revisit(const SceneContact& contact, const mjModel* m, const mjData* d,
     before = {our.slot(1).states(), our.slot(0).time() - our.slot(1).time()};
   }
   scratch.mocaps = MocapMotion(our.slot(0).mocaps());
-  evaluate_pairs(contact, m, d, before, scratch);
-  recall_solved(our, scratch);
+  try {
+    evaluate_pairs(contact, m, d, before, scratch);
+    recall_solved(our, scratch);
+  } catch (...) {
+    scratch = EvaluationScratch();
+    throw;
+  }
   return true;
 }
 
-EnergyAccount energy(const SceneContact& contact, const mjModel* m, const mjData* d) noexcept {
+EnergyAccount energy(const SceneContact& contact, const mjModel* m, const mjData* d) {
   if (!contact.has_room(m)) return {};
   const UserdataBlock our = contact.block(m, d);
   return has_evaluation(our, d, contact.is_beside()) ? our.slot(0).energy() : EnergyAccount{};
 }
 
-double dropped(const SceneContact& contact, const mjModel* m, const mjData* d) noexcept {
+double dropped(const SceneContact& contact, const mjModel* m, const mjData* d) {
   if (!contact.has_room(m)) return 0.0;
   const UserdataBlock our = contact.block(m, d);
   return our.is_ours() ? our.dropped() : 0.0;
 }
 
-double forgotten(const SceneContact& contact, const mjModel* m, const mjData* d) noexcept {
+double forgotten(const SceneContact& contact, const mjModel* m, const mjData* d) {
   if (!contact.has_room(m)) return 0.0;
   const UserdataBlock our = contact.block(m, d);
   return our.is_ours() ? our.forgotten() : 0.0;

@@ -26,7 +26,7 @@ Mat3 root_of(Mat3 rest) {
 }  // namespace
 
 void ContactEquations::solve(ContactSpace& space, double step, std::vector<double>& force,
-                             std::vector<double>& velocity) noexcept {
+                             std::vector<double>& velocity) {
   if (space.prefers_dofs()) {
     solve_for_dofs(space, step, force, velocity);
   } else {
@@ -34,7 +34,7 @@ void ContactEquations::solve(ContactSpace& space, double step, std::vector<doubl
   }
 }
 
-void ContactEquations::make_slopes(int places) noexcept {
+void ContactEquations::make_slopes(int places) {
   slopes_.assign(size(places), ContactSpace::Square::Zero());
   for (const Column& column : columns) {
     const int at = column.first % kRows;
@@ -45,7 +45,7 @@ void ContactEquations::make_slopes(int places) noexcept {
 
 template <int K>
 void ContactEquations::solve_blocks(const ContactSpace& space, double step, BlockMatrix<K>& matrix,
-                                    std::vector<double>& force) noexcept {
+                                    std::vector<double>& force) {
   using Block = typename BlockMatrix<K>::Block;
   using Part = typename BlockMatrix<K>::Vector;
   const bool is_symmetric = space.is_symmetric();
@@ -77,7 +77,7 @@ void ContactEquations::solve_blocks(const ContactSpace& space, double step, Bloc
 
 void ContactEquations::solve_for_forces(const ContactSpace& space, double step,
                                         std::vector<double>& force,
-                                        std::vector<double>& velocity) noexcept {
+                                        std::vector<double>& velocity) {
   const int rows = space.rows();
   make_slopes(space.places());
   factors_.resize(slopes_.size());
@@ -106,7 +106,7 @@ void ContactEquations::solve_for_forces(const ContactSpace& space, double step,
 }
 
 // Adds h J' C J of one place to the matrix.
-void ContactEquations::add_slope(const ContactSpace& space, int place, double step) noexcept {
+void ContactEquations::add_slope(const ContactSpace& space, int place, double step) {
   const ContactSpace::Square slope = step * slopes_[size(place)];
   for (const ContactSpace::Move& from : space.moves(place)) {
     const ContactSpace::Block response = slope * from.column;
@@ -117,7 +117,7 @@ void ContactEquations::add_slope(const ContactSpace& space, int place, double st
 }
 
 void ContactEquations::solve_for_dofs(ContactSpace& space, double step, std::vector<double>& force,
-                                      std::vector<double>& velocity) noexcept {
+                                      std::vector<double>& velocity) {
   const int rows = space.rows(), n = space.dofs();
   make_slopes(space.places());
   matrix_.reset(space.envelope(), space.is_symmetric());

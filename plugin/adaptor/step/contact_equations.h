@@ -24,21 +24,21 @@ struct ContactEquations {
   /// (1 + h L' Lambda L) y = L' (u_free + h Lambda e), f = e - L y, or for the velocities,
   /// (H + h J' C J) dv = h (t + J' (e - C u)).
   void solve(ContactSpace& space, double step, std::vector<double>& force,
-             std::vector<double>& velocity) noexcept;
+             std::vector<double>& velocity);
 
   // The two forms, of which a test wants both.
   void solve_for_forces(const ContactSpace& space, double step, std::vector<double>& force,
-                        std::vector<double>& velocity) noexcept;
+                        std::vector<double>& velocity);
   void solve_for_dofs(ContactSpace& space, double step, std::vector<double>& force,
-                      std::vector<double>& velocity) noexcept;
+                      std::vector<double>& velocity);
 
  private:
-  void make_slopes(int places) noexcept;
-  void add_slope(const ContactSpace& space, int place, double step) noexcept;
+  void make_slopes(int places);
+  void add_slope(const ContactSpace& space, int place, double step);
   // Forces by the first K coordinates of each place alone: the others have no columns.
   template <int K>
   void solve_blocks(const ContactSpace& space, double step, BlockMatrix<K>& matrix,
-                    std::vector<double>& force) noexcept;
+                    std::vector<double>& force);
 
   EnvelopeMatrix matrix_;
   BlockMatrix<3> normal_;

@@ -111,7 +111,7 @@ void ContactIslands::sort_places() {
 }
 
 void ContactIslands::build(const mjModel* m, std::span<const ContactPlace> places,
-                           std::span<const std::pair<int, int>> joined) noexcept {
+                           std::span<const std::pair<int, int>> joined) {
   find_trees(m);
   link(m, places, joined);
   islands_.clear();

@@ -37,7 +37,7 @@ class ContactIslands {
   /// `joined`: pairs of degrees of freedom that something else joins. An island may have trees of
   /// that alone and no place.
   void build(const mjModel* m, std::span<const ContactPlace> places,
-             std::span<const std::pair<int, int>> joined = {}) noexcept;
+             std::span<const std::pair<int, int>> joined = {});
 
   int count() const { return static_cast<int>(islands_.size()); }
   /// Indices of the places of an island, ascending.

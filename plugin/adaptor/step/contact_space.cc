@@ -10,7 +10,7 @@ namespace volcontact::adaptor {
 
 // Adds the motion that each degree of freedom beyond the world gives the body at the place.
 void ContactSpace::add_body(const mjModel* m, const mjData* d, const ContactPlace& place, int body,
-                            double sign) noexcept {
+                            double sign) {
   while (body > 0 && m->body_dofnum[body] == 0) body = m->body_parentid[body];
   const Vec3 offset = place.point - vec3_at(d->subtree_com, m->body_rootid[body]);
   const Mat3 to_site = sign * place.axes.transpose();
@@ -26,7 +26,7 @@ void ContactSpace::add_body(const mjModel* m, const mjData* d, const ContactPlac
 }
 
 void ContactSpace::add_place(const mjModel* m, const mjData* d, const ContactPlace& place,
-                             std::pair<int, int> trees) noexcept {
+                             std::pair<int, int> trees) {
   const auto [tree_a, tree_b] = trees;
   if (tree_a >= 0) add_body(m, d, place, place.body_a, 1.0);
   if (tree_b >= 0) add_body(m, d, place, place.body_b, -1.0);
@@ -44,14 +44,14 @@ void ContactSpace::add_place(const mjModel* m, const mjData* d, const ContactPla
 }
 
 // What moves at the place without any degree of freedom.
-void ContactSpace::add_driven(const ContactPlace& place) noexcept {
+void ContactSpace::add_driven(const ContactPlace& place) {
   const Vec3 way = place.axes.transpose() * place.driven.linear;
   const Vec3 turn = place.axes.transpose() * place.driven.angular;
   velocity_.insert(velocity_.end(), {way[2], turn[0], turn[1], way[0], way[1], turn[2]});
 }
 
 // All that a place moves has to do with each other.
-void ContactSpace::widen_envelope(int place) noexcept {
+void ContactSpace::widen_envelope(int place) {
   int least = dofs();
   for (const Move& move : moves(place)) least = std::min(least, move.dof);
   for (const Move& move : moves(place)) {
@@ -62,7 +62,7 @@ void ContactSpace::widen_envelope(int place) noexcept {
 
 // Leaves J of the place in `dense_`, carried through one of the factors.
 template <typename Carry>
-void ContactSpace::carry(int place, Carry carry, Block Carried::* out) noexcept {
+void ContactSpace::carry(int place, Carry carry, Block Carried::* out) {
   support_.clear();
   for (const Carried& one : carried(place)) support_.push_back(one.dof);
   for (const Move& move : moves(place)) {
@@ -77,7 +77,7 @@ void ContactSpace::carry(int place, Carry carry, Block Carried::* out) noexcept 
 }
 
 // J through the factors of Mh, which fill in nothing but what carries.
-void ContactSpace::respond() noexcept {
+void ContactSpace::respond() {
   const TreeMatrix& factor = matrix_.free_factor();
   const auto lower = [&](const auto& support, double* x) { factor.carry_lower<kRows>(support, x); };
   const auto upper = [&](const auto& support, double* x) { factor.carry_upper<kRows>(support, x); };
@@ -102,7 +102,7 @@ void ContactSpace::respond() noexcept {
 }
 
 // J Mh^-1 J' of one place and those before it, or all.
-void ContactSpace::make_free_row(int place, int end) noexcept {
+void ContactSpace::make_free_row(int place, int end) {
   for (const Carried& one : carried(place)) {
     std::copy_n(one.moved.data(), kRows, &dense_[size(kRows * one.dof)]);
   }
@@ -119,7 +119,7 @@ void ContactSpace::make_free_row(int place, int end) noexcept {
   }
 }
 
-void ContactSpace::constrain_places() noexcept {
+void ContactSpace::constrain_places() {
   const std::span<const StepMatrix::Column> columns = matrix_.columns();
   if (matrix_.converts() && !columns.empty() && !is_massed_) {
     is_massed_ = true;
@@ -170,7 +170,7 @@ void ContactSpace::constrain_places() noexcept {
 }
 
 ContactSpace::Square ContactSpace::constrained(const Square& free, int place,
-                                               int other) const noexcept {
+                                               int other) const {
   Square out = free;
   const std::size_t count = matrix_.columns().size();
   for (std::size_t c = 0; c < count; ++c) {
@@ -180,7 +180,7 @@ ContactSpace::Square ContactSpace::constrained(const Square& free, int place,
   return out;
 }
 
-void ContactSpace::build_mobility() noexcept {
+void ContactSpace::build_mobility() {
   choose_form();
   mobility_.resize(size(places()));
   if (!prefers_dofs_) build_delassus();
@@ -191,7 +191,7 @@ void ContactSpace::build_mobility() noexcept {
 }
 
 // The form of less work, counted in multiplications and weighed as measured.
-void ContactSpace::choose_form() noexcept {
+void ContactSpace::choose_form() {
   constexpr double kBlocks = 32.0, kPairs = 200.0, kOther = 2.0;
   double by_dofs = 0.0;
   for (std::size_t i = 0; i < envelope_.size(); ++i) {
@@ -207,7 +207,7 @@ void ContactSpace::choose_form() noexcept {
   prefers_dofs_ = by_dofs <= (kBlocks * count + kPairs) * count * count;
 }
 
-void ContactSpace::build_delassus() noexcept {
+void ContactSpace::build_delassus() {
   const int count = places();
   const bool is_symmetric = this->is_symmetric();
   if (!has_free_delassus_) {
@@ -227,7 +227,7 @@ void ContactSpace::build_delassus() noexcept {
   }
 }
 
-void ContactSpace::move_by_delassus(const double* f, double* u) const noexcept {
+void ContactSpace::move_by_delassus(const double* f, double* u) const {
   const int count = places();
   const bool is_symmetric = this->is_symmetric();
   std::fill(u, u + rows(), 0.0);
@@ -244,21 +244,21 @@ void ContactSpace::move_by_delassus(const double* f, double* u) const noexcept {
   for (std::size_t i = 0; i < free_.size(); ++i) u[i] = free_[i] + step_ * u[i];
 }
 
-void ContactSpace::add_load(const double* f, double* load) const noexcept {
+void ContactSpace::add_load(const double* f, double* load) const {
   for (int place = 0; place < places(); ++place) {
     const Eigen::Map<const Block> force(f + kRows * place);
     for (const Move& move : moves(place)) load[move.dof] += move.column.dot(force);
   }
 }
 
-void ContactSpace::add_motion(const double* x, double* u) const noexcept {
+void ContactSpace::add_motion(const double* x, double* u) const {
   for (int place = 0; place < places(); ++place) {
     Eigen::Map<Block> motion(u + kRows * place);
     for (const Move& move : moves(place)) motion += x[move.dof] * move.column;
   }
 }
 
-void ContactSpace::move(const std::vector<double>& f, std::vector<double>& u) noexcept {
+void ContactSpace::move(const std::vector<double>& f, std::vector<double>& u) {
   generalized_.assign(size(dofs()), 0.0);
   add_load(f.data(), generalized_.data());
   for (double& load : generalized_) load *= step_;
@@ -267,7 +267,7 @@ void ContactSpace::move(const std::vector<double>& f, std::vector<double>& u) no
   add_motion(generalized_.data(), u.data());
 }
 
-void ContactSpace::accelerate(const std::vector<double>& f, std::vector<double>& a) noexcept {
+void ContactSpace::accelerate(const std::vector<double>& f, std::vector<double>& a) {
   generalized_ = known_;
   add_load(f.data(), generalized_.data());
   matrix_.accelerate(generalized_);
@@ -276,7 +276,7 @@ void ContactSpace::accelerate(const std::vector<double>& f, std::vector<double>&
 
 void ContactSpace::build(const mjModel* m, mjData* d, Damping damping,
                          std::span<const ContactPlace> places, const ContactIslands& islands,
-                         int island, const double* known) noexcept {
+                         int island, const double* known) {
   step_ = m->opt.timestep;
   matrix_.build(m, d, damping, islands.trees(island));
   const std::size_t count = matrix_.dofs().size();
@@ -302,7 +302,7 @@ void ContactSpace::build(const mjModel* m, mjData* d, Damping damping,
   has_free_delassus_ = false;
 }
 
-void ContactSpace::constrain(const NativeConstraints& constraints) noexcept {
+void ContactSpace::constrain(const NativeConstraints& constraints) {
   matrix_.constrain(constraints);
   constrain_places();
   envelope_.assign(matrix_.envelope().begin(), matrix_.envelope().end());
@@ -317,7 +317,7 @@ void ContactSpace::constrain(const NativeConstraints& constraints) noexcept {
 }
 
 void known_forces(const mjModel* m, mjData* d, const double* user_qfrc, const double* user_xfrc,
-                  std::vector<double>& out) noexcept {
+                  std::vector<double>& out) {
   const int nv = static_cast<int>(m->nv);
   out.resize(size(nv));
   mj_rne(m, d, 0, out.data());

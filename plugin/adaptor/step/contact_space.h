@@ -30,9 +30,9 @@ class ContactSpace {
   /// `known`: t, all generalized forces but those at the places and of constraints, nv numbers.
   /// Uses the mass matrix and the positions that are current in `d`, and what make_damping() left.
   void build(const mjModel* m, mjData* d, Damping damping, std::span<const ContactPlace> places,
-             const ContactIslands& islands, int island, const double* known) noexcept;
+             const ContactIslands& islands, int island, const double* known);
   /// Takes MuJoCo's constraints as they are now in place of those before.
-  void constrain(const NativeConstraints& constraints) noexcept;
+  void constrain(const NativeConstraints& constraints);
 
   int places() const { return static_cast<int>(move_begin_.size()) - 1; }
   int rows() const { return places() * kRows; }
@@ -50,8 +50,8 @@ class ContactSpace {
   /// Whether it is cheaper to solve for the velocities of the degrees of freedom than for forces.
   bool prefers_dofs() const { return prefers_dofs_; }
   /// Makes `mobility`, and `delassus` where it is of use.
-  void build_mobility() noexcept;
-  void build_delassus() noexcept;
+  void build_mobility();
+  void build_delassus();
   /// The block of Lambda of two places, after build_delassus(); of a symmetric H with k <= i.
   const Square& delassus(int i, int k) const { return delassus_[index(i, k)]; }
   /// The block of Lambda of one place.
@@ -60,14 +60,14 @@ class ContactSpace {
   Eigen::Map<const Eigen::VectorXd> velocity() const { return {velocity_.data(), rows()}; }
   Eigen::Map<const Eigen::VectorXd> free_velocity() const { return {free_.data(), rows()}; }
   /// u' under the forces f: by the degrees of freedom, and by Lambda after build_delassus().
-  void move(const std::vector<double>& f, std::vector<double>& u) noexcept;
-  void move_by_delassus(const double* f, double* u) const noexcept;
+  void move(const std::vector<double>& f, std::vector<double>& u);
+  void move_by_delassus(const double* f, double* u) const;
   /// The acceleration that MuJoCo's solver finds under the forces f, into those of the nv numbers
   /// that are of the island.
-  void accelerate(const std::vector<double>& f, std::vector<double>& a) noexcept;
+  void accelerate(const std::vector<double>& f, std::vector<double>& a);
   /// Adds J' f to numbers by degree of freedom, and J x to those by row.
-  void add_load(const double* f, double* load) const noexcept;
-  void add_motion(const double* x, double* u) const noexcept;
+  void add_load(const double* f, double* load) const;
+  void add_motion(const double* x, double* u) const;
 
  private:
   // What a place moves and what carries that; J carried through the factors U D L of Mh.
@@ -86,23 +86,23 @@ class ContactSpace {
     return {carried_.data() + carried_begin_[i], carried_begin_[i + 1] - carried_begin_[i]};
   }
   void add_place(const mjModel* m, const mjData* d, const ContactPlace& place,
-                 std::pair<int, int> trees) noexcept;
+                 std::pair<int, int> trees);
   void add_body(const mjModel* m, const mjData* d, const ContactPlace& place, int body,
-                double sign) noexcept;
-  void add_driven(const ContactPlace& place) noexcept;
-  void widen_envelope(int place) noexcept;
-  void choose_form() noexcept;
+                double sign);
+  void add_driven(const ContactPlace& place);
+  void widen_envelope(int place);
+  void choose_form();
   template <typename Carry>
-  void carry(int place, Carry carry, Block Carried::* out) noexcept;
-  void respond() noexcept;
-  void constrain_places() noexcept;
+  void carry(int place, Carry carry, Block Carried::* out);
+  void respond();
+  void constrain_places();
   Square& free_block(int i, int k) { return free_delassus_[index(i, k)]; }
   std::size_t index(int i, int k) const {
     return static_cast<std::size_t>(i) * static_cast<std::size_t>(places()) +
            static_cast<std::size_t>(k);
   }
-  void make_free_row(int place, int end) noexcept;
-  Square constrained(const Square& free, int place, int other) const noexcept;
+  void make_free_row(int place, int end);
+  Square constrained(const Square& free, int place, int other) const;
 
   StepMatrix matrix_;
   std::vector<Move> moves_;
@@ -128,6 +128,6 @@ class ContactSpace {
 /// numbers: passive forces so far, bias, actuators at the present state, and what the user applied,
 /// given as `user_qfrc` (nv) and `user_xfrc` (6 nbody).
 void known_forces(const mjModel* m, mjData* d, const double* user_qfrc, const double* user_xfrc,
-                  std::vector<double>& out) noexcept;
+                  std::vector<double>& out);
 
 }  // namespace volcontact::adaptor

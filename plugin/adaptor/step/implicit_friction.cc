@@ -43,13 +43,13 @@ double speed_left(double free, double mobility, const DampingAt& damping_at) {
 
 // Slip as the friction law sees it: along t_1, along t_2, lever times about n.
 Vec3 ImplicitStep::slip_of(const Site& site, const std::vector<double>& u,
-                           std::size_t i) const noexcept {
+                           std::size_t i) const {
   const double* at = &u[i * size(kRows) + 3];
   return {at[0], at[1], site.tangent.friction.lever * at[2]};
 }
 
 // For friction that holds by what it remembers of the way.
-void ImplicitStep::set_drift(const mjModel* m, const mjData* d, double time) noexcept {
+void ImplicitStep::set_drift(const mjModel* m, const mjData* d, double time) {
   for (const int i : island_) {
     Site& site = sites_[size(i)];
     if (!site.laws.has_friction() || !site.laws.friction_keeps()) continue;
@@ -65,7 +65,7 @@ void ImplicitStep::set_drift(const mjModel* m, const mjData* d, double time) noe
 // and `viscous` times the slip more. Slip and normal force go straight with friction, between the
 // last solution and that without any; before there is friction, by the mobility of the site alone.
 ImplicitStep::Slide ImplicitStep::slide_under(std::size_t i, double strength, double viscous,
-                                              double step) const noexcept {
+                                              double step) const {
   // From the slide under the strength alone, and how much a unit of friction slows it.
   const auto with_viscous = [viscous](double force, double speed, double slowed) -> Slide {
     const double left = speed > 0.0 ? speed / (1.0 + viscous * slowed) : speed;
@@ -92,7 +92,7 @@ ImplicitStep::Slide ImplicitStep::slide_under(std::size_t i, double strength, do
 
 // Friction under the normal forces of the last solution and at its slip: a spring and a damper
 // while it holds, Coulomb's where it would have to hold more.
-void ImplicitStep::set_friction(double step) noexcept {
+void ImplicitStep::set_friction(double step) {
   for (std::size_t i = 0; i < island_.size(); ++i) {
     Site& site = this->site(i);
     if (!site.laws.has_friction()) continue;
@@ -129,7 +129,7 @@ void ImplicitStep::set_friction(double step) noexcept {
 // Friction that keeps nothing: a damper, that at the slip which it leaves. How much it slows the
 // slip is known from the last solution.
 void ImplicitStep::set_damper(Site& site, double normal_force, const Vec3& along, double spin,
-                              double speed) const noexcept {
+                              double speed) const {
   const auto slope_at = [&](double at) {
     const double share = speed > 0.0 ? at / speed : 0.0;
     return site.laws.friction_slope(normal_force, share * along, share * spin);
@@ -146,7 +146,7 @@ void ImplicitStep::set_damper(Site& site, double normal_force, const Vec3& along
 }
 
 // How much friction can hold at a site, and how much it was solved to hold.
-ImplicitStep::Load ImplicitStep::load(std::size_t i) const noexcept {
+ImplicitStep::Load ImplicitStep::load(std::size_t i) const {
   const Site& site = this->site(i);
   if (!site.laws.has_friction()) return {};
   const double* f = &force_[i * size(kRows)];
@@ -159,7 +159,7 @@ ImplicitStep::Load ImplicitStep::load(std::size_t i) const noexcept {
 }
 
 // Shortens what friction was solved to hold to what it can hold.
-void ImplicitStep::bound_friction() noexcept {
+void ImplicitStep::bound_friction() {
   for (std::size_t i = 0; i < island_.size(); ++i) {
     const double share = load(i).share();
     if (share == 1.0) continue;
@@ -169,7 +169,7 @@ void ImplicitStep::bound_friction() noexcept {
 }
 
 // Makes dampers of what friction cannot hold, so weak that it can, and solves again.
-void ImplicitStep::damp_friction(double step) noexcept {
+void ImplicitStep::damp_friction(double step) {
   constexpr int kPasses = 3;
   constexpr double kSlight = 0.99;
   for (int pass = 0; pass < kPasses; ++pass) {

@@ -36,14 +36,14 @@ double holding(double stiffness_number) {
 
 }  // namespace
 
-void ImplicitStep::clear() noexcept {
+void ImplicitStep::clear() {
   sites_.clear();
   limits_.clear();
   places_.clear();
 }
 
 void ImplicitStep::add(const ContactModel& model, ContactReport& report, std::size_t site,
-                       int body_a, int body_b, const Twist& driven, bool is_stiff) noexcept {
+                       int body_a, int body_b, const Twist& driven, bool is_stiff) {
   const SiteLaws laws(model, report, site);
   sites_.push_back({laws, &model, &report, site, laws.tangent()});
   sites_.back().is_stiff = is_stiff;
@@ -55,7 +55,7 @@ void ImplicitStep::add(const ContactModel& model, ContactReport& report, std::si
 // The points of a patch and what each bears: f = f_0 - D (u' - u) - h K u', with the damping's
 // share of f_0 taken out again, so that the constant is what a motionless contact would bear.
 void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& falling,
-                                double resting, ImplicitParts parts, double step) noexcept {
+                                double resting, ImplicitParts parts, double step) {
   using Vec2 = Eigen::Vector2d;
   const SiteReport& report = site.report->sites[site.index];
   const SiteTangent& tangent = site.tangent;
@@ -132,7 +132,7 @@ void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& fa
   }
 }
 
-void ImplicitStep::make_points(ImplicitParts parts, double step, double resting) noexcept {
+void ImplicitStep::make_points(ImplicitParts parts, double step, double resting) {
   for (std::size_t i = 0; i < island_.size(); ++i) {
     const Eigen::Index first = static_cast<Eigen::Index>(i) * kRows;
     const Vec3 falling = (space_.free_velocity() - space_.velocity()).segment<3>(first);
@@ -141,7 +141,7 @@ void ImplicitStep::make_points(ImplicitParts parts, double step, double resting)
 }
 
 // The linear model of the sites as they are now: whether points push, how friction acts.
-void ImplicitStep::solve_once(bool with_friction, double step) noexcept {
+void ImplicitStep::solve_once(bool with_friction, double step) {
   std::vector<double>& constants = equations_.constant;
   std::vector<ContactEquations::Column>& columns = equations_.columns;
   constants.assign(size(space_.rows()), 0.0);
@@ -173,7 +173,7 @@ void ImplicitStep::solve_once(bool with_friction, double step) noexcept {
 }
 
 // Leaves out the points that would pull, until none does.
-void ImplicitStep::solve_active(bool with_friction, double step) noexcept {
+void ImplicitStep::solve_active(bool with_friction, double step) {
   constexpr int kRounds = 12;
   for (std::size_t i = 0; i < island_.size(); ++i) {
     for (Point& point : site(i).points) point.pushes = true;
@@ -197,14 +197,14 @@ void ImplicitStep::solve_active(bool with_friction, double step) noexcept {
 }
 
 // Of the motion at the begin of the step and that at its end.
-ContactSpace::Block ImplicitStep::mean_motion(std::size_t i) const noexcept {
+ContactSpace::Block ImplicitStep::mean_motion(std::size_t i) const {
   const Eigen::Index first = static_cast<Eigen::Index>(i) * kRows;
   const ConstVector u(velocity_.data(), space_.rows());
   return 0.5 * (space_.velocity().segment<kRows>(first) + u.segment<kRows>(first));
 }
 
 // The power that the forces take from the motion over the step.
-ByChannel ImplicitStep::taken(const Site& site, std::size_t i) const noexcept {
+ByChannel ImplicitStep::taken(const Site& site, std::size_t i) const {
   const ContactSpace::Block mean = mean_motion(i);
   const double* f = &force_[i * size(kRows)];
   const Eigen::Vector2d turning = mean.segment<2>(1);
@@ -218,7 +218,7 @@ ByChannel ImplicitStep::taken(const Site& site, std::size_t i) const noexcept {
 
 // The reports get the forces, the power they take from the motion, and what friction keeps under
 // the normal force that acts.
-void ImplicitStep::write_results() noexcept {
+void ImplicitStep::write_results() {
   for (std::size_t i = 0; i < island_.size(); ++i) {
     Site& site = this->site(i);
     SiteReport& report = site.report->sites[site.index];
@@ -238,7 +238,7 @@ void ImplicitStep::write_results() noexcept {
 }
 
 // The forces stay.
-void ImplicitStep::take_explicit() noexcept {
+void ImplicitStep::take_explicit() {
   for (std::size_t i = 0; i < island_.size(); ++i) {
     Site& site = this->site(i);
     const SiteReport& report = site.report->sites[site.index];
@@ -250,7 +250,7 @@ void ImplicitStep::take_explicit() noexcept {
 }
 
 // The account of a step that is implicit elsewhere wants the power over all of it.
-void ImplicitStep::write_explicit() noexcept {
+void ImplicitStep::write_explicit() {
   space_.move(force_, velocity_);
   for (std::size_t i = 0; i < island_.size(); ++i) {
     site(i).report->sites[site(i).index].taken = taken(site(i), i);
@@ -258,14 +258,14 @@ void ImplicitStep::write_explicit() noexcept {
 }
 
 // Whether the last pass changed nothing that counts.
-bool ImplicitStep::is_settled() const noexcept {
+bool ImplicitStep::is_settled() const {
   constexpr double kChange = 1e-9;
   const ConstVector now(force_.data(), space_.rows()), before(before_.data(), space_.rows());
   return (now - before).lpNorm<Eigen::Infinity>() <= kChange * now.lpNorm<Eigen::Infinity>();
 }
 
 // Normal forces and friction, under the shares of now; leaves the motion that they make.
-void ImplicitStep::solve_contacts(FrictionBound bound, double step) noexcept {
+void ImplicitStep::solve_contacts(FrictionBound bound, double step) {
   constexpr int kFrictionPasses = 3;
   solve_active(false, step);
   for (std::size_t i = 0; i < island_.size(); ++i) {
@@ -286,7 +286,7 @@ void ImplicitStep::solve_contacts(FrictionBound bound, double step) noexcept {
   space_.move(force_, velocity_);
 }
 
-void ImplicitStep::solve_island(ImplicitParts parts, double step, double resting) noexcept {
+void ImplicitStep::solve_island(ImplicitParts parts, double step, double resting) {
   space_.build_mobility();
   make_points(parts, step, resting);
   set_shares();
@@ -296,7 +296,7 @@ void ImplicitStep::solve_island(ImplicitParts parts, double step, double resting
 
 // The pairs that have sites in the island; these stand together.
 template <typename Use>
-void ImplicitStep::for_each_pair(Use use) noexcept {
+void ImplicitStep::for_each_pair(Use use) {
   const WorkLimit* last = nullptr;
   for (const int i : island_) {
     WorkLimit& limit = limits_[sites_[size(i)].pair];
@@ -305,7 +305,7 @@ void ImplicitStep::for_each_pair(Use use) noexcept {
   }
 }
 
-void ImplicitStep::set_shares() noexcept {
+void ImplicitStep::set_shares() {
   for (std::size_t i = 0; i < island_.size(); ++i) {
     Site& site = this->site(i);
     const double share = limits_[site.pair].share;
@@ -314,7 +314,7 @@ void ImplicitStep::set_shares() noexcept {
 }
 
 // The work that the contacts do over the step, by pair.
-void ImplicitStep::add_up_work(double step, double resting) noexcept {
+void ImplicitStep::add_up_work(double step, double resting) {
   constexpr double kRounding = 1e-9;
   for_each_pair([](WorkLimit& limit) {
     limit.normal_work = limit.friction_work = limit.slack = limit.exit = limit.from_free = 0.0;
@@ -347,7 +347,7 @@ void ImplicitStep::add_up_work(double step, double resting) noexcept {
 // Elastic forces that would do more work on the bodies than these put in act with a share of
 // theirs. With none the contacts damp, whatever the poses: docs/theory.md, "No energy from
 // nothing".
-void ImplicitStep::limit_work(double step, double resting) noexcept {
+void ImplicitStep::limit_work(double step, double resting) {
   constexpr int kSearches = 8;
   enum { kSearch, kLowest, kNone, kAllNone } last = kSearch;
   for_each_pair([](WorkLimit& limit) { limit.start(); });
@@ -376,7 +376,7 @@ void ImplicitStep::limit_work(double step, double resting) noexcept {
 
 // Where pairs did more than they hold, friction or other pairs of the island have paid for it:
 // these have put in the less.
-void ImplicitStep::share_deficit() noexcept {
+void ImplicitStep::share_deficit() {
   double deficit = 0.0, put_in = 0.0;
   for_each_pair([&](const WorkLimit& limit) {
     deficit += std::max(0.0, limit.work() - limit.allowed());
@@ -391,7 +391,7 @@ void ImplicitStep::share_deficit() noexcept {
 
 // Solves again until MuJoCo's own constraints bear what was taken for granted.
 void ImplicitStep::solve_with_constraints(const mjModel* m, mjData* d, ImplicitParts parts,
-                                          int island, const double* known) noexcept {
+                                          int island, const double* known) {
   constexpr int kRounds = 12;
   const double step = m->opt.timestep;
   const double resting = step * Eigen::Map<const Vec3>(m->opt.gravity).norm();
@@ -426,7 +426,7 @@ void ImplicitStep::solve_with_constraints(const mjModel* m, mjData* d, ImplicitP
 }
 
 void ImplicitStep::solve(const mjModel* m, mjData* d, ImplicitParts parts,
-                         const double* known) noexcept {
+                         const double* known) {
   constraints_.read(m, d);
   damping_ = make_damping(m, d);
   acceleration_.assign(size(static_cast<int>(m->nv)), 0.0);
@@ -437,7 +437,7 @@ void ImplicitStep::solve(const mjModel* m, mjData* d, ImplicitParts parts,
   }
 }
 
-ContactSpace::Block ImplicitStep::constant(std::size_t i) const noexcept {
+ContactSpace::Block ImplicitStep::constant(std::size_t i) const {
   ContactSpace::Block out = ContactSpace::Block::Zero();
   const Site& site = sites_[i];
   if (!site.pushes()) return out;
@@ -449,7 +449,7 @@ ContactSpace::Block ImplicitStep::constant(std::size_t i) const noexcept {
   return out;
 }
 
-Eigen::Matrix<double, 6, 6> ImplicitStep::slope(std::size_t i) const noexcept {
+Eigen::Matrix<double, 6, 6> ImplicitStep::slope(std::size_t i) const {
   Eigen::Matrix<double, 6, 6> out = Eigen::Matrix<double, 6, 6>::Zero();
   const Site& site = sites_[i];
   if (!site.pushes()) return out;

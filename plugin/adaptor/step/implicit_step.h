@@ -30,12 +30,12 @@ struct ExplicitBounds {
   /// order where the slip reverses in an impact that it resolves, and may chatter at rest.
   bool friction_is_explicit;
 
-  static constexpr ExplicitBounds of(bool is_rk4) noexcept {
+  static constexpr ExplicitBounds of(bool is_rk4) {
     return is_rk4 ? ExplicitBounds{0.5, 1.4, true}
                   : ExplicitBounds{kStiffNumber, kStiffDamper, false};
   }
   /// Of the later stages of Runge-Kutta, for what the first of them held.
-  static constexpr ExplicitBounds of_stage() noexcept { return {1.0, 2.0, true}; }
+  static constexpr ExplicitBounds of_stage() { return {1.0, 2.0, true}; }
 };
 
 /// Pairs whose patch, were it as large as the smaller solid, stays below this are always left to
@@ -43,7 +43,7 @@ struct ExplicitBounds {
 inline constexpr double kPossibleNumber = 0.5;
 
 /// Power that goes into the elastic energy of the volumes of a report that keeps its inputs [W].
-inline double stored_power(const ContactReport& report) noexcept {
+inline double stored_power(const ContactReport& report) {
   double power = 0.0;
   for (std::size_t i = 0; i < report.inputs.size(); ++i) {
     power += report.inputs[i].normal_out.elastic * report.sites[i].approach_speed;
@@ -58,34 +58,34 @@ inline double stored_power(const ContactReport& report) noexcept {
 /// step.
 class ImplicitStep {
  public:
-  void clear() noexcept;
+  void clear();
 
   /// The sites that follow are of another pair of geoms, whose work is limited.
-  void begin_pair(const WorkLimit& limit) noexcept { limits_.push_back(limit); }
+  void begin_pair(const WorkLimit& limit) { limits_.push_back(limit); }
 
   /// A site of the last pair. The report keeps its inputs. `driven`: of a against b, the motion at
   /// the site that no degree of freedom makes. `is_stiff`: an explicit step could not hold it.
   void add(const ContactModel& model, ContactReport& report, std::size_t site, int body_a,
-           int body_b, const Twist& driven, bool is_stiff) noexcept;
+           int body_b, const Twist& driven, bool is_stiff);
 
-  bool empty() const noexcept { return sites_.empty(); }
+  bool empty() const { return sites_.empty(); }
 
   /// Of the pair that began as number i: whether its forces were solved, and the work they do over
   /// the step.
-  bool is_pair_solved(std::size_t i) const noexcept { return limits_[i].is_solved; }
-  double work(std::size_t i) const noexcept { return limits_[i].work(); }
-  double friction_work(std::size_t i) const noexcept { return limits_[i].friction_work; }
-  double released_at_most(std::size_t i) const noexcept { return limits_[i].released_at_most(); }
+  bool is_pair_solved(std::size_t i) const { return limits_[i].is_solved; }
+  double work(std::size_t i) const { return limits_[i].work(); }
+  double friction_work(std::size_t i) const { return limits_[i].friction_work; }
+  double released_at_most(std::size_t i) const { return limits_[i].released_at_most(); }
 
   /// Solves, with the known forces of contact_space.h, and puts the results into the reports: the
   /// forces, and as `taken` the power that the contact takes from the motion over the step.
-  void solve(const mjModel* m, mjData* d, ImplicitParts parts, const double* known) noexcept;
+  void solve(const mjModel* m, mjData* d, ImplicitParts parts, const double* known);
 
   // For tests: the linear model of site i, f = e - C u', as last solved, and the solution.
-  ContactSpace::Block constant(std::size_t site) const noexcept;
-  Eigen::Matrix<double, 6, 6> slope(std::size_t site) const noexcept;
-  const ContactSpace::Block& force(std::size_t site) const noexcept { return sites_[site].force; }
-  bool is_solved(std::size_t site) const noexcept { return sites_[site].is_solved; }
+  ContactSpace::Block constant(std::size_t site) const;
+  Eigen::Matrix<double, 6, 6> slope(std::size_t site) const;
+  const ContactSpace::Block& force(std::size_t site) const { return sites_[site].force; }
+  bool is_solved(std::size_t site) const { return sites_[site].is_solved; }
 
  private:
   // A patch is borne at up to four points, which have its area and moments; none of them pulls.
@@ -127,51 +127,51 @@ class ImplicitStep {
   // solved again as a damper, which can only dissipate.
   enum class FrictionBound { kCut, kDamped };
 
-  Site& site(std::size_t i) noexcept { return sites_[static_cast<std::size_t>(island_[i])]; }
-  const Site& site(std::size_t i) const noexcept {
+  Site& site(std::size_t i) { return sites_[static_cast<std::size_t>(island_[i])]; }
+  const Site& site(std::size_t i) const {
     return sites_[static_cast<std::size_t>(island_[i])];
   }
-  void solve_island(ImplicitParts parts, double step, double resting) noexcept;
-  void solve_contacts(FrictionBound bound, double step) noexcept;
-  void limit_work(double step, double resting) noexcept;
-  void add_up_work(double step, double resting) noexcept;
-  void set_shares() noexcept;
-  void share_deficit() noexcept;
+  void solve_island(ImplicitParts parts, double step, double resting);
+  void solve_contacts(FrictionBound bound, double step);
+  void limit_work(double step, double resting);
+  void add_up_work(double step, double resting);
+  void set_shares();
+  void share_deficit();
   template <typename Use>
-  void for_each_pair(Use use) noexcept;
+  void for_each_pair(Use use);
   void solve_with_constraints(const mjModel* m, mjData* d, ImplicitParts parts, int island,
-                              const double* known) noexcept;
-  void take_explicit() noexcept;
-  void write_explicit() noexcept;
-  void make_points(ImplicitParts parts, double step, double resting) noexcept;
+                              const double* known);
+  void take_explicit();
+  void write_explicit();
+  void make_points(ImplicitParts parts, double step, double resting);
   void place_points(Site& site, const Mat3& mobility, const Vec3& falling, double resting,
-                    ImplicitParts parts, double step) noexcept;
-  double normal_force(std::size_t i) const noexcept { return std::max(0.0, force_[6 * i]); }
-  void solve_active(bool with_friction, double step) noexcept;
-  void solve_once(bool with_friction, double step) noexcept;
-  void set_drift(const mjModel* m, const mjData* d, double time) noexcept;
-  void set_friction(double step) noexcept;
+                    ImplicitParts parts, double step);
+  double normal_force(std::size_t i) const { return std::max(0.0, force_[6 * i]); }
+  void solve_active(bool with_friction, double step);
+  void solve_once(bool with_friction, double step);
+  void set_drift(const mjModel* m, const mjData* d, double time);
+  void set_friction(double step);
   void set_damper(Site& site, double normal_force, const Vec3& along, double spin,
-                  double speed) const noexcept;
-  void bound_friction() noexcept;
-  void damp_friction(double step) noexcept;
+                  double speed) const;
+  void bound_friction();
+  void damp_friction(double step);
   struct Load {
     double strength = 0.0, viscous = 0.0;  // of the friction law
     double most = 0.0, borne = 0.0;        // at the slip of the last solution
 
-    double share() const noexcept { return borne > most ? most / borne : 1.0; }
+    double share() const { return borne > most ? most / borne : 1.0; }
   };
-  Load load(std::size_t i) const noexcept;
+  Load load(std::size_t i) const;
   struct Slide {
     double force = 0.0, speed = 0.0;  // not above 0 where it stops
   };
-  Slide slide_under(std::size_t i, double strength, double viscous, double step) const noexcept;
-  bool is_settled() const noexcept;
-  void write_results() noexcept;
-  ByChannel taken(const Site& site, std::size_t i) const noexcept;
-  ContactSpace::Block mean_motion(std::size_t i) const noexcept;
+  Slide slide_under(std::size_t i, double strength, double viscous, double step) const;
+  bool is_settled() const;
+  void write_results();
+  ByChannel taken(const Site& site, std::size_t i) const;
+  ContactSpace::Block mean_motion(std::size_t i) const;
 
-  Vec3 slip_of(const Site& site, const std::vector<double>& u, std::size_t i) const noexcept;
+  Vec3 slip_of(const Site& site, const std::vector<double>& u, std::size_t i) const;
 
   std::vector<Site> sites_;
   std::vector<WorkLimit> limits_;  // by pair

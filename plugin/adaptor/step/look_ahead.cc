@@ -27,10 +27,10 @@ class Copy {
     const bool fits = data_ && model_ == m && data_->nbuffer == d->nbuffer &&
                       data_->narena == d->narena && data_->signature == d->signature;
     if (!fits) {
+      state_.resize(static_cast<std::size_t>(mj_stateSize(m, mjSTATE_INTEGRATION)));
       if (data_) mj_deleteData(data_);
       data_ = mj_makeData(m);
       model_ = m;
-      state_.resize(static_cast<std::size_t>(mj_stateSize(m, mjSTATE_INTEGRATION)));
     }
     mj_getState(m, d, state_.data(), mjSTATE_INTEGRATION);
     mj_setState(m, data_, state_.data(), mjSTATE_INTEGRATION);
@@ -47,10 +47,10 @@ class Copy {
 
 }  // namespace
 
-bool is_looking_ahead() noexcept { return looks_ahead; }
-void stop_looking_ahead() noexcept { looks_ahead = false; }
+bool is_looking_ahead() { return looks_ahead; }
+void stop_looking_ahead() { looks_ahead = false; }
 
-bool complete_constraints([[maybe_unused]] const mjModel* m, [[maybe_unused]] mjData* d) noexcept {
+bool complete_constraints([[maybe_unused]] const mjModel* m, [[maybe_unused]] mjData* d) {
 #if mjVERSION_HEADER >= 3013000
   if (!solves_with_step_matrix(m) || d->nefc == 0) return true;
   static thread_local Copy copy;

@@ -10,12 +10,12 @@ namespace volcontact::adaptor {
 /// that it divides by; until then these numbers are of another step, or none. So the step is begun
 /// on a copy of the state, once per evaluation and thread. Returns false where the copy has other
 /// rows than `d`: nothing is known of them then.
-bool complete_constraints(const mjModel* m, mjData* d) noexcept;
+bool complete_constraints(const mjModel* m, mjData* d);
 
 /// Whether the present evaluation is of such a copy, which has no volumetric contact.
-bool is_looking_ahead() noexcept;
+bool is_looking_ahead();
 
 /// After an error of MuJoCo's that left a copy unfinished.
-void stop_looking_ahead() noexcept;
+void stop_looking_ahead();
 
 }  // namespace volcontact::adaptor

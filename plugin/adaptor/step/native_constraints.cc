@@ -9,7 +9,7 @@
 
 namespace volcontact::adaptor {
 
-void NativeConstraints::read(const mjModel* m, mjData* d) noexcept {
+void NativeConstraints::read(const mjModel* m, mjData* d) {
   jacobian_.clear();
   row_begin_.assign(1, 0);
   joined_.clear();
@@ -30,7 +30,7 @@ void NativeConstraints::read(const mjModel* m, mjData* d) noexcept {
 }
 
 void NativeConstraints::select(const mjModel* m, mjData* d, const ContactIslands& islands,
-                               int island) noexcept {
+                               int island) {
   const std::size_t count = row_begin_.size() - 1;
   rows_.clear();
   violation_.assign(count, 0.0);
@@ -46,7 +46,7 @@ void NativeConstraints::select(const mjModel* m, mjData* d, const ContactIslands
 }
 
 bool NativeConstraints::improve(const mjModel* m, mjData* d,
-                                std::span<const double> acceleration) noexcept {
+                                std::span<const double> acceleration) {
   constexpr double kChange = 1e-10;
   way_ = violation_;
   linear_ = force_;
@@ -67,7 +67,7 @@ bool NativeConstraints::improve(const mjModel* m, mjData* d,
 }
 
 // The forces at the guess, and how they change.
-void NativeConstraints::evaluate(const mjModel* m, mjData* d) noexcept {
+void NativeConstraints::evaluate(const mjModel* m, mjData* d) {
   cones_.clear();
   load_.clear();
   columns_.clear();
@@ -84,7 +84,7 @@ void NativeConstraints::evaluate(const mjModel* m, mjData* d) noexcept {
 }
 
 // Its slope is semidefinite: it has no curvature along the way to its tip.
-void NativeConstraints::add_cone(const mjData* d, int row) noexcept {
+void NativeConstraints::add_cone(const mjData* d, int row) {
   constexpr double kFlat = 1e-12;
   const mjContact& contact = d->contact[d->efc_id[row]];
   const int n = contact.dim;
@@ -104,7 +104,7 @@ void NativeConstraints::add_cone(const mjData* d, int row) noexcept {
 }
 
 void NativeConstraints::subtract_slope(const std::vector<double>& x,
-                                       std::vector<double>& force) const noexcept {
+                                       std::vector<double>& force) const {
   for (const int i : rows_) force[size(i)] -= slope_[size(i)] * x[size(i)];
   for (const Cone& cone : cones_) {
     const Eigen::Map<const Eigen::VectorXd> along(&x[size(cone.row)], cone.count);
@@ -114,7 +114,7 @@ void NativeConstraints::subtract_slope(const std::vector<double>& x,
   }
 }
 
-void NativeConstraints::make_columns(const mjData* d) noexcept {
+void NativeConstraints::make_columns(const mjData* d) {
   const auto add = [this](std::vector<Entry>& to, int row, double scale) {
     for (const Entry& entry : this->row(row)) to.push_back({entry.dof, scale * entry.value});
   };

@@ -24,20 +24,20 @@ class NativeConstraints {
   };
 
   /// Takes the constraints that are at hand in `d`.
-  void read(const mjModel* m, mjData* d) noexcept;
+  void read(const mjModel* m, mjData* d);
 
   /// Pairs of degrees of freedom that are joined by some constraint.
   std::span<const std::pair<int, int>> joined() const { return joined_; }
 
   /// Goes on to an island, with the guess that nothing accelerates: as at rest.
-  void select(const mjModel* m, mjData* d, const ContactIslands& islands, int island) noexcept;
+  void select(const mjModel* m, mjData* d, const ContactIslands& islands, int island);
 
   /// Whether the island has any.
   bool empty() const { return rows_.empty(); }
 
   /// Takes the acceleration, nv numbers, as the next guess. Returns whether the forces of the one
   /// before were right there already.
-  bool improve(const mjModel* m, mjData* d, std::span<const double> acceleration) noexcept;
+  bool improve(const mjModel* m, mjData* d, std::span<const double> acceleration);
 
   // The forces of the island around the guess: Jc' f = load - G G' a.
 
@@ -59,10 +59,10 @@ class NativeConstraints {
     return {of.data() + begin[k], static_cast<std::size_t>(begin[k + 1] - begin[k])};
   }
   std::span<const Entry> row(int i) const { return part(jacobian_, row_begin_, i); }
-  void evaluate(const mjModel* m, mjData* d) noexcept;
-  void add_cone(const mjData* d, int row) noexcept;
-  void subtract_slope(const std::vector<double>& x, std::vector<double>& force) const noexcept;
-  void make_columns(const mjData* d) noexcept;
+  void evaluate(const mjModel* m, mjData* d);
+  void add_cone(const mjData* d, int row);
+  void subtract_slope(const std::vector<double>& x, std::vector<double>& force) const;
+  void make_columns(const mjData* d);
 
   std::vector<Entry> jacobian_;
   std::vector<int> row_begin_ = {0};

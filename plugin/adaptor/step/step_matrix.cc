@@ -12,7 +12,7 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // Numbers for the degrees of freedom of an island, and the envelope of their masses: each has
 // inertia in common with those it carries and with those that carry it.
-void StepMatrix::number_dofs(const mjModel* m, std::span<const DofRange> trees) noexcept {
+void StepMatrix::number_dofs(const mjModel* m, std::span<const DofRange> trees) {
   trees_.clear();
   tree_of_.clear();
   dofs_.clear();
@@ -44,7 +44,7 @@ void StepMatrix::number_dofs(const mjModel* m, std::span<const DofRange> trees) 
   marked_.assign(dofs_.size(), 0);
 }
 
-void StepMatrix::make_mass(const mjModel* m, const mjData* d) noexcept {
+void StepMatrix::make_mass(const mjModel* m, const mjData* d) {
   mass_.reset(carriers_, true);
   for (std::size_t i = 0; i < dofs_.size(); ++i) {
     for_row_of_mass(m, d, dofs_[i], [&](int other, double mass) {
@@ -54,7 +54,7 @@ void StepMatrix::make_mass(const mjModel* m, const mjData* d) noexcept {
 }
 
 // Mh = M + N. Returns whether there is any N.
-bool StepMatrix::add_extra(const mjModel* m, const mjData* d, Damping damping) noexcept {
+bool StepMatrix::add_extra(const mjModel* m, const mjData* d, Damping damping) {
   free_.reset(carriers_, false);
   const double h = m->opt.timestep;
   const auto at = [&](int row, int column) -> double& {
@@ -96,7 +96,7 @@ bool StepMatrix::add_extra(const mjModel* m, const mjData* d, Damping damping) n
 }
 
 void StepMatrix::build(const mjModel* m, const mjData* d, Damping damping,
-                       std::span<const DofRange> trees) noexcept {
+                       std::span<const DofRange> trees) {
   number_dofs(m, trees);
   make_mass(m, d);
   bool has_extra = false;
@@ -115,7 +115,7 @@ void StepMatrix::build(const mjModel* m, const mjData* d, Damping damping,
   has_matrix_ = false;
 }
 
-void StepMatrix::close(std::vector<int>& numbers) noexcept {
+void StepMatrix::close(std::vector<int>& numbers) {
   const std::size_t count = numbers.size();
   for (const int i : numbers) marked_[index(i)] = 1;
   for (std::size_t i = 0; i < count; ++i) {
@@ -130,7 +130,7 @@ void StepMatrix::close(std::vector<int>& numbers) noexcept {
 }
 
 // In the order of their degrees of freedom, so that those of one tree are near each other.
-void StepMatrix::sort_columns(const NativeConstraints& constraints) noexcept {
+void StepMatrix::sort_columns(const NativeConstraints& constraints) {
   column_count_ = index(constraints.columns());
   order_.clear();
   for (int c = 0; c < constraints.columns(); ++c) {
@@ -144,7 +144,7 @@ void StepMatrix::sort_columns(const NativeConstraints& constraints) noexcept {
   if (columns_.size() < column_count_) columns_.resize(column_count_);
 }
 
-void StepMatrix::take_columns(const NativeConstraints& constraints) noexcept {
+void StepMatrix::take_columns(const NativeConstraints& constraints) {
   sort_columns(constraints);
   dense_.assign(dofs_.size(), 0.0);
   for (std::size_t c = 0; c < column_count_; ++c) {
@@ -179,7 +179,7 @@ void StepMatrix::take_columns(const NativeConstraints& constraints) noexcept {
 }
 
 // P has entries where G has, or where it converts in all of their trees.
-void StepMatrix::widen_envelope() noexcept {
+void StepMatrix::widen_envelope() {
   envelope_ = free_envelope_;
   for (const Column& column : columns()) {
     int first = size();
@@ -202,7 +202,7 @@ void StepMatrix::widen_envelope() noexcept {
 
 // 1 + P' Mh^-1 G: where it converts that is 1 + G' M^-1 G. Columns without a tree in common know
 // nothing of each other.
-void StepMatrix::couple() noexcept {
+void StepMatrix::couple() {
   const int count = static_cast<int>(column_count_);
   first_of_tree_.assign(dofs_.size(), count);
   first_.resize(column_count_);
@@ -236,14 +236,14 @@ void StepMatrix::couple() noexcept {
 }
 
 // The solver's acceleration is that of M, where it converts.
-void StepMatrix::factor_mass() noexcept {
+void StepMatrix::factor_mass() {
   if (!makes_mass_factor_) return;
   makes_mass_factor_ = false;
   mass_factor_ = mass_;
   mass_factor_.factor();
 }
 
-void StepMatrix::constrain(const NativeConstraints& constraints) noexcept {
+void StepMatrix::constrain(const NativeConstraints& constraints) {
   load_.assign(dofs_.size(), 0.0);
   for (const NativeConstraints::Entry& entry : constraints.load()) {
     load_[index(number(entry.dof))] += entry.value;
@@ -255,7 +255,7 @@ void StepMatrix::constrain(const NativeConstraints& constraints) noexcept {
   has_matrix_ = false;
 }
 
-const EnvelopeMatrix& StepMatrix::matrix() noexcept {
+const EnvelopeMatrix& StepMatrix::matrix() {
   if (has_matrix_) return matrix_;
   has_matrix_ = true;
   matrix_.reset(envelope_, is_symmetric());
@@ -290,7 +290,7 @@ const EnvelopeMatrix& StepMatrix::matrix() noexcept {
 }
 
 // Takes off the forces x what the constraints bear of them: x - G (1 + P' Mh^-1 G)^-1 P' Mh^-1 x.
-void StepMatrix::release(std::vector<double>& x) noexcept {
+void StepMatrix::release(std::vector<double>& x) {
   if (column_count_ == 0) return;
   product_ = x;
   constraint_factor().solve(product_.data());
@@ -310,12 +310,12 @@ void StepMatrix::release(std::vector<double>& x) noexcept {
   }
 }
 
-void StepMatrix::solve(std::vector<double>& x) noexcept {
+void StepMatrix::solve(std::vector<double>& x) {
   release(x);
   free_factor_.solve(x.data());
 }
 
-void StepMatrix::accelerate(std::vector<double>& x) noexcept {
+void StepMatrix::accelerate(std::vector<double>& x) {
   factor_mass();
   release(x);
   constraint_factor().solve(x.data());

@@ -24,9 +24,9 @@ class StepMatrix {
   /// Uses the mass matrix that is current in `d`, and what make_damping() left there. Without
   /// constraints.
   void build(const mjModel* m, const mjData* d, Damping damping,
-             std::span<const DofRange> trees) noexcept;
+             std::span<const DofRange> trees);
   /// Takes the constraints as they are now in place of those before.
-  void constrain(const NativeConstraints& constraints) noexcept;
+  void constrain(const NativeConstraints& constraints);
 
   int size() const { return static_cast<int>(dofs_.size()); }
   /// The degrees of freedom of the model, by the numbers here, and the other way.
@@ -43,14 +43,14 @@ class StepMatrix {
   /// The first column of each row of H.
   std::span<const int> envelope() const { return envelope_; }
   /// H, made when it is first asked for.
-  const EnvelopeMatrix& matrix() noexcept;
+  const EnvelopeMatrix& matrix();
   /// What the constraints add to the forces t, by the numbers here.
   std::span<const double> load() const { return load_; }
 
   /// H^-1 x, by the numbers here, in place; and the acceleration that MuJoCo's solver finds under
   /// the forces x.
-  void solve(std::vector<double>& x) noexcept;
-  void accelerate(std::vector<double>& x) noexcept;
+  void solve(std::vector<double>& x);
+  void accelerate(std::vector<double>& x);
 
   /// A constraint's column of G, and what carries it: numbers, ascending.
   struct Column {
@@ -69,18 +69,18 @@ class StepMatrix {
   const EnvelopeMatrix& coupling() const { return coupling_; }
 
   /// With the numbers, those of all that carries them, ascending.
-  void close(std::vector<int>& numbers) noexcept;
+  void close(std::vector<int>& numbers);
 
  private:
-  void number_dofs(const mjModel* m, std::span<const DofRange> trees) noexcept;
-  void make_mass(const mjModel* m, const mjData* d) noexcept;
-  bool add_extra(const mjModel* m, const mjData* d, Damping damping) noexcept;
-  void factor_mass() noexcept;
-  void sort_columns(const NativeConstraints& constraints) noexcept;
-  void take_columns(const NativeConstraints& constraints) noexcept;
-  void widen_envelope() noexcept;
-  void couple() noexcept;
-  void release(std::vector<double>& x) noexcept;
+  void number_dofs(const mjModel* m, std::span<const DofRange> trees);
+  void make_mass(const mjModel* m, const mjData* d);
+  bool add_extra(const mjModel* m, const mjData* d, Damping damping);
+  void factor_mass();
+  void sort_columns(const NativeConstraints& constraints);
+  void take_columns(const NativeConstraints& constraints);
+  void widen_envelope();
+  void couple();
+  void release(std::vector<double>& x);
 
   std::vector<DofRange> trees_;
   std::vector<int> dofs_, numbers_, parents_, tree_of_;

@@ -5,7 +5,7 @@
 
 namespace volcontact::adaptor {
 
-Vec3 turning_acceleration(const mjModel* m, const mjData* d, int body, const Vec3& point) noexcept {
+Vec3 turning_acceleration(const mjModel* m, const mjData* d, int body, const Vec3& point) {
   while (body > 0 && m->body_dofnum[body] == 0) body = m->body_parentid[body];
   if (body == 0) return Vec3::Zero();
   Vec3 angular = Vec3::Zero(), linear = Vec3::Zero();

@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <thread>
 
+#include "volcontact/base/first_failure.h"
+
 namespace volcontact {
 
 /// Threads that a call may use when `asked` for so many, 0 for as many as there are: one where
@@ -31,7 +33,8 @@ inline int thread_limit(int asked) {
 /// thread does what is up to chance, so that the tasks must not depend on each other.
 class ThreadTeam {
  public:
-  /// Runs program() on the calling thread, with up to `threads` - 1 others at hand.
+  /// Runs program() on the calling thread, with up to `threads` - 1 others at hand. What it or a
+  /// task throws comes out of here.
   template <typename Program>
   void run(int threads, Program&& program) {
     if (threads <= 1) return program();
@@ -43,13 +46,14 @@ class ThreadTeam {
 #pragma omp parallel num_threads(threads)
     {
       if (number() == 0) {
-        program();
+        failure_.guard(program);
         closed_.store(true, std::memory_order_release);
       } else {
         help();
       }
     }
     open_ = false;
+    failure_.rethrow();
   }
 
   /// Whether others are at hand.
@@ -81,6 +85,7 @@ class ThreadTeam {
     hand_out((count + grain - 1) / grain);
     work();
     for (int waits = 0; done() != handed_out_; ++waits) wait(waits);
+    failure_.rethrow();
   }
 
  private:
@@ -139,7 +144,7 @@ class ThreadTeam {
       rest = &from == &own ? packed(first + 1, last) : packed(first, last - 1);
     } while (!from.left.compare_exchange_weak(left, rest, std::memory_order_acq_rel,
                                               std::memory_order_acquire));
-    call_(chunk_, static_cast<int>(chunk));
+    failure_.guard([&] { call_(chunk_, static_cast<int>(chunk)); });
     own.done.fetch_add(1, std::memory_order_release);
     return true;
   }
@@ -175,6 +180,7 @@ class ThreadTeam {
   std::atomic<bool> closed_ = true;
   alignas(64) std::atomic<unsigned> round_ = 0;  // loops so far
   std::array<Share, kMostShares> share_;
+  FirstFailure failure_;
 };
 
 }  // namespace volcontact

@@ -173,7 +173,7 @@ ContactModel::ContactModel(std::vector<GeometricPair> pairs, ContactLaws laws,
 
 void ContactModel::evaluate(std::span<const GeometricPair> pairs, const BodyMotion& motion,
                             const SiteMemory& memory, Workspace& workspace,
-                            ContactReport& report) const noexcept {
+                            ContactReport& report) const try {
   report.sites.clear();
   report.memory.clear();
   report.p_WA = motion.X_WA.translation;
@@ -215,6 +215,12 @@ void ContactModel::evaluate(std::span<const GeometricPair> pairs, const BodyMoti
       add_site(std::move(site), pair, report);
     }
   }
+} catch (...) {  // half done: nothing of it is to be found
+  workspace.carrier = SiteCarrier();
+  workspace.pressure = PressureScratch();
+  report.sites.clear();
+  report.memory.clear();
+  throw;
 }
 
 PressureField ContactModel::field_of(const GeometricPair& pair, const BodyMotion& motion,

@@ -80,15 +80,16 @@ class ContactModel {
   int state_size() const { return row_size_ > 0 ? row_size_ - kSiteHead : 0; }
 
   /// Evaluates all pairs. `memory` has the rows that an earlier evaluation left in its report; none
-  /// for bodies that were apart. Throws nothing, allocates nothing when warm.
+  /// for bodies that were apart. Allocates nothing when warm; throws
+  /// std::bad_alloc where it has to and cannot, and nothing else.
   void evaluate(const BodyMotion& motion, const SiteMemory& memory, Workspace& workspace,
-                ContactReport& report) const noexcept {
+                ContactReport& report) const {
     evaluate(pairs_, motion, memory, workspace, report);
   }
   /// The same of other pairs by the laws and options of this model, which serve them.
   void evaluate(std::span<const GeometricPair> pairs, const BodyMotion& motion,
                 const SiteMemory& memory, Workspace& workspace,
-                ContactReport& report) const noexcept;
+                ContactReport& report) const;
 
  private:
   double* new_row(int pair, const VolumeMetrics& metrics_W, const BodyMotion& motion,

@@ -116,7 +116,7 @@ void add_site(const ContactModel& model, ContactReport& report, std::size_t i, M
 
 }  // namespace
 
-ContactTangent contact_tangent(const ContactModel& model, ContactReport& report) noexcept {
+ContactTangent contact_tangent(const ContactModel& model, ContactReport& report) {
   ContactTangent out;
   for (std::size_t i = 0; i < report.sites.size(); ++i) {
     add_site(model, report, i, out.by_motion, out.by_speed);

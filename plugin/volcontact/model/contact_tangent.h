@@ -16,6 +16,6 @@ struct ContactTangent {
 };
 
 /// Of a report that keeps its inputs, by the model that made it. What the laws keep is as before.
-ContactTangent contact_tangent(const ContactModel& model, ContactReport& report) noexcept;
+ContactTangent contact_tangent(const ContactModel& model, ContactReport& report);
 
 }  // namespace volcontact

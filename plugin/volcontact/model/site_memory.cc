@@ -163,7 +163,7 @@ void SiteCarrier::inherit(std::size_t site, const VolumeMetrics& metrics_W,
 }
 
 void SiteCarrier::carry(const SiteMemory& memory, int pair, std::span<const VolumeMetrics> sites_W,
-                        const BodyMotion& motion, std::span<const StateField> states) noexcept {
+                        const BodyMotion& motion, std::span<const StateField> states) {
   size_ = static_cast<std::size_t>(size_of(states));
   carried_.assign(sites_W.size(), {});
   states_.assign(sites_W.size() * size_, 0.0);

@@ -53,7 +53,7 @@ class SiteCarrier {
  public:
   /// `states` are the tables of the laws, one after the other as in a row.
   void carry(const SiteMemory& memory, int pair, std::span<const VolumeMetrics> sites_W,
-             const BodyMotion& motion, std::span<const StateField> states) noexcept;
+             const BodyMotion& motion, std::span<const StateField> states);
 
   const CarriedSite& site(std::size_t i) const { return carried_[i]; }
   /// Committed states of site i.

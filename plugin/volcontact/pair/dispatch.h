@@ -118,7 +118,7 @@ class Dispatch<TypeList<Engines...>> {
   using Scratch = typename dispatch::Memory<std::tuple<>, typename Engines::Scratch...>::Type;
 
   /// Whether an engine of this word integrates the two, in either order.
-  static bool serves(Engine word, const Shape& a, const Shape& b) noexcept {
+  static bool serves(Engine word, const Shape& a, const Shape& b) {
     if (word == Engine::kAuto) return true;
     const Services services = services_of(a, b);
     return std::any_of(services.begin(), services.end(), [&](const Service& service) {
@@ -127,7 +127,7 @@ class Dispatch<TypeList<Engines...>> {
   }
 
   /// The word of the first engine that kAuto asks; kAuto where there is none.
-  static Engine first(const Shape& a, const Shape& b) noexcept {
+  static Engine first(const Shape& a, const Shape& b) {
     for (const Service& service : services_of(a, b)) {
       if (service.takes_part(Engine::kAuto, a, b)) return service.word;
     }
@@ -137,7 +137,7 @@ class Dispatch<TypeList<Engines...>> {
   /// See `interference`, which is this with the engines that there are.
   static void interference(const Shape& a, const Shape& b, const Pose& X_AB,
                            const InterferenceOptions& options, Scratch& scratch,
-                           Interference& out) noexcept {
+                           Interference& out) {
     Round{{a, b, X_AB, options}, services_of(a, b), scratch, out}.run();
   }
 
@@ -291,7 +291,13 @@ class Dispatch<TypeList<Engines...>> {
       const OverlapLimits a = compares ? dispatch::limits_of_shape(q_.a) : OverlapLimits{};
       const OverlapLimits b = compares ? dispatch::limits_of_shape(q_.b) : OverlapLimits{};
       if (!service.has_bounds && !service.exact && is_doubtful(out_.total, a, b)) return false;
-      const bool possible = dispatch::are_possible(a, b, q_.X_AB, out_);
+      bool possible = dispatch::are_possible(a, b, q_.X_AB, out_);
+      if (service.has_bounds && !possible && out_.total.status != Status::kInvalid) {
+        // None is asked after it: of an overlap much smaller than its cells, V and its error are
+        // left.
+        possible = keep_possible(a, b, out_.total);
+        dispatch::set_one_site(out_);
+      }
       if (service.exact) {
         const bool is_number = possible || is_finite(out_.total);
         if (!is_number || out_.total.status == Status::kApproximate) {

@@ -31,7 +31,8 @@ constexpr Answer answer(bool given) { return given ? Answer::kGiven : Answer::kB
 ///                   several engines name are shared
 ///  serves<A, B>()   whether it integrates these types of solids in this order; the mirror image is
 ///                   made for it
-///  run(question, scratch..., out)   metrics in A's frame about A's origin, or kBeyond; noexcept
+///  run(question, scratch..., out)   metrics in A's frame about A's origin, or kBeyond;
+///                                  throws std::bad_alloc alone
 ///
 /// and what of this base is not usual for it. `dispatch.h` does all the rest once for all engines,
 /// `engines.h` has the list of them.

@@ -5,7 +5,7 @@ namespace volcontact {
 
 void interference_W(const GeometricPair& pair, const Pose& X_WA, const Pose& X_WB,
                     const InterferenceOptions& options, InterferenceWorkspace& workspace,
-                    Interference& out) noexcept {
+                    Interference& out) {
   const Pose X_Wa = X_WA * pair.X_Aa;
   const Pose X_Wb = X_WB * pair.X_Bb;
   interference(pair.a, pair.b, X_Wa.inverse() * X_Wb, options, workspace, out);

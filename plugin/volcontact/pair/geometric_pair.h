@@ -17,6 +17,6 @@ struct GeometricPair {
 /// origin. Computed in solid a's frame, so that far-away bodies cost no accuracy.
 void interference_W(const GeometricPair& pair, const Pose& X_WA, const Pose& X_WB,
                     const InterferenceOptions& options, InterferenceWorkspace& workspace,
-                    Interference& out) noexcept;
+                    Interference& out);
 
 }  // namespace volcontact

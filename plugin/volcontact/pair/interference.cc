@@ -28,8 +28,14 @@ Engine engine_for(const Shape& a, const Shape& b) { return Dispatcher::first(a, 
 
 void interference(const Shape& a, const Shape& b, const Pose& X_AB,
                   const InterferenceOptions& options, InterferenceWorkspace& workspace,
-                  Interference& out) noexcept {
-  Dispatcher::interference(a, b, X_AB, options, workspace.scratch().of_engines, out);
+                  Interference& out) {
+  Dispatcher::Scratch& scratch = workspace.scratch().of_engines;
+  try {
+    Dispatcher::interference(a, b, X_AB, options, scratch, out);
+  } catch (...) {
+    scratch = Dispatcher::Scratch();  // half grown: lists that belong together differ in length
+    throw;
+  }
 }
 
 }  // namespace volcontact

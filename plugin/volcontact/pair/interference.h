@@ -31,12 +31,13 @@ bool serves(Engine engine, const Shape& a, const Shape& b);
 /// The engine kAuto stands for.
 Engine engine_for(const Shape& a, const Shape& b);
 
-/// Interference of A and B, in A's frame and about its origin. `X_AB` is the pose of B in A. Never
-/// throws: a non-finite pose gives Status::kInvalid, two unbounded solids Status::kUnbounded, a
-/// forced engine that does not serve the pair falls back to kAuto (check with `serves` first).
+/// Interference of A and B, in A's frame and about its origin. `X_AB` is the pose of B in A. A
+/// non-finite pose gives Status::kInvalid, two unbounded solids Status::kUnbounded, a forced engine
+/// that does not serve the pair falls back to kAuto (check with `serves` first). Throws
+/// std::bad_alloc where the workspace has to grow and cannot, and nothing else.
 /// The value depends on the arguments alone: no history, any thread count, the same bits.
 void interference(const Shape& a, const Shape& b, const Pose& X_AB,
                   const InterferenceOptions& options, InterferenceWorkspace& workspace,
-                  Interference& out) noexcept;
+                  Interference& out);
 
 }  // namespace volcontact

@@ -98,6 +98,19 @@ inline bool is_possible(const VolumeMetrics& metrics, const OverlapLimits& a,
   return is_possible(b, parts, R_BA * p_BC_A, R_BA * m.area_vector);
 }
 
+/// Makes possible what a rough answer with a bound of its error is not: V no larger than either
+/// solid, the error with it; no direction. False where V is no number.
+inline bool keep_possible(const OverlapLimits& a, const OverlapLimits& b, VolumeMetrics& m) {
+  const double least = std::min(a.volume, b.volume);
+  if (!(m.volume >= 0.0 && m.volume < kInfinity && m.volume_error < kInfinity)) return false;
+  m.volume_error += std::max(0.0, m.volume - least);
+  m.volume = std::min(m.volume, least);
+  m.centroid = m.centroid.cwiseMax(a.bounds.min).cwiseMin(a.bounds.max);
+  m.area_vector = m.area_moment = Vec3::Zero();
+  m.status = std::max(m.status, Status::kApproximate);
+  return is_finite(m);
+}
+
 /// Whether an engine says itself that it does not know V.
 inline bool is_doubtful(const VolumeMetrics& m, const OverlapLimits& a, const OverlapLimits& b) {
   using namespace overlap_limits;

@@ -188,7 +188,7 @@ double greatest_depth(const Shape& solid) {
       solid);
 }
 
-bool parallel_solid(const Shape& solid, double depth, Shape& inner, Pose& X_SI) noexcept {
+bool parallel_solid(const Shape& solid, double depth, Shape& inner, Pose& X_SI) {
   return std::visit(
       [&](const auto& s) {
         using S = std::decay_t<decltype(s)>;

@@ -21,7 +21,7 @@ double greatest_depth(const Shape& solid);
 /// The part of a solid with parallel solids, of either kind, that is deeper than `depth` [m] below
 /// its surface, as `inner` with its pose in the solid's frame. False when nothing is left.
 /// Allocates nothing when `inner` is of the solid's kind already.
-bool parallel_solid(const Shape& solid, double depth, Shape& inner, Pose& X_SI) noexcept;
+bool parallel_solid(const Shape& solid, double depth, Shape& inner, Pose& X_SI);
 
 /// Area of the surface of such a solid [m^2]: what its volume falls by, per depth. Zero for a
 /// composed one, whose own surface is not known.

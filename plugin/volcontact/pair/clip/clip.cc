@@ -55,7 +55,7 @@ double rounding_at(double reach) { return 4.0 * kEpsilon * reach; }
 }  // namespace
 
 VolumeMetrics clip(const HalfSpace&, const Box& b, const Pose& X_AB,
-                   ClipScratch& scratch) noexcept {
+                   ClipScratch& scratch) {
   const Vec3& half = b.half_sizes();
   const double height = X_AB.translation.z();
   const double reach = X_AB.rotation.row(2).cwiseAbs().dot(half);
@@ -73,7 +73,7 @@ VolumeMetrics clip(const HalfSpace&, const Box& b, const Pose& X_AB,
 }
 
 VolumeMetrics clip(const HalfSpace&, const ConvexPolytope& b, const Pose& X_AB,
-                   ClipScratch& scratch) noexcept {
+                   ClipScratch& scratch) {
   const Vec3 up_B = X_AB.rotation.row(2).transpose();
   const double height = X_AB.translation.z();
   const double depth = b.support_height(-up_B) - height;
@@ -96,7 +96,7 @@ VolumeMetrics clip(const HalfSpace&, const ConvexPolytope& b, const Pose& X_AB,
                        Vec3(X_AB.translation.x(), X_AB.translation.y(), 0.0), scratch.part);
 }
 
-VolumeMetrics clip(const Box& a, const Box& b, const Pose& X_AB, ClipScratch& scratch) noexcept {
+VolumeMetrics clip(const Box& a, const Box& b, const Pose& X_AB, ClipScratch& scratch) {
   const Vec3 &half_a = a.half_sizes(), &half_b = b.half_sizes(), &p_AB = X_AB.translation;
   const Mat3& R_AB = X_AB.rotation;
   if (boxes_apart(half_a, half_b, R_AB, p_AB)) return VolumeMetrics{};
@@ -115,7 +115,7 @@ VolumeMetrics clip(const Box& a, const Box& b, const Pose& X_AB, ClipScratch& sc
 }
 
 VolumeMetrics clip(const Box& a, const ConvexPolytope& b, const Pose& X_AB,
-                   ClipScratch& scratch) noexcept {
+                   ClipScratch& scratch) {
   const Aabb bounds = b.bounds();
   const Vec3 p_AM = X_AB * bounds.center(), half_b = bounds.half_sizes();
   if (boxes_apart(a.half_sizes(), half_b, X_AB.rotation, p_AM)) return VolumeMetrics{};
@@ -128,7 +128,7 @@ VolumeMetrics clip(const Box& a, const ConvexPolytope& b, const Pose& X_AB,
 }
 
 VolumeMetrics clip(const ConvexPolytope& a, const ConvexPolytope& b, const Pose& X_AB,
-                   ClipScratch& scratch) noexcept {
+                   ClipScratch& scratch) {
   const Aabb bounds_a = a.bounds(), bounds_b = b.bounds();
   const Vec3 half_a = bounds_a.half_sizes(), half_b = bounds_b.half_sizes();
   const Vec3 p_AM = X_AB * bounds_b.center();

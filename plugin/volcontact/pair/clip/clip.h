@@ -32,13 +32,13 @@ struct ClipScratch {
 /// (but in a half-space depth is always along its axis). Faces of both solids in one plane, facing
 /// the same way, count as B's.
 VolumeMetrics clip(const HalfSpace& a, const Box& b, const Pose& X_AB,
-                   ClipScratch& scratch) noexcept;
+                   ClipScratch& scratch);
 VolumeMetrics clip(const HalfSpace& a, const ConvexPolytope& b, const Pose& X_AB,
-                   ClipScratch& scratch) noexcept;
-VolumeMetrics clip(const Box& a, const Box& b, const Pose& X_AB, ClipScratch& scratch) noexcept;
+                   ClipScratch& scratch);
+VolumeMetrics clip(const Box& a, const Box& b, const Pose& X_AB, ClipScratch& scratch);
 VolumeMetrics clip(const Box& a, const ConvexPolytope& b, const Pose& X_AB,
-                   ClipScratch& scratch) noexcept;
+                   ClipScratch& scratch);
 VolumeMetrics clip(const ConvexPolytope& a, const ConvexPolytope& b, const Pose& X_AB,
-                   ClipScratch& scratch) noexcept;
+                   ClipScratch& scratch);
 
 }  // namespace volcontact

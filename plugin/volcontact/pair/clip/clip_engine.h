@@ -19,7 +19,7 @@ struct Clip : EngineBase {
     };
   }
   template <typename A, typename B>
-  static Answer run(const Question<A, B>& q, ClipScratch& scratch, Interference& out) noexcept {
+  static Answer run(const Question<A, B>& q, ClipScratch& scratch, Interference& out) {
     out.total = clip(q.a, q.b, q.X_AB, scratch);
     return Answer::kGiven;
   }

@@ -22,7 +22,7 @@ struct ClosedForm : EngineBase {
     return requires(const A& a, const B& b, const Pose& X_AB) { closed_form(a, b, X_AB); };
   }
   template <typename A, typename B>
-  static Answer run(const Question<A, B>& q, Interference& out) noexcept {
+  static Answer run(const Question<A, B>& q, Interference& out) {
     out.total = closed_form(q.a, q.b, q.X_AB);
     return Answer::kGiven;
   }

@@ -101,7 +101,7 @@ int keep_used(Corner* s, int count, const Nearest& nearest) {
 
 }  // namespace
 
-Vec3 nearest_in_hull(const std::vector<Vec3>& points) noexcept {
+Vec3 nearest_in_hull(const std::vector<Vec3>& points) {
   Corner corners[4];
   corners[0].w = points[0];
   int count = 1;
@@ -123,7 +123,7 @@ Vec3 nearest_in_hull(const std::vector<Vec3>& points) noexcept {
 }
 
 BallGap ball_gap(const ConvexView& solid, const Pose& X_AS, const Vec3& center,
-                 double radius) noexcept {
+                 double radius) {
   Corner corners[4];
   double weights[4];
   int count = 1;
@@ -162,7 +162,7 @@ BallGap ball_gap(const ConvexView& solid, const Pose& X_AS, const Vec3& center,
 }
 
 bool find_common_point(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
-                       Vec3& point) noexcept {
+                       Vec3& point) {
   const Pose X_AA;
   Corner corners[4];
   double weights[4] = {1.0, 0.0, 0.0, 0.0};

@@ -11,7 +11,7 @@ namespace volcontact {
 /// `half_b` are half edge lengths, R_AB turns B's axes to A's, p_AB leads from A's centre to B's.
 /// Conservative: rounding never separates boxes that overlap.
 inline bool boxes_apart(const Vec3& half_a, const Vec3& half_b, const Mat3& R_AB,
-                        const Vec3& p_AB) noexcept {
+                        const Vec3& p_AB) {
   const Mat3 turn = R_AB.cwiseAbs();
   const Vec3 gap_a = p_AB.cwiseAbs() - half_a - turn * half_b;
   const Vec3 gap_b = (R_AB.transpose() * p_AB).cwiseAbs() - half_b - turn.transpose() * half_a;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "volcontact/base/first_failure.h"
 #include "volcontact/pair/mesh_columns/crossing/leaf_cache.h"
 
 namespace volcontact {
@@ -129,13 +130,13 @@ bool meets_rectangle(const double corners[3][3], const ColumnWindow& window, dou
 namespace volcontact {
 
 bool find_leaf_pairs(const ObbTree& a, const Pose& X_CA, const ObbTree& b, const Pose& X_CB,
-                     const ColumnWindow& window, int most, CellScratch& scratch) noexcept {
+                     const ColumnWindow& window, int most, CellScratch& scratch) {
   return VOLCONTACT_SIMD_CALL(scratch.path, find_leaf_pairs_wide, a, X_CA, b, X_CB, window, most,
                               scratch);
 }
 
 void make_cells(const ObbTree& a, const Pose& X_CA, const ObbTree& b, const Pose& X_CB,
-                const ColumnWindow& window, int threads, CellScratch& scratch) noexcept {
+                const ColumnWindow& window, int threads, CellScratch& scratch) {
   constexpr std::size_t kShare = 256;  // leaf pairs that are worth waking a thread for
   const std::size_t pairs = scratch.leaf_pairs.size() / 2;
   if (threads <= 1 || pairs < kShare) {
@@ -146,13 +147,18 @@ void make_cells(const ObbTree& a, const Pose& X_CA, const ObbTree& b, const Pose
   // Each share on its own; put together they are as if they were one.
   const std::size_t shares = (pairs + kShare - 1) / kShare;
   if (scratch.shares.size() < shares) scratch.shares.resize(shares);
+  FirstFailure failure;
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
   for (std::size_t i = 0; i < shares; ++i) {
     const std::size_t first = i * kShare, count = std::min(pairs - first, kShare);
-    scratch.shares[i].upright =
-        VOLCONTACT_SIMD_CALL(scratch.path, make_cells_wide, a, X_CA, b, X_CB, window,
-                             scratch.leaf_pairs.data() + 2 * first, count, scratch.shares[i].cells);
+    failure.guard([&] {
+      scratch.shares[i].upright = VOLCONTACT_SIMD_CALL(scratch.path, make_cells_wide, a, X_CA, b,
+                                                       X_CB, window,
+                                                       scratch.leaf_pairs.data() + 2 * first,
+                                                       count, scratch.shares[i].cells);
+    });
   }
+  failure.rethrow();
   scratch.upright = false;
   scratch.cells.clear();
   for (std::size_t i = 0; i < shares; ++i) {
@@ -162,26 +168,26 @@ void make_cells(const ObbTree& a, const Pose& X_CA, const ObbTree& b, const Pose
   }
 }
 
-void make_cells_below(const ObbTree& a, const Pose& X_CA, CellScratch& scratch) noexcept {
+void make_cells_below(const ObbTree& a, const Pose& X_CA, CellScratch& scratch) {
   VOLCONTACT_SIMD_CALL(scratch.path, make_cells_below_wide, a, X_CA, scratch);
 }
 
 bool make_cells_in_prism(const ObbTree& a, const Pose& X_CA, const ColumnPrism& prism,
-                         CellScratch& scratch) noexcept {
+                         CellScratch& scratch) {
   return VOLCONTACT_SIMD_CALL(scratch.path, make_cells_in_prism_wide, a, X_CA, prism, scratch);
 }
 
 bool meets_level(const ObbTree& tree, const Pose& X_CM, const ColumnWindow& window, double z,
-                 CellScratch& scratch) noexcept {
+                 CellScratch& scratch) {
   return VOLCONTACT_SIMD_CALL(scratch.path, meets_level_wide, tree, X_CM, window, z, scratch);
 }
 
-bool winding(const ObbTree& tree, const Pose& X_CM, CellScratch& scratch, int& number) noexcept {
+bool winding(const ObbTree& tree, const Pose& X_CM, CellScratch& scratch, int& number) {
   return VOLCONTACT_SIMD_CALL(scratch.path, winding_wide, tree, X_CM, scratch, number);
 }
 
 void add_hits(const ObbTree& tree, const Pose& X_CM, double x, double y, int side,
-              CellScratch& scratch, std::vector<ColumnHit>& hits) noexcept {
+              CellScratch& scratch, std::vector<ColumnHit>& hits) {
   const Pose X{X_CM.rotation, X_CM.translation - Vec3(x, y, 0.0)};
   VOLCONTACT_SIMD_CALL(scratch.path, add_hits_wide, tree, X, side, scratch, hits);
 }

@@ -73,14 +73,14 @@ struct CellScratch {
 
 /// Lists the pairs of leaves that may hold cells; false when there are more than `most`.
 bool find_leaf_pairs(const ObbTree& a, const Pose& X_CA, const ObbTree& b, const Pose& X_CB,
-                     const ColumnWindow& window, int most, CellScratch& scratch) noexcept;
+                     const ColumnWindow& window, int most, CellScratch& scratch);
 
 /// Makes the cells of those pairs, in a fixed order whatever the number of threads.
 void make_cells(const ObbTree& a, const Pose& X_CA, const ObbTree& b, const Pose& X_CB,
-                const ColumnWindow& window, int threads, CellScratch& scratch) noexcept;
+                const ColumnWindow& window, int threads, CellScratch& scratch);
 
 /// The cells of A with the half-space z < 0 of C.
-void make_cells_below(const ObbTree& a, const Pose& X_CA, CellScratch& scratch) noexcept;
+void make_cells_below(const ObbTree& a, const Pose& X_CA, CellScratch& scratch);
 
 /// One face of a convex solid, on the plane z = 0 of C with the solid below it.
 struct ColumnPrism {
@@ -92,15 +92,15 @@ struct ColumnPrism {
 /// The cells of A with a convex solid whose other faces A's surface does not meet: those of the
 /// triangles within it. False when it meets one of them.
 bool make_cells_in_prism(const ObbTree& a, const Pose& X_CA, const ColumnPrism& prism,
-                         CellScratch& scratch) noexcept;
+                         CellScratch& scratch);
 
 /// Whether some triangle meets the rectangle of the window at height z.
 bool meets_level(const ObbTree& tree, const Pose& X_CM, const ColumnWindow& window, double z,
-                 CellScratch& scratch) noexcept;
+                 CellScratch& scratch);
 
 /// How many times the surface winds around the origin of C: the sum over the triangles above it on
 /// the z axis. False when the axis passes too near an edge to say.
-bool winding(const ObbTree& tree, const Pose& X_CM, CellScratch& scratch, int& number) noexcept;
+bool winding(const ObbTree& tree, const Pose& X_CM, CellScratch& scratch, int& number);
 
 /// Where a line parallel to z passes through a surface.
 struct ColumnHit {
@@ -112,6 +112,6 @@ struct ColumnHit {
 
 /// Appends the hits of the surface on the line above (x, y) in C, as those of `side`.
 void add_hits(const ObbTree& tree, const Pose& X_CM, double x, double y, int side,
-              CellScratch& scratch, std::vector<ColumnHit>& hits) noexcept;
+              CellScratch& scratch, std::vector<ColumnHit>& hits);
 
 }  // namespace volcontact

@@ -170,7 +170,7 @@ double length_of_outline(const ColumnCell& cell) {
 
 }  // namespace
 
-bool is_layered(const std::vector<ColumnCell>& cells) noexcept {
+bool is_layered(const std::vector<ColumnCell>& cells) {
   return std::any_of(cells.begin(), cells.end(),
                      [](const ColumnCell& c) { return c.sign_f > 0 || c.sign_g < 0; });
 }
@@ -211,7 +211,7 @@ int find_regions_below(const ObbTree& a, std::vector<ColumnCell>& cells, RegionS
 }  // namespace
 
 int find_regions(const ObbTree& a, const ObbTree* b, double rounding,
-                 std::vector<ColumnCell>& cells, RegionScratch& scratch) noexcept {
+                 std::vector<ColumnCell>& cells, RegionScratch& scratch) {
   scratch.left_out = 0.0;
   if (b == nullptr && !is_layered(cells)) return find_regions_below(a, cells, scratch);
   const int count = static_cast<int>(cells.size());

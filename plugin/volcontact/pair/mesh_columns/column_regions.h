@@ -38,9 +38,9 @@ struct RegionScratch {
 /// which there is no cell. By `rounding` corners of cells are off [m]. Returns the number of
 /// regions; `scratch.region_of` has one entry per cell. docs/theory.md, "Columns".
 int find_regions(const ObbTree& a, const ObbTree* b, double rounding,
-                 std::vector<ColumnCell>& cells, RegionScratch& scratch) noexcept;
+                 std::vector<ColumnCell>& cells, RegionScratch& scratch);
 
 /// Whether the cells are stacked: a column passes through more than one face of A or of B.
-bool is_layered(const std::vector<ColumnCell>& cells) noexcept;
+bool is_layered(const std::vector<ColumnCell>& cells);
 
 }  // namespace volcontact

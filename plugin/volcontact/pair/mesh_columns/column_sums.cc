@@ -106,6 +106,7 @@ class Summation {
     const double gx = cell.slope_g[0], gy = cell.slope_g[1];
     const double steepness = 1.0 + gx * gx + gy * gy;
     sum_.moments.counter_area -= cell.sign_f * cell.area * std::sqrt(steepness);
+    sum_.counter_vector -= cell.sign_f * cell.sign_g * cell.area * Vec3(-gx, -gy, 1.0);
     sum_.seen += cell.area * std::sqrt(steepness);
   }
 
@@ -115,10 +116,10 @@ class Summation {
       const int label = cell.label[i];
       if (label < 3 || (cell.walls & 1u << label) == 0 || label == kCrossing) continue;
       const int j = i + 1 == cell.count ? 0 : i + 1;
+      const double dx = cell.x[j] - cell.x[i], dy = cell.y[j] - cell.y[i];
       const double height = 0.5 * (cell.delta[i] + cell.delta[j]);
-      sum_.moments.counter_area +=
-          weight * height *
-          wall(1, cell.g, label - 3, cell.x[j] - cell.x[i], cell.y[j] - cell.y[i]);
+      sum_.counter_vector += weight * height * Vec3(dy, -dx, 0.0);
+      sum_.moments.counter_area += weight * height * wall(1, cell.g, label - 3, dx, dy);
     }
   }
 
@@ -183,6 +184,7 @@ class Summation {
 
 CellSum& CellSum::operator+=(const CellSum& other) {
   moments += other.moments;
+  counter_vector += other.counter_vector;
   energy += other.energy;
   depth = std::max(depth, other.depth);
   absolute += other.absolute;
@@ -192,7 +194,7 @@ CellSum& CellSum::operator+=(const CellSum& other) {
 
 CellSum sum_region(int region, const std::vector<ColumnCell>& cells,
                    const std::vector<CellRegion>& region_of, const ColumnSurface& a,
-                   const ColumnSurface& b, SimdPath path) noexcept {
+                   const ColumnSurface& b, SimdPath path) {
   Summation summation(a, b, path);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const bool in_f = region_of[i].of_f == region, in_g = region_of[i].of_g == region;
@@ -205,7 +207,7 @@ CellSum sum_region(int region, const std::vector<ColumnCell>& cells,
   return summation.finish();
 }
 
-double energy_of(const std::vector<ColumnCell>& cells) noexcept {
+double energy_of(const std::vector<ColumnCell>& cells) {
   double sum = 0.0;
   for (const ColumnCell& cell : cells) {
     for (int i = 1; i + 1 < cell.count; ++i) {

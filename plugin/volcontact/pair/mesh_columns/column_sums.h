@@ -10,6 +10,7 @@ namespace volcontact {
 /// A's face to B's.
 struct CellSum {
   MomentSum moments;      ///< with the area vector and moment of A's surface
+  Vec3 counter_vector = Vec3::Zero();  ///< area vector of B's surface: the two close the region
   double energy = 0.0;    ///< int delta^2/2 over the cells [m^4]
   double depth = 0.0;     ///< length of the longest column that is all overlap [m]
   double absolute = 0.0;  ///< sum of the magnitudes of what was added to the volume [m^3]
@@ -27,10 +28,10 @@ struct ColumnSurface {
 /// Sums of one region.
 CellSum sum_region(int region, const std::vector<ColumnCell>& cells,
                    const std::vector<CellRegion>& region_of, const ColumnSurface& a,
-                   const ColumnSurface& b, SimdPath path) noexcept;
+                   const ColumnSurface& b, SimdPath path);
 
 /// int delta^2/2 over all cells, with their signs: the work of the volume against a shift of A
 /// along z. Where cells are layered it cannot be told apart by region.
-double energy_of(const std::vector<ColumnCell>& cells) noexcept;
+double energy_of(const std::vector<ColumnCell>& cells);
 
 }  // namespace volcontact

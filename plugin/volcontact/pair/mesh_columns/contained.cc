@@ -13,7 +13,7 @@ const Vec3 kRays[] = {Vec3(0.2873, 0.5172, 0.8062), Vec3(-0.6731, 0.3418, 0.6558
 
 }  // namespace
 
-int winding_around(const SurfaceView& solid, const Vec3& p, CellScratch& scratch) noexcept {
+int winding_around(const SurfaceView& solid, const Vec3& p, CellScratch& scratch) {
   int number = 0;
   for (const Vec3& ray : kRays) {
     const Mat3 R_CM = basis_with_z(ray.normalized()).transpose();
@@ -55,7 +55,7 @@ double add_parts(const SurfaceView& solid, const Pose& X_AM, const SurfaceView& 
 
 VolumeMetrics contained_parts(const SurfaceView& a, const SurfaceView& b, const Pose& X_AB,
                               const std::vector<int>& crossing_a,
-                              const std::vector<int>& crossing_b, CellScratch& scratch) noexcept {
+                              const std::vector<int>& crossing_b, CellScratch& scratch) {
   MomentSum sum;
   VolumeMetrics m;
   m.area = add_parts(a, Pose{}, b, X_AB.inverse(), crossing_a, scratch, sum);

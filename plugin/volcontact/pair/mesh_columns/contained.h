@@ -10,7 +10,7 @@
 namespace volcontact {
 
 /// How often the surface winds around p, in its frame: 0 outside.
-int winding_around(const SurfaceView& solid, const Vec3& p, CellScratch& scratch) noexcept;
+int winding_around(const SurfaceView& solid, const Vec3& p, CellScratch& scratch);
 
 /// What the overlap owes to those parts of the surfaces that cross nothing of the other solid: each
 /// of them lies wholly inside of it, and bounds the overlap there, or wholly outside. `crossing_a`
@@ -18,6 +18,6 @@ int winding_around(const SurfaceView& solid, const Vec3& p, CellScratch& scratch
 /// where cavities take away more than there is.
 VolumeMetrics contained_parts(const SurfaceView& a, const SurfaceView& b, const Pose& X_AB,
                               const std::vector<int>& crossing_a,
-                              const std::vector<int>& crossing_b, CellScratch& scratch) noexcept;
+                              const std::vector<int>& crossing_b, CellScratch& scratch);
 
 }  // namespace volcontact

@@ -20,6 +20,8 @@ constexpr double kFlux = 1e-8;        // of the square of the length of a curve
 constexpr double kNoCellArea = 1e-8;  // of the largest cell: rounding has made it
 constexpr double kAtEdge = 1e-9;      // of an edge: how far a point may be off it
 constexpr double kCentroid = 1e-9;    // of the size: how far out of bounds it may be
+constexpr double kOpen = 1e-9;        // of the faces seen: how far a closed surface is from closing
+constexpr double kAside = 1e-3;       // of columns that see upright faces, too [rad]
 
 class Columns {
  public:
@@ -386,15 +388,25 @@ class Columns {
     const int* order = scratch_.patches.order.data();
     Vec3 toward_a = flux_of(contacts, order, order + contacts.size()).toward_a;
     if (toward_a.isZero()) toward_a = Vec3::UnitZ();
-    const Pose X_BC{basis_with_z(toward_a), b_->bounds.center()};
-    const Pose X_CB = X_BC.inverse();
-    const Pose X_CA = X_CB * X_BA_;
-    if (find_leaf_pairs(*a_.tree, X_CA, *b_->tree, X_CB, ColumnWindow{}, most_leaf_pairs_ / 2,
-                        scratch_.cells)) {
+    Pose X_BC{basis_with_z(toward_a), b_->bounds.center()};
+    // Where an edge of one body runs along an upright face of the other, whether there is a wall is
+    // told by rounding. Columns a little aside see the face.
+    for (const double aside : {0.0, kAside}) {
+      X_BC.rotation = X_BC.rotation * Eigen::AngleAxisd(aside, Vec3(0.8, 0.6, 0.0)).matrix();
+      const Pose X_CB = X_BC.inverse();
+      const Pose X_CA = X_CB * X_BA_;
+      if (!find_leaf_pairs(*a_.tree, X_CA, *b_->tree, X_CB, ColumnWindow{}, most_leaf_pairs_ / 2,
+                           scratch_.cells)) {
+        break;
+      }
       make_cells(*a_.tree, X_CA, *b_->tree, X_CB, ColumnWindow{}, threads_, scratch_.cells);
       add_regions(X_CA, X_CB, X_AB_ * X_BC, b_->tree);
-      return;
+      if (closes_ || aside > 0.0) return;
+      out_.sites.clear();
+      dropped_ = 0.0;
     }
+    const Pose X_CB = X_BC.inverse();
+    const Pose X_CA = X_CB * X_BA_;
     const VolumeMetrics m = sampled_columns(a_, X_CA, *b_, X_CB, scratch_.cells, scratch_.sampled);
     sampled_ = m;
     if (m.touching()) out_.sites.push_back(transformed(m, X_AB_ * X_BC));
@@ -411,13 +423,17 @@ class Columns {
     const double left_out = own ? 0.0 : scratch_.regions.left_out * size_of(a_.bounds);
     std::vector<CellSum>& sums = scratch_.sums;
     sums.clear();
-    Vec3 area_vector = Vec3::Zero();
+    Vec3 area_vector = Vec3::Zero(), open = Vec3::Zero();
+    double seen = 0.0;
     for (int region = 0; region < regions; ++region) {
       if (own && !scratch_.own_regions[static_cast<std::size_t>(region)]) continue;
       sums.push_back(
           sum_region(region, cells(), scratch_.regions.region_of, a, b, scratch_.cells.path));
       area_vector += sums.back().moments.area_vector;
+      open += sums.back().moments.area_vector + sums.back().counter_vector;
+      seen += sums.back().seen;
     }
+    closes_ = tree_b == nullptr || open.norm() <= kOpen * seen;
     // A surface that looks into a cavity takes its volume away from the region around it. And where
     // faces coincide, what was told apart need not be a region.
     if (sums.size() > 1 && !are_regions(sums, common_bounds(X_CA, tree_b, X_CB))) {
@@ -438,6 +454,9 @@ class Columns {
       VolumeMetrics m = sum.moments.metrics();
       m.volume_error = error_of(sum) + left_out;
       const double length = m.area_vector.norm();
+      // Of faces that lie on each other rounding tells which one is the surface.
+      m.area = std::max(m.area, length);
+      m.counter_area = std::max(m.counter_area, length);
       const double along = length > 0.0 ? std::abs(m.area_vector.z()) / length : 1.0;
       m.depth_moment = sum.energy * along;
       m.depth = sum.depth * along;  // 0 where a region shows no face to the columns, only walls
@@ -490,6 +509,7 @@ class Columns {
   ColumnsScratch& scratch_;
   Interference& out_;
   double rounding_;
+  bool closes_ = true;     // A's and B's surface around the regions added last, together
   double dropped_ = 0.0;   // at most, of regions too small to tell from rounding [m^3]
   VolumeMetrics sampled_;  // where the budget did not allow more
 };
@@ -498,13 +518,13 @@ class Columns {
 
 void columns_interference(const SurfaceView& a, const SurfaceView& b, const Pose& X_AB,
                           const InterferenceOptions& options, ColumnsScratch& scratch,
-                          Interference& out) noexcept {
+                          Interference& out) {
   Columns(a, &b, X_AB, options, scratch, out).meshes();
 }
 
 void columns_interference(const SurfaceView& a, const HalfSpace&, const Pose& X_AB,
                           const InterferenceOptions& options, ColumnsScratch& scratch,
-                          Interference& out) noexcept {
+                          Interference& out) {
   Columns(a, nullptr, X_AB, options, scratch, out).half_space();
 }
 

@@ -37,11 +37,11 @@ struct ColumnsScratch {
 /// over what the projections of two triangles have in common: a polynomial over a polygon
 void columns_interference(const SurfaceView& a, const SurfaceView& b, const Pose& X_AB,
                           const InterferenceOptions& options, ColumnsScratch& scratch,
-                          Interference& out) noexcept;
+                          Interference& out);
 
 /// The same with the half-space z < 0 of B's frame.
 void columns_interference(const SurfaceView& a, const HalfSpace& b, const Pose& X_AB,
                           const InterferenceOptions& options, ColumnsScratch& scratch,
-                          Interference& out) noexcept;
+                          Interference& out);
 
 }  // namespace volcontact

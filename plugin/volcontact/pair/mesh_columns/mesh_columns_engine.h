@@ -17,7 +17,7 @@ struct MeshAndMesh : EngineBase {
     return std::is_same_v<A, Mesh> && (HasTriangles<B> || std::is_same_v<B, HalfSpace>);
   }
   template <typename A, typename B>
-  static Answer run(const Question<A, B>& q, ColumnsScratch& scratch, Interference& out) noexcept {
+  static Answer run(const Question<A, B>& q, ColumnsScratch& scratch, Interference& out) {
     const SurfaceView a = surface_of(q.a, scratch.store[0]);
     if constexpr (HasTriangles<B>) {
       const SurfaceView b = surface_of(q.b, scratch.store[1]);

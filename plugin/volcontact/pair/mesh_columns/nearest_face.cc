@@ -4,7 +4,7 @@
 namespace volcontact {
 
 FaceReach nearest_face(const Aabb& a, const SurfaceView& b, const Pose& X_BA, double margin,
-                       ColumnPrism& prism, Pose& X_BC) noexcept {
+                       ColumnPrism& prism, Pose& X_BC) {
   const std::vector<SurfacePlane>& planes = *b.planes;
   const Vec3 middle = X_BA * a.center(), half = a.half_sizes();
   const SurfacePlane* face = nullptr;

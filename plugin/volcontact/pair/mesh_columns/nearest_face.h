@@ -12,6 +12,6 @@ enum class FaceReach { kApart, kPart, kWhole };
 /// its prism and its pose X_BC, kWhole when they lie below all of it. `margin` [m] is what rounding
 /// may misplace.
 FaceReach nearest_face(const Aabb& a, const SurfaceView& b, const Pose& X_BA, double margin,
-                       ColumnPrism& prism, Pose& X_BC) noexcept;
+                       ColumnPrism& prism, Pose& X_BC);
 
 }  // namespace volcontact

@@ -17,6 +17,6 @@ struct SampledScratch {
 /// difference between the two halves of the columns. In C's frame.
 VolumeMetrics sampled_columns(const SurfaceView& a, const Pose& X_CA, const SurfaceView& b,
                               const Pose& X_CB, CellScratch& cells,
-                              SampledScratch& scratch) noexcept;
+                              SampledScratch& scratch);
 
 }  // namespace volcontact

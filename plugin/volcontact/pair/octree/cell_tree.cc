@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "volcontact/base/interrupt.h"
 #include "volcontact/pair/octree/cell_math.h"
 
 namespace volcontact {
@@ -193,6 +194,7 @@ void CellTree::evaluate(int first, double rough_above) {
     sample_fields(first);
   }
   task_.team.for_each(count, kEvaluateGrain, [&](int i) {
+    InterruptScope::poll();
     if (!sampled && i < born) bear(first + i, s_.births[i]);
     Cell& cell = s_.cells[first + i];
     s_.cutters[task_.thread()].evaluate(s_.faces, cell, rough_above);

@@ -174,7 +174,7 @@ OctreeScratch::Totals& OctreeScratch::Totals::operator+=(const Totals& other) {
 
 void octree_interference(const SolidView& a, const SolidView& b, const Pose& X_AB,
                          const InterferenceOptions& options, OctreeScratch& scratch,
-                         Interference& out) noexcept {
+                         Interference& out) {
   out.total = VolumeMetrics{};
   out.sites.clear();
   out.engine = Engine::kOctree;
@@ -206,7 +206,7 @@ void octree_interference(const SolidView& a, const SolidView& b, const Pose& X_A
 
 void octree_interference(const Shape& a, const Shape& b, const Pose& X_AB,
                          const InterferenceOptions& options, OctreeScratch& scratch,
-                         Interference& out) noexcept {
+                         Interference& out) {
   octree_interference(view_of(a), view_of(b), X_AB, options, scratch, out);
 }
 

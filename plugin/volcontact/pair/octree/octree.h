@@ -13,11 +13,11 @@ namespace volcontact {
 /// (Status::kApproximate when the budget of cells ends first). docs/theory.md, "Octree".
 void octree_interference(const Shape& a, const Shape& b, const Pose& X_AB,
                          const InterferenceOptions& options, OctreeScratch& scratch,
-                         Interference& out) noexcept;
+                         Interference& out);
 
 /// The same for solids of any type: octree_interference(view_of(solid), ...).
 void octree_interference(const SolidView& a, const SolidView& b, const Pose& X_AB,
                          const InterferenceOptions& options, OctreeScratch& scratch,
-                         Interference& out) noexcept;
+                         Interference& out);
 
 }  // namespace volcontact

@@ -34,7 +34,7 @@ struct Octree : EngineBase {
     return !(std::is_same_v<A, HalfSpace> && std::is_same_v<B, HalfSpace>);
   }
   template <typename A, typename B>
-  static Answer run(const Question<A, B>& q, OctreeScratch& scratch, Interference& out) noexcept {
+  static Answer run(const Question<A, B>& q, OctreeScratch& scratch, Interference& out) {
     InterferenceOptions options = q.options;
     // Where others are beyond, the budget is one of time. Who asks for this engine has it all.
     if (options.engine != Engine::kOctree) {

@@ -145,25 +145,25 @@ PressureField cells_of(const A& a, const B& b, const Pose& X_AB, const Vec3& cen
 }  // namespace
 
 PressureField pressure_cells(const Box& a, const Box& b, const Pose& X_AB, const Vec3& centroid,
-                             double share_of_a, PressureScratch& scratch) noexcept {
+                             double share_of_a, PressureScratch& scratch) {
   return cells_of(a, b, X_AB, centroid, share_of_a, scratch);
 }
 
 PressureField pressure_cells(const Box& a, const ConvexPolytope& b, const Pose& X_AB,
                              const Vec3& centroid, double share_of_a,
-                             PressureScratch& scratch) noexcept {
+                             PressureScratch& scratch) {
   return cells_of(a, b, X_AB, centroid, share_of_a, scratch);
 }
 
 PressureField pressure_cells(const ConvexPolytope& a, const Box& b, const Pose& X_AB,
                              const Vec3& centroid, double share_of_a,
-                             PressureScratch& scratch) noexcept {
+                             PressureScratch& scratch) {
   return cells_of(a, b, X_AB, centroid, share_of_a, scratch);
 }
 
 PressureField pressure_cells(const ConvexPolytope& a, const ConvexPolytope& b, const Pose& X_AB,
                              const Vec3& centroid, double share_of_a,
-                             PressureScratch& scratch) noexcept {
+                             PressureScratch& scratch) {
   return cells_of(a, b, X_AB, centroid, share_of_a, scratch);
 }
 

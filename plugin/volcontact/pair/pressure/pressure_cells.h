@@ -11,15 +11,15 @@ namespace volcontact {
 ///
 ///   int psi dV,   int grad psi dV,   cell by cell, where psi is linear
 PressureField pressure_cells(const Box& a, const Box& b, const Pose& X_AB, const Vec3& centroid,
-                             double share_of_a, PressureScratch& scratch) noexcept;
+                             double share_of_a, PressureScratch& scratch);
 PressureField pressure_cells(const Box& a, const ConvexPolytope& b, const Pose& X_AB,
                              const Vec3& centroid, double share_of_a,
-                             PressureScratch& scratch) noexcept;
+                             PressureScratch& scratch);
 PressureField pressure_cells(const ConvexPolytope& a, const Box& b, const Pose& X_AB,
                              const Vec3& centroid, double share_of_a,
-                             PressureScratch& scratch) noexcept;
+                             PressureScratch& scratch);
 PressureField pressure_cells(const ConvexPolytope& a, const ConvexPolytope& b, const Pose& X_AB,
                              const Vec3& centroid, double share_of_a,
-                             PressureScratch& scratch) noexcept;
+                             PressureScratch& scratch);
 
 }  // namespace volcontact

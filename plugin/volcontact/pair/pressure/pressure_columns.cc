@@ -182,7 +182,7 @@ Depth depth_in(const Ellipsoid& solid, const Vec3& x) {
 }
 
 PressureField pressure_columns(const Ellipsoid& a, const Ellipsoid& b, const Pose& X_AB,
-                               const VolumeMetrics& site, double share_of_a) noexcept {
+                               const VolumeMetrics& site, double share_of_a) {
   return ColumnField(a, b, X_AB, site, share_of_a).integrate();
 }
 

@@ -19,6 +19,6 @@ Depth depth_in(const Ellipsoid& solid, const Vec3& x);
 /// Pressure field of two ellipsoids, which have no parallel ellipsoids, by a fixed rule over
 /// columns along the normal, exact at their ends. In A's frame.
 PressureField pressure_columns(const Ellipsoid& a, const Ellipsoid& b, const Pose& X_AB,
-                               const VolumeMetrics& site, double share_of_a) noexcept;
+                               const VolumeMetrics& site, double share_of_a);
 
 }  // namespace volcontact

@@ -220,7 +220,7 @@ Source choose_source(const Ellipsoid& solid, const Mesh& mesh, const Pose& X_ME,
 }  // namespace
 
 PressureField pressure_ellipsoid(const Shape& a, const Shape& b, const Pose& X_AB,
-                                 const PressureSite& site, PressureScratch& scratch) noexcept {
+                                 const PressureSite& site, PressureScratch& scratch) {
   const bool a_carries = std::holds_alternative<Ellipsoid>(a);
   const Ellipsoid& solid = std::get<Ellipsoid>(a_carries ? a : b);
   const Mesh& mesh = std::get<Mesh>(a_carries ? b : a);

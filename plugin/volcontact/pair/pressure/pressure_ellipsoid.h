@@ -9,6 +9,6 @@ namespace volcontact {
 /// presses on: exact but for rules of eight points along analytic pieces. In A's frame; one of the
 /// two is an ellipsoid, the other one a mesh. docs/theory.md, "Pressure on triangles".
 PressureField pressure_ellipsoid(const Shape& a, const Shape& b, const Pose& X_AB,
-                                 const PressureSite& site, PressureScratch& scratch) noexcept;
+                                 const PressureSite& site, PressureScratch& scratch);
 
 }  // namespace volcontact

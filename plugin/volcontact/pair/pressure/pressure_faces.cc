@@ -22,7 +22,7 @@ bool apart(const Aabb& a, const Aabb& b) {
 }  // namespace
 
 PressureField pressure_faces(const Shape& a, const Shape& b, const Pose& X_AB,
-                             const PressureSite& site, PressureScratch& scratch) noexcept {
+                             const PressureSite& site, PressureScratch& scratch) {
   if (!scratch.engines) scratch.engines = std::make_unique<InterferenceWorkspace>();
   const bool a_carries = std::holds_alternative<ConvexPolytope>(a);
   const Shape& rigid = a_carries ? b : a;

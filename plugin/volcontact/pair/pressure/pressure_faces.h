@@ -9,6 +9,6 @@ namespace volcontact {
 /// of the other one with the cell of each face, exact as far as its engine is. In A's frame. One
 /// of the two is a polytope; of two the first one carries. docs/theory.md, "Cells of faces".
 PressureField pressure_faces(const Shape& a, const Shape& b, const Pose& X_AB,
-                             const PressureSite& site, PressureScratch& scratch) noexcept;
+                             const PressureSite& site, PressureScratch& scratch);
 
 }  // namespace volcontact

@@ -130,7 +130,7 @@ std::string why_no_pressure_field(const Shape& a, const Shape& b, Engine engine)
 }
 
 PressureField pressure_field(const Shape& a, const Shape& b, const Pose& X_AB,
-                             const PressureSite& site, PressureScratch& scratch) noexcept {
+                             const PressureSite& site, PressureScratch& scratch) {
   if (!site.metrics().touching()) return {};
   switch (method_of(a, b)) {
     case Method::kPlane:

@@ -90,6 +90,6 @@ inline bool has_pressure_field(const Shape& a, const Shape& b, Engine engine = E
 /// for others a rule whose wrench is the gradient of its energy, or of the integral to `error`.
 /// Zero where has_pressure_field() is false.
 PressureField pressure_field(const Shape& a, const Shape& b, const Pose& X_AB,
-                             const PressureSite& site, PressureScratch& scratch) noexcept;
+                             const PressureSite& site, PressureScratch& scratch);
 
 }  // namespace volcontact

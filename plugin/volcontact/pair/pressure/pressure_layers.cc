@@ -185,7 +185,7 @@ class LayerSum {
 }  // namespace
 
 PressureField pressure_layers(const Shape& a, const Shape& b, const Pose& X_AB,
-                              const PressureSite& site, PressureScratch& scratch) noexcept {
+                              const PressureSite& site, PressureScratch& scratch) {
   if (!scratch.engines) scratch.engines = std::make_unique<InterferenceWorkspace>();
   return LayerSum(a, b, X_AB, site, scratch).integrate();
 }

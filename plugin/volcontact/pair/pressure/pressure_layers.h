@@ -11,6 +11,6 @@ namespace volcontact {
 /// parallel solids is rigid, and the other one carries the whole field. The wrench is the gradient
 /// of the sum, not only of the integral. In A's frame; docs/theory.md, "Layers".
 PressureField pressure_layers(const Shape& a, const Shape& b, const Pose& X_AB,
-                              const PressureSite& site, PressureScratch& scratch) noexcept;
+                              const PressureSite& site, PressureScratch& scratch);
 
 }  // namespace volcontact

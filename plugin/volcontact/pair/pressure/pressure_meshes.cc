@@ -202,7 +202,7 @@ class MeshField {
 }  // namespace
 
 PressureField pressure_meshes(const Shape& a, const Shape& b, const Pose& X_AB,
-                              const PressureSite& site, PressureScratch& scratch) noexcept {
+                              const PressureSite& site, PressureScratch& scratch) {
   const bool is_a = a_carries(a, b, site.share_of_a);
   const Shape& carrier = is_a ? a : b;
   const Pose X_CR = is_a ? X_AB : X_AB.inverse(), X_AC = is_a ? Pose{} : X_AB;

@@ -11,6 +11,6 @@ namespace volcontact {
 /// one with the larger share carries, of equal shares the smaller one. Milliseconds; `error` says
 /// how far off the force may be. In A's frame; docs/theory.md, "Pressure on triangles".
 PressureField pressure_meshes(const Shape& a, const Shape& b, const Pose& X_AB,
-                              const PressureSite& site, PressureScratch& scratch) noexcept;
+                              const PressureSite& site, PressureScratch& scratch);
 
 }  // namespace volcontact

@@ -369,7 +369,7 @@ class LinesRun {
 
 bool lines_interference(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
                         const InterferenceOptions& options, LinesScratch& scratch,
-                        Interference& out) noexcept {
+                        Interference& out) {
   out.sites.clear();
   out.total = VolumeMetrics{};
   if (!X_AB.is_finite()) {
@@ -395,7 +395,7 @@ bool lines_interference(const ConvexView& a, const ConvexView& b, const Pose& X_
 
 bool add_lines_region(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
                       const InterferenceOptions& options, LinesScratch& scratch,
-                      LinesRegions& regions) noexcept {
+                      LinesRegions& regions) {
   LinesRun run(a, b, X_AB, options, scratch);
   const VolumeMetrics metrics = run.run(true);
   if (run.beyond()) return false;

@@ -37,12 +37,12 @@ struct LinesScratch {
 /// height along it: columns between A's face and B's.
 bool lines_interference(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
                         const InterferenceOptions& options, LinesScratch& scratch,
-                        Interference& out) noexcept;
+                        Interference& out);
 
 /// Adds the overlap of two convex bodies that are pieces of solids, if there is one. False as
 /// above.
 bool add_lines_region(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
                       const InterferenceOptions& options, LinesScratch& scratch,
-                      LinesRegions& regions) noexcept;
+                      LinesRegions& regions);
 
 }  // namespace volcontact

@@ -16,7 +16,7 @@ struct ConvexSections : EngineBase {
     return HasFaces<A> && HasFaces<B> && (HasRoundFaces<A> || HasRoundFaces<B>);
   }
   template <typename A, typename B>
-  static Answer run(const Question<A, B>& q, LinesScratch& scratch, Interference& out) noexcept {
+  static Answer run(const Question<A, B>& q, LinesScratch& scratch, Interference& out) {
     return answer(
         lines_interference(ConvexView(q.a), ConvexView(q.b), q.X_AB, q.options, scratch, out));
   }

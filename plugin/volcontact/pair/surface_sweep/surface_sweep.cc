@@ -337,7 +337,7 @@ class SweepRun {
       return false;
     };
     add_sweep_depth(s_.solids, s_.families, s_.family_of, s_.surface, of_region, s_.patch.curve,
-                    metrics);
+                    views_[0].convex && views_[1].convex, metrics);
     return metrics;
   }
 
@@ -369,7 +369,7 @@ class SweepRun {
 
 bool surface_sweep(const Shape& a, const Shape& b, const Pose& X_AB,
                    const InterferenceOptions& options, SurfaceSweepScratch& scratch,
-                   Interference& out) noexcept {
+                   Interference& out) {
   return SweepRun(a, b, X_AB, options, scratch, out).run();
 }
 

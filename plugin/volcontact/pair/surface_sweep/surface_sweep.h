@@ -34,6 +34,6 @@ struct SurfaceSweepScratch {
 /// over the stretches in t of the curves u of a face that bound the overlap
 bool surface_sweep(const Shape& a, const Shape& b, const Pose& X_AB,
                    const InterferenceOptions& options, SurfaceSweepScratch& scratch,
-                   Interference& out) noexcept;
+                   Interference& out);
 
 }  // namespace volcontact

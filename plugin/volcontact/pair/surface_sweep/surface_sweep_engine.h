@@ -37,7 +37,7 @@ struct SurfaceSweep : EngineBase {
   }
   template <typename A, typename B>
   static Answer run(const Question<A, B>& q, SurfaceSweepScratch& scratch,
-                    Interference& out) noexcept {
+                    Interference& out) {
     return answer(surface_sweep(q.shape_a, q.shape_b, q.X_AB, q.options, scratch, out));
   }
 };

@@ -16,8 +16,13 @@ template <typename OfRegion>
 class SweepDepth {
  public:
   SweepDepth(const SweepSolids& solids, const SweepSurface& surface, OfRegion& of_region,
-             FaceCurveScratch& scratch, const Vec3& n)
-      : solids_(solids), surface_(surface), of_region_(of_region), s_(scratch), n_(n) {}
+             FaceCurveScratch& scratch, const Vec3& n, bool convex)
+      : solids_(solids),
+        surface_(surface),
+        of_region_(of_region),
+        s_(scratch),
+        n_(n),
+        convex_(convex) {}
 
   void run(const std::vector<CurveFamily>& families, const std::vector<int>& family_of,
            VolumeMetrics& metrics) {
@@ -30,18 +35,21 @@ class SweepDepth {
       if (of_region_(place.strip)) ++(n_.dot(place.n) > 0.0 ? up : down);
     }
     const double side = up <= down ? 1.0 : -1.0;
-    double volume = 0.0, moment = 0.0;
+    double volume = 0.0, moment = 0.0, longest = 0.0;
     for (const SweepPlace& place : surface_.places) {
       const double area = side * n_.dot(place.n);
       if (!(area > 0.0) || !of_region_(place.strip)) continue;
       const double length = column(place.x, -side * n_);
       volume += length * area;
       moment += 0.5 * length * length * area;
+      longest = std::max(longest, length);
       reach(place.x);
       reach(place.x - side * length * n_);
     }
     look_at_balls(families, family_of);
-    metrics.depth = std::max(0.0, high_ - low_);
+    // What is neither convex nor on a plane may reach around what it lies on.
+    metrics.depth = convex_ || metrics.flatness() >= kPlanePatch ? std::max(0.0, high_ - low_)
+                                                                 : longest;
     metrics.depth_moment = volume > 0.0 ? moment * metrics.volume / volume : 0.0;
   }
 
@@ -98,6 +106,8 @@ class SweepDepth {
   OfRegion& of_region_;
   FaceCurveScratch& s_;
   const Vec3 n_;
+  const bool convex_;  // both solids
+  static constexpr double kPlanePatch = 1.0 - 1e-9;  // flatness of a patch on a plane
   SweepSpans spans_;
   double high_ = -kInfinity, low_ = kInfinity;
 };
@@ -105,10 +115,12 @@ class SweepDepth {
 template <typename OfRegion>
 void add_sweep_depth(const SweepSolids& solids, const std::vector<CurveFamily>& families,
                      const std::vector<int>& family_of, const SweepSurface& surface,
-                     OfRegion&& of_region, FaceCurveScratch& scratch, VolumeMetrics& metrics) {
+                     OfRegion&& of_region, FaceCurveScratch& scratch, bool convex,
+                     VolumeMetrics& metrics) {
   const Vec3 n = metrics.normal();
   if (n.isZero(0.0)) return;
-  SweepDepth<std::remove_reference_t<OfRegion>>(solids, surface, of_region, scratch, n)
+  SweepDepth<std::remove_reference_t<OfRegion>>(solids, surface, of_region, scratch, n,
+                                                       convex)
       .run(families, family_of, metrics);
 }
 

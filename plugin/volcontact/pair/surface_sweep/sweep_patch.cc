@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcontact/base/interrupt.h"
 #include "volcontact/pair/quadrature/outer_rule.h"
 
 namespace volcontact {
@@ -275,6 +276,7 @@ class FaceSweep {
                          int depth) {
     const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
     const std::size_t places = surface_.places.size(), tips = surface_.tips.size();
+    InterruptScope::poll();
     SweepFlux sums[SweepSpans::kMost];
     double terms[SweepSpans::kMost][LegendreTable::kCount];
     for (int k = 0; k < LegendreTable::kCount; ++k) {

@@ -31,6 +31,6 @@ struct TorusPairScratch {
 /// over the arcs in theta of each ring's section circles, at the angle phi, that lie in the other
 bool torus_pair(const Torus& a, const Torus& b, const Pose& X_AB,
                 const InterferenceOptions& options, TorusPairScratch& scratch,
-                Interference& out) noexcept;
+                Interference& out);
 
 }  // namespace volcontact

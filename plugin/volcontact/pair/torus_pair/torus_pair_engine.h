@@ -17,7 +17,7 @@ struct TorusPair : EngineBase {
   }
   template <typename A, typename B>
   static Answer run(const Question<A, B>& q, TorusPairScratch& scratch,
-                    Interference& out) noexcept {
+                    Interference& out) {
     return answer(torus_pair(q.a, q.b, q.X_AB, q.options, scratch, out));
   }
 };

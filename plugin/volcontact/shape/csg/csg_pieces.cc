@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "volcontact/base/interrupt.h"
 #include "volcontact/shape/csg/csg_faces.h"
 
 namespace volcontact {
@@ -245,6 +246,7 @@ Parts Decomposition::without(const Parts& parts, int index, Join join) {
   Parts out;
   if (node.step.member >= 0) {
     for (const Part& part : parts) {
+      InterruptScope::poll();
       without_member(part, solid_.members()[node.step.member], join, out);
       check(out);
     }

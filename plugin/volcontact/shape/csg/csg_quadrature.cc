@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "volcontact/base/interrupt.h"
 #include "volcontact/shape/csg/csg_faces.h"
 #include "volcontact/shape/csg/csg_lines.h"
 #include "volcontact/shape/csg/csg_metrics.h"
@@ -266,6 +267,7 @@ class LineSum {
   }
 
   Moments section_at(double z) {
+    InterruptScope::poll();
     auto line = [this, z](double y) { return line_at(y, z); };
     const double allowed = kInnerTolerance * scale_ / (box_.max.z() - box_.min.z());
     Integral integral(line, length_, allowed);
@@ -322,6 +324,7 @@ VolumeMetrics metrics_by_lattice(const Csg& solid, double work) {
       const double u = 2.0 * fraction(rise + (i + 1) * kFirst) - 1.0;
       const double v = 2.0 * fraction(rise + (i + 1) * kSecond) - 1.0;
       const Vec3 p = middle + u * reach.x() * basis.col(0) + v * reach.y() * basis.col(1);
+      InterruptScope::poll();
       csg_line(solid, p, d, spans);
       for (const RayInterval& span : spans) {
         const double a = span.enter, b = span.leave, length = b - a;

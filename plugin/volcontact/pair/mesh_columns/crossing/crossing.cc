@@ -27,7 +27,7 @@ std::uint64_t key_of(const ObbTree& tree, int slot, int edge, int other_slot, bo
 namespace volcontact {
 
 bool find_contacts(const ObbTree& a, const ObbTree& b, const Pose& X_BA, double reach, int most,
-                   CrossingScratch& scratch) noexcept {
+                   CrossingScratch& scratch) {
   return VOLCONTACT_SIMD_CALL(scratch.path, find_contacts_wide, a, b, X_BA, reach, most, scratch);
 }
 

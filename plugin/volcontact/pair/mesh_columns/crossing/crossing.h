@@ -30,6 +30,6 @@ struct CrossingScratch {
 /// All pairs of triangles of A and B that meet, or come nearer than `reach` [m], in a fixed order.
 /// `X_BA` is the pose of A in B. Stops after `most` contacts and returns false.
 bool find_contacts(const ObbTree& a, const ObbTree& b, const Pose& X_BA, double reach, int most,
-                   CrossingScratch& scratch) noexcept;
+                   CrossingScratch& scratch);
 
 }  // namespace volcontact

@@ -114,7 +114,7 @@ CurveFlux flux_of(const std::vector<TriangleContact>& contacts, const int* first
   return flux;
 }
 
-bool find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& scratch) noexcept {
+bool find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& scratch) {
   make_sets(scratch.parent, contacts.size());
   join_neighbors(contacts, scratch);
   scratch.several.assign(contacts.size(), 0);
@@ -145,7 +145,7 @@ bool find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& sc
 }
 
 Aabb bounds_of(const std::vector<TriangleContact>& contacts, const PatchScratch& scratch,
-               const ContactPatch& patch, const Pose& X_CB) noexcept {
+               const ContactPatch& patch, const Pose& X_CB) {
   Aabb bounds{Vec3::Constant(kInfinity), Vec3::Constant(-kInfinity)};
   const auto add = [&](const Vec3& p_B) {
     const Vec3 p_C = X_CB * p_B;
@@ -169,7 +169,7 @@ Aabb bounds_of(const std::vector<TriangleContact>& contacts, const PatchScratch&
 }
 
 Mat3 columns_along(const std::vector<TriangleContact>& contacts, const PatchScratch& scratch,
-                   const ContactPatch& patch) noexcept {
+                   const ContactPatch& patch) {
   const Mat3 R_BC = basis_with_z(patch.flux.toward_a);
   const Vec3 middle = 0.5 * (patch.low + patch.high);
   double xx = 0.0, xy = 0.0, yy = 0.0;

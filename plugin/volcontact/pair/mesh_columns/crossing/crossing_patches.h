@@ -41,16 +41,16 @@ struct PatchScratch {
 
 /// Joins contacts whose segments meet to patches, and patches whose bounds come nearer than their
 /// smaller width. False when there are too many for that to be quick, as where surfaces coincide.
-bool find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& scratch) noexcept;
+bool find_patches(const std::vector<TriangleContact>& contacts, PatchScratch& scratch);
 
 /// Bounds in a frame C of the curve of a patch.
 Aabb bounds_of(const std::vector<TriangleContact>& contacts, const PatchScratch& scratch,
-               const ContactPatch& patch, const Pose& X_CB) noexcept;
+               const ContactPatch& patch, const Pose& X_CB);
 
 /// Axes of the columns through a patch, in B's frame: z towards A, x along the patch, so that a
 /// window around it is no wider than it must be.
 Mat3 columns_along(const std::vector<TriangleContact>& contacts, const PatchScratch& scratch,
-                   const ContactPatch& patch) noexcept;
+                   const ContactPatch& patch);
 
 CurveFlux flux_of(const std::vector<TriangleContact>& contacts, const int* first, const int* last);
 

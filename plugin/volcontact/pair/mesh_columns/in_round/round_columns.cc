@@ -411,7 +411,7 @@ class RoundColumns {
 
 bool round_columns(const SurfaceView& a, const ConvexView& b, const Pose& X_AB,
                    const InterferenceOptions& options, RoundColumnsScratch& scratch,
-                   Interference& out) noexcept {
+                   Interference& out) {
   return RoundColumns(a, b, X_AB, options, scratch, out).run();
 }
 

@@ -39,6 +39,6 @@ struct RoundColumnsScratch {
 /// budget. docs/theory.md, "Columns over round solids".
 bool round_columns(const SurfaceView& a, const ConvexView& b, const Pose& X_AB,
                    const InterferenceOptions& options, RoundColumnsScratch& scratch,
-                   Interference& out) noexcept;
+                   Interference& out);
 
 }  // namespace volcontact

@@ -19,7 +19,7 @@ struct MeshAndRound : EngineBase {
   }
   template <typename A, typename B>
   static Answer run(const Question<A, B>& q, ColumnsScratch& columns, RoundColumnsScratch& scratch,
-                    Interference& out) noexcept {
+                    Interference& out) {
     return answer(round_columns(surface_of(q.a, columns.store[0]), ConvexView(q.b), q.X_AB,
                                 q.options, scratch, out));
   }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcontact/base/interrupt.h"
+
 #define VOLCONTACT_SIMD_KERNEL "volcontact/pair/mesh_columns/in_round/round_search_kernel.inc"
 #include "volcontact/base/simd_paths.inc"
 #undef VOLCONTACT_SIMD_KERNEL
@@ -61,6 +63,7 @@ class FaceCut {
   }
 
   void divide(const Vec3& a, const Vec3& b, const Vec3& c, int level) {
+    InterruptScope::poll();
     for (const RoundPieces::Triangle& t : RoundPieces::Triangle{{a, b, c}, face_}.quarters()) {
       cut_by_round(t.corner[0], t.corner[1], t.corner[2], level + 1);
     }
@@ -111,6 +114,8 @@ class FaceCut {
       arc_after[count++] = true;
     }
     if (count == 0) {
+      // Where the plane only touches, the search would follow the line of touch to the last.
+      if (divisions == 0 && only_touches(corner, gradient)) return;
       if (divisions < kMostDivisions && reaches_in(a, b, c)) divide(a, b, c, divisions);
       return;
     }
@@ -123,6 +128,13 @@ class FaceCut {
       }
     }
     add_outline(outline, arc_after, arc, count);
+  }
+
+  // Whether the plane of a triangle goes no deeper than rounding into the round face. `gradient` is
+  // that of the level somewhere on it.
+  bool only_touches(const Vec3 (&corner)[3], const Vec3& gradient) const {
+    return least_round_level(s_, corner, normal_.normalized()) >=
+           -kTinySag * s_.size * gradient.norm();
   }
 
   // Whether a triangle without corners and edges in the solid may hold all of its section.
@@ -263,7 +275,7 @@ std::size_t triangle_count(const ObbTree& tree) {
 
 bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid& solid,
                        const InterferenceOptions& options, RoundSearchScratch& scratch,
-                       RoundPieces& pieces) noexcept {
+                       RoundPieces& pieces) {
   const auto corner_of = [&](int slot, int i) -> Vec3 { return tree.corner(slot, i) - origin; };
   VOLCONTACT_SIMD_CALL(scratch.path, find_triangles_near, tree, origin, solid, scratch);
   // The columns at the rim of a patch are short, and the more triangles it has, the less of it are

@@ -60,6 +60,6 @@ struct RoundSearchScratch {
 /// round solid. False when there are more pieces than `options.most_cells`.
 bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid& solid,
                        const InterferenceOptions& options, RoundSearchScratch& scratch,
-                       RoundPieces& pieces) noexcept;
+                       RoundPieces& pieces);
 
 }  // namespace volcontact

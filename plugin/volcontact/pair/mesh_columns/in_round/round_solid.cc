@@ -133,4 +133,39 @@ double round_level(const RoundSolid& s, const Vec3& x, Vec3& gradient) {
   return s.cone ? length - height : length - 1.0;
 }
 
+double least_round_level(const RoundSolid& s, const Vec3 (&corner)[3], const Vec3& normal) {
+  const Vec3 center = Vec3::Map(s.center);
+  const double height = std::abs(normal.dot(corner[0] - center));
+  const Mat3 map = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(s.map[0]);
+  if (s.cone) {
+    // At every height above the tip, how near the plane comes to the axis.
+    const Vec3 n = map.transpose().inverse() * normal;
+    const double offset = n.dot(map * (corner[0] - center)), across = n.head<2>().norm();
+    double low = kInfinity, high = -kInfinity;
+    for (const Vec3& p : corner) {
+      const double z = map.row(2).dot(p - center);
+      low = std::min(low, z);
+      high = std::max(high, z);
+    }
+    if (!(across > 0.0)) return -high;
+    const auto least_at = [&](double z) { return std::abs(offset - n.z() * z) / across - z; };
+    double least = std::min(least_at(low), least_at(high));
+    if (n.z() != 0.0) least = std::min(least, least_at(std::clamp(offset / n.z(), low, high)));
+    return least;
+  }
+  if (!s.has_axis) return height / (map.transpose().inverse() * normal).norm() - 1.0;
+  // Of a tube within the reach of the triangle, of a capsule between its ends.
+  const double lean = normal.dot(s.axis_direction);
+  double reach = s.half_length;
+  if (reach == 0.0) {
+    for (const Vec3& p : corner) {
+      reach = std::max(reach, std::abs(s.axis_direction.dot(p - center)));
+    }
+  }
+  const double radius = 1.0 / map.rowwise().norm().maxCoeff();
+  const double across = s.half_length > 0.0 ? 1.0 : std::sqrt(std::max(0.0, 1.0 - lean * lean));
+  const double nearest = std::max(0.0, height - std::abs(lean) * reach);
+  return across > 0.0 ? nearest / (radius * across) - 1.0 : -1.0;
+}
+
 }  // namespace volcontact

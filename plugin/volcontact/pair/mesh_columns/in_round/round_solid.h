@@ -40,4 +40,8 @@ RayInterval round_interval(const RoundSolid& solid, const Vec3& o, const Vec3& d
 /// convex(x) and its gradient.
 double round_level(const RoundSolid& solid, const Vec3& x, Vec3& gradient);
 
+/// A lower bound of convex(x) over a triangle with this unit normal, and nearly its least value on
+/// the plane around: 0 where that only touches the round face.
+double least_round_level(const RoundSolid& solid, const Vec3 (&corner)[3], const Vec3& normal);
+
 }  // namespace volcontact

@@ -90,7 +90,7 @@ void RoundPoints::resize(std::size_t count) {
 }
 
 RoundSum sum_round_columns(const RoundSolid& solid, const Vec3& up, RoundTriangles& triangles,
-                           RoundPoints& points, SimdPath path) noexcept {
+                           RoundPoints& points, SimdPath path) {
   const RoundDirection d = direction_of(solid, up);
   RoundSum sum = VOLCONTACT_SIMD_CALL(path, sum_round_columns_wide, solid, d, triangles, points);
   for (const double doubt : triangles.doubt) sum.doubt += doubt;

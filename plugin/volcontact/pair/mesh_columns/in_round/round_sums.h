@@ -42,6 +42,6 @@ struct RoundSum {
 /// Columns run against the unit vector `up`. `triangles` and `points` are multiples of eight; their
 /// doubts, longest columns and tip depths are filled in.
 RoundSum sum_round_columns(const RoundSolid& solid, const Vec3& up, RoundTriangles& triangles,
-                           RoundPoints& points, SimdPath path) noexcept;
+                           RoundPoints& points, SimdPath path);
 
 }  // namespace volcontact

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcontact/base/interrupt.h"
 #include "volcontact/pair/quadrature/triangle_rule.h"
 
 namespace volcontact {
@@ -145,6 +146,7 @@ StarSum sum_star(const RoundSolid& solid, const Vec3& center,
     StarSum all = settled;
     scratch.sums.clear();
     for (const RoundPieces::Triangle& t : scratch.parts) {
+      InterruptScope::poll();
       scratch.sums.push_back(star.triangle(t));
       add(scratch.sums.back(), all);
     }

@@ -43,7 +43,7 @@ MomentSum sum_of(const VolumeMetrics& m, double sign) {
 }  // namespace
 
 std::optional<BorePlug> bore_plug(const RadialSolid& solid, double lowest,
-                                  double highest) noexcept {
+                                  double highest) {
   double low = -kInfinity, high = kInfinity;
   for (int i = 0; i < solid.planes_across; ++i) {
     const SurfacePlane& plane = solid.planes[static_cast<std::size_t>(i)];
@@ -62,7 +62,7 @@ std::optional<BorePlug> bore_plug(const RadialSolid& solid, double lowest,
   return plug;
 }
 
-VolumeMetrics without(const VolumeMetrics& m, const VolumeMetrics& part) noexcept {
+VolumeMetrics without(const VolumeMetrics& m, const VolumeMetrics& part) {
   MomentSum sum = sum_of(m, 1.0);
   sum += sum_of(part, -1.0);
   VolumeMetrics rest = sum.metrics();

@@ -21,10 +21,10 @@ struct BorePlug {
 
 /// The plug of the solid's bore; `lowest` and `highest` are the heights of the body's ends. None
 /// where the bore has no radius.
-std::optional<BorePlug> bore_plug(const RadialSolid& solid, double lowest, double highest) noexcept;
+std::optional<BorePlug> bore_plug(const RadialSolid& solid, double lowest, double highest);
 
 /// The metrics `m` of an overlap less those of a part of it, both in one frame. Without
 /// counter_area.
-VolumeMetrics without(const VolumeMetrics& m, const VolumeMetrics& part) noexcept;
+VolumeMetrics without(const VolumeMetrics& m, const VolumeMetrics& part);
 
 }  // namespace volcontact

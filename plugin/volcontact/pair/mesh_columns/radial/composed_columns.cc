@@ -391,6 +391,10 @@ class ComposedColumns {
       for (int i = site + 1; i < n; ++i) {
         if (root_of(of, i) == site) sum = sum + s_.sites[i].metrics;
       }
+      // Areas are estimated apart from S, and no surface has less area than S is long.
+      const double least = sum.area_vector.norm();
+      sum.area = std::max(sum.area, least);
+      sum.counter_area = std::max(sum.counter_area, least);
       out_.total = out_.sites.empty() ? sum : out_.total + sum;
       out_.sites.push_back(sum);
     }
@@ -418,7 +422,7 @@ bool has_columns_pieces(const Csg& solid) {
 bool composed_columns(const SurfaceView& a, const Csg& b, const Pose& X_AB,
                       const InterferenceOptions& options, ColumnsScratch& columns,
                       RoundColumnsScratch& round, ComposedColumnsScratch& scratch,
-                      Interference& out) noexcept {
+                      Interference& out) {
   return ComposedColumns(a, b, X_AB, options, columns, round, scratch, out).run();
 }
 

@@ -35,6 +35,6 @@ bool has_columns_pieces(const Csg& solid);
 bool composed_columns(const SurfaceView& a, const Csg& b, const Pose& X_AB,
                       const InterferenceOptions& options, ColumnsScratch& columns,
                       RoundColumnsScratch& round, ComposedColumnsScratch& scratch,
-                      Interference& out) noexcept;
+                      Interference& out);
 
 }  // namespace volcontact

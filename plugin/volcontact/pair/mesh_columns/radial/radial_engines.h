@@ -20,7 +20,7 @@ struct MeshAndTorus : EngineBase {
   }
   template <typename A, typename B>
   static Answer run(const Question<A, B>& q, ColumnsScratch& columns, TorusColumnsScratch& scratch,
-                    Interference& out) noexcept {
+                    Interference& out) {
     return answer(
         torus_columns(surface_of(q.a, columns.store[0]), q.b, q.X_AB, q.options, scratch, out));
   }
@@ -48,7 +48,7 @@ struct MeshAndComposed : EngineBase {
   }
   template <typename A, typename B>
   static Answer run(const Question<A, B>& q, ColumnsScratch& columns, RoundColumnsScratch& round,
-                    ComposedColumnsScratch& scratch, Interference& out) noexcept {
+                    ComposedColumnsScratch& scratch, Interference& out) {
     return answer(composed_columns(surface_of(q.a, columns.store[0]), q.b, q.X_AB, q.options,
                                    columns, round, scratch, out));
   }

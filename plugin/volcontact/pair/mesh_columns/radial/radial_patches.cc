@@ -288,7 +288,7 @@ class RadialPatches {
 }  // namespace
 
 RadialReach radial_patches(const SurfaceView& a, const Pose& X_QA, const RadialSolid& solid,
-                           const InterferenceOptions& options, RadialScratch& scratch) noexcept {
+                           const InterferenceOptions& options, RadialScratch& scratch) {
   return RadialPatches(a, X_QA, solid, options, scratch).run();
 }
 

@@ -40,6 +40,6 @@ enum class RadialReach {
 
 /// The patches of a mesh posed in Q. docs/theory.md, "Columns to a bore and to a torus".
 RadialReach radial_patches(const SurfaceView& a, const Pose& X_QA, const RadialSolid& solid,
-                           const InterferenceOptions& options, RadialScratch& scratch) noexcept;
+                           const InterferenceOptions& options, RadialScratch& scratch);
 
 }  // namespace volcontact

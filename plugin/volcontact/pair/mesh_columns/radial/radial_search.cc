@@ -22,7 +22,7 @@ double size_of_plane(const SurfacePlane& plane) { return std::abs(plane.offset);
 namespace volcontact {
 
 void find_triangles_at_wall(const ObbTree& tree, const Pose& X_QM, const RadialSolid& solid,
-                            RadialSearchScratch& scratch) noexcept {
+                            RadialSearchScratch& scratch) {
   VOLCONTACT_SIMD_CALL(scratch.path, find_at_wall_wide, tree, X_QM, solid, scratch);
 }
 

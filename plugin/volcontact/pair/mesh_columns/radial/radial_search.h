@@ -32,6 +32,6 @@ struct RadialSearchScratch {
 
 /// Fills `scratch.found`; `X_QM` is the pose of the mesh.
 void find_triangles_at_wall(const ObbTree& tree, const Pose& X_QM, const RadialSolid& solid,
-                            RadialSearchScratch& scratch) noexcept;
+                            RadialSearchScratch& scratch);
 
 }  // namespace volcontact

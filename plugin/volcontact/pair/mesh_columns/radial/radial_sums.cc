@@ -72,7 +72,7 @@ void RadialPieces::end() {
 }
 
 RadialSum sum_radial_columns(const RadialWall& wall, const RadialPieces& pieces, SimdPath path,
-                             std::vector<double>& doubt_of_part) noexcept {
+                             std::vector<double>& doubt_of_part) {
   if (wall.torus) {
     return VOLCONTACT_SIMD_CALL(path, sum_radial_wide<true>, wall, pieces, doubt_of_part);
   }

@@ -39,6 +39,6 @@ struct RadialSum {
 
 /// `doubt_of_part` has an entry for each part that the pieces belong to, and is added to.
 RadialSum sum_radial_columns(const RadialWall& wall, const RadialPieces& pieces, SimdPath path,
-                             std::vector<double>& doubt_of_part) noexcept;
+                             std::vector<double>& doubt_of_part);
 
 }  // namespace volcontact

@@ -10,6 +10,14 @@ namespace volcontact {
 namespace {
 
 constexpr double kTubeRestError = 1e-6;  // of V; as measured
+// Of a tube's radius: planes nearer than the first touch the circle in its middle, which the lines
+// begin at. The solid is then looked at from both sides of them, moved by the second.
+constexpr double kGrazes = 8e-3, kBothSides = 2e-2;
+constexpr double kBothSidesError = 1e-4;  // of V, at least; as measured
+constexpr double kFarSidesError = 0.5;    // of what the mean changes by from twice as far
+constexpr double kMostChange = 0.2;       // of V, from one side to the other
+constexpr double kBeside = 0.05;          // of a tube's radius: so near is by
+constexpr int kLooks = 64;                // at the circle
 
 class TorusColumns {
  public:
@@ -28,8 +36,85 @@ class TorusColumns {
 
   bool run() {
     if (bounds_apart(a_.bounds, b_.bounds(), X_AB_) || !(b_.minor_radius() > 0.0)) return true;
+    const bool found = find_patches();
+    const Vec3 grazing = grazing_normal();
+    return grazing.isZero(0.0) ? found && add_sites() : add_from_both_sides(grazing);
+  }
+
+ private:
+  bool find_patches() {
     const RadialSolid solid{RadialWall(b_), {}, 0, {}, {}};
-    if (radial_patches(a_, X_BA_, solid, options_, s_.radial) != RadialReach::kDone) return false;
+    return radial_patches(a_, X_BA_, solid, options_, s_.radial) == RadialReach::kDone;
+  }
+
+  // The mean normal of the faces that touch the circle in the middle of the tube or hold it, in the
+  // torus's frame; zero where none does.
+  Vec3 grazing_normal() const {
+    const double R = b_.major_radius(), near = kGrazes * b_.minor_radius();
+    Vec3 sum = Vec3::Zero();
+    for (const auto& [slot, inside] : s_.radial.search.found) {
+      Vec3 c[3];
+      for (int i = 0; i < 3; ++i) c[i] = X_BA_ * a_.tree->corner(slot, i);
+      const Vec3 n = (c[1] - c[0]).cross(c[2] - c[0]).stableNormalized();
+      const double across = std::hypot(n.x(), n.y());
+      if (std::abs(std::abs(n.dot(c[0])) - R * across) < near && reaches_circle(c, n)) sum += n;
+    }
+    return sum.isZero(1e-6) ? Vec3::Zero() : Vec3(sum.normalized());
+  }
+
+  // Whether the circle comes by a triangle whose plane touches or holds it.
+  bool reaches_circle(const Vec3 (&c)[3], const Vec3& n) const {
+    const double touch = std::atan2(n.y(), n.x()), slack = kBeside * b_.minor_radius();
+    for (int k = 0; k < kLooks; ++k) {  // the place of touch is one, or its opposite
+      const double angle = touch + 2.0 * kPi * k / kLooks;
+      const Vec3 x = b_.major_radius() * Vec3(std::cos(angle), std::sin(angle), 0.0);
+      bool within = std::abs(n.dot(x - c[0])) < slack;
+      for (int i = 0; i < 3 && within; ++i) {
+        const Vec3 edge = c[(i + 1) % 3] - c[i];
+        within = n.dot(edge.cross(x - c[i])) >= -slack * edge.norm();
+      }
+      if (within) return true;
+    }
+    return false;
+  }
+
+  // V and all that belongs to it change smoothly there; only the lines do not. Twice as far the
+  // mean of both sides is four times as far from V.
+  bool add_from_both_sides(const Vec3& normal) {
+    VolumeMetrics mean, far;
+    if (!add_mean(2.0 * kBothSides * normal, far) || !add_mean(kBothSides * normal, mean)) {
+      return false;
+    }
+    const double change = mean.volume - far.volume, scale = 0.5 * (1.0 + change / 3.0 / mean.volume);
+    for (double* x : {&mean.volume, &mean.area, &mean.counter_area, &mean.depth_moment,
+                      &mean.volume_error}) {
+      *x *= scale;
+    }
+    mean.inertia *= scale;
+    mean.area_vector *= scale;
+    mean.area_moment *= scale;
+    mean.volume_error += kFarSidesError * std::abs(change) + kBothSidesError * mean.volume;
+    if (mean.volume_error > options_.tolerance * mean.volume) mean.status = Status::kApproximate;
+    out_.total = mean;
+    out_.sites.assign(mean.touching() ? 1 : 0, mean);
+    return is_finite(mean);
+  }
+
+  // The sum of what comes of the torus moved both ways, by so many of its tube's radii.
+  bool add_mean(const Vec3& way, VolumeMetrics& sum) {
+    double volumes[2];
+    for (const int side : {0, 1}) {
+      const Vec3 moved = (side == 0 ? 1.0 : -1.0) * b_.minor_radius() * way;
+      const Pose X{X_AB_.rotation, X_AB_.translation + X_AB_.rotation * moved};
+      TorusColumns aside(a_, b_, X, options_, s_, out_);
+      if (!aside.find_patches() || !aside.add_sites()) return false;
+      volumes[side] = out_.total.volume;
+      sum = sum + out_.total;
+    }
+    return std::abs(volumes[1] - volumes[0]) <= kMostChange * sum.volume && sum.touching();
+  }
+
+  bool add_sites() {
     MomentSum inside;
     double depth_moment = 0.0;
     const std::vector<RadialPatch>& patches = s_.radial.patches;
@@ -60,10 +145,11 @@ class TorusColumns {
     return is_finite(total);
   }
 
- private:
   void add_site(RadialSum sum) {
     if (!(sum.moments.volume > 0.0)) return;
-    sum.moments.counter_area = std::max(0.0, sum.moments.counter_area);
+    const double least = sum.moments.area_vector.norm();  // of any surface
+    sum.moments.area = std::max(least, sum.moments.area);
+    sum.moments.counter_area = std::max(least, sum.moments.counter_area);
     VolumeMetrics m = sum.moments.metrics();
     m.depth_moment = sum.depth_moment;
     m.depth = sum.depth;
@@ -149,7 +235,7 @@ class TorusColumns {
 
   const SurfaceView& a_;
   const Torus& b_;
-  const Pose& X_AB_;
+  const Pose X_AB_;
   const Pose X_BA_;
   const InterferenceOptions& options_;
   TorusColumnsScratch& s_;
@@ -160,7 +246,7 @@ class TorusColumns {
 
 bool torus_columns(const SurfaceView& a, const Torus& b, const Pose& X_AB,
                    const InterferenceOptions& options, TorusColumnsScratch& scratch,
-                   Interference& out) noexcept {
+                   Interference& out) {
   return TorusColumns(a, b, X_AB, options, scratch, out).run();
 }
 

@@ -23,6 +23,6 @@ struct TorusColumnsScratch {
 /// the method. docs/theory.md, "Columns to a bore and to a torus".
 bool torus_columns(const SurfaceView& a, const Torus& b, const Pose& X_AB,
                    const InterferenceOptions& options, TorusColumnsScratch& scratch,
-                   Interference& out) noexcept;
+                   Interference& out);
 
 }  // namespace volcontact

@@ -13,6 +13,8 @@ constexpr int kMaxRoundings = 24;  // of the frame
 constexpr double kRoundRim =
     3.0;                        // longest by shortest way to the outline; then it is round enough
 constexpr double kSpike = 6.0;  // longest by shortest of all ways: a spike between the first ones
+constexpr double kOverCorner = 0.5;  // of the steepest step: how far a corner reaches over a place
+constexpr double kSharper = 4.0;     // bend where a corner is next, by that at the other end
 constexpr int kNarrowings = 3;  // of a place where the outline comes near the wall
 constexpr int kEndNarrowings = 2;  // of a place where it crosses the wall
 
@@ -106,8 +108,27 @@ void BoreOutline::trace() {
       if (side * (top.rho - 1.0) > 0.0) places_.push_back(top);
     }
   }
+  look_behind_corners();
   std::sort(places_.begin(), places_.end(),
             [](const Place& p, const Place& q) { return p.angle < q.angle; });
+}
+
+// A corner of the outline between two places within the wall may stick out of it: then the curve
+// bends at one of them far more than at the other.
+void BoreOutline::look_behind_corners() {
+  const std::size_t n = kEvenTurn;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Place here = places_[k], next = places_[(k + 1) % n];
+    if (here.rho > 1.0 || next.rho > 1.0) continue;
+    const double before = here.rho - places_[(k + n - 1) % n].rho, way = next.rho - here.rho,
+                 after = places_[(k + 2) % n].rho - next.rho;
+    const double steepest = std::max({std::abs(before), std::abs(way), std::abs(after)});
+    if (std::max(here.rho, next.rho) + kOverCorner * steepest <= 1.0) continue;
+    const double bend = std::abs(way - before), other = std::abs(after - way);
+    if (std::max(bend, other) < kSharper * std::min(bend, other)) continue;
+    const Place top = summit(here.angle, here.angle + 2.0 * kPi / kEvenTurn, 1.0);
+    if (top.rho > 1.0) places_.push_back(top);
+  }
 }
 
 // Where the outline is farthest from the axis between two angles; nearest to it with a negative

@@ -45,6 +45,7 @@ class BoreOutline {
   void set_frame();
   void places_at(const double* angles, Place* places);
   Place place(double angle, double x, double y, double height) const;
+  void look_behind_corners();
   Place summit(double from, double to, double side);
 
   const Bore& bore_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "volcontact/base/interrupt.h"
 #include "volcontact/pair/quadrature/outer_rule.h"
 #include "volcontact/pair/sections/even_turn.h"
 #include "volcontact/pair/sections/section_metrics.h"
@@ -13,11 +14,13 @@ namespace {
 constexpr double kWidestAngle = 1.6;  // of an undivided arc [rad]
 constexpr double kSameAngle = 1e-9;
 constexpr double kPastEnd = 1e-6;  // of a lobe: there the outline is known to rounding [rad]
+constexpr double kGapError = 2.5;  // error of V by the gap on a first look, at most as measured
 constexpr double kOnAxis = 1e-8;   // of a plane from the axis, per radius
 constexpr double kOnFace = 1e-6;   // of an apex from a face, per its distance from the middle
 constexpr double kOnWall = 1e-12;  // of a place from the wall, per the size of the numbers
 constexpr double kEndError =
     5.0;  // error by its estimate where an arc ends in nothing, as measured
+constexpr double kInnerCone = 1e-4;   // error of the rule along a half-plane, from an apex, per V
 constexpr double kThroughBore = 0.5;  // of radii: between places outside of the wall nothing is
 
 class BoreRun {
@@ -261,6 +264,7 @@ class BoreRun {
     turned_by_ = 0.0;
     set_breaks(low, high, open);
     integrate_arcs(open);
+    open_ *= kGapError;
     if (is_open(options_.tolerance)) {
       const double volume = s_.sections.total().moments[0];
       closer_ = true;
@@ -331,6 +335,7 @@ class BoreRun {
   };
 
   void integrate_arc(const Arc& arc, double x_from, double x_to, int depth) {
+    InterruptScope::poll();
     double u[kLanes], v[kLanes], weight[kLanes], section[kLanes];
     for (int i = 0; i < kLanes; ++i) {
       double angle, speed;
@@ -370,7 +375,8 @@ class BoreRun {
                      (1.0 - share) * length * sums.depth_moment;
     m.depth = share * across * sums.bore.depth + (1.0 - share) * length * height;
     const double error = std::max(error_, open_);
-    m.volume_error = error + outer_rule::kInnerError * m.volume;
+    m.volume_error =
+        error + (frame_.central ? kInnerCone : outer_rule::kInnerError) * m.volume;
     if (error > options_.tolerance * m.volume) m.status = Status::kApproximate;
     LinesRegion& region = regions_.add();
     region.metrics = transformed(m, Pose{Mat3::Identity(), frame_.center});
@@ -412,7 +418,7 @@ class BoreRun {
 
 bool bored_lines(const ConvexView& a, const ConvexView& b, const Pose& X_AB, const Bore& bore,
                  Owner owner, const InterferenceOptions& options, LinesScratch& lines,
-                 BoreScratch& scratch, LinesRegions& regions) noexcept {
+                 BoreScratch& scratch, LinesRegions& regions) {
   return BoreRun(a, b, X_AB, bore, owner, options, lines, scratch, regions).run();
 }
 

@@ -20,6 +20,6 @@ struct BoreScratch {
 ///   V = int dphi int (h_top - h_bottom) rho drho over rho > r,   r the wall of the tube
 bool bored_lines(const ConvexView& a, const ConvexView& b, const Pose& X_AB, const Bore& bore,
                  Owner owner, const InterferenceOptions& options, LinesScratch& lines,
-                 BoreScratch& scratch, LinesRegions& regions) noexcept;
+                 BoreScratch& scratch, LinesRegions& regions);
 
 }  // namespace volcontact

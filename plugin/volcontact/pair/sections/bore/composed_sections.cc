@@ -135,7 +135,7 @@ bool has_lines_pieces(const Csg& solid) {
 }
 
 bool composed_lines(const Pose& X_AB, const InterferenceOptions& options, LinesScratch& lines,
-                    ComposedScratch& scratch, Interference& out) noexcept {
+                    ComposedScratch& scratch, Interference& out) {
   return ComposedRun(X_AB, options, lines, scratch, out).run();
 }
 

@@ -46,6 +46,6 @@ struct ComposedScratch {
 /// site. False when a pair of pieces is beyond this engine: more than one bore reached, or an
 /// overlap that reaches past a bore sideways. docs/theory.md, "Bores".
 bool composed_lines(const Pose& X_AB, const InterferenceOptions& options, LinesScratch& lines,
-                    ComposedScratch& scratch, Interference& out) noexcept;
+                    ComposedScratch& scratch, Interference& out);
 
 }  // namespace volcontact

@@ -18,7 +18,7 @@ struct ComposedSections : EngineBase {
   }
   template <typename A, typename B>
   static Answer run(const Question<A, B>& q, LinesScratch& lines, ComposedScratch& scratch,
-                    Interference& out) noexcept {
+                    Interference& out) {
     if (!has_lines_pieces(q.a) || !has_lines_pieces(q.b)) return Answer::kBeyond;
     for (auto& pieces : scratch.pieces) pieces.clear();
     add_lines_pieces(q.a, scratch.pieces[0]);

@@ -18,7 +18,7 @@ struct TorusAndConvex : EngineBase {
   }
   template <typename A, typename B>
   static Answer run(const Question<A, B>& q, TorusSectionsScratch& ring, ComposedScratch& composed,
-                    Interference& out) noexcept {
+                    Interference& out) {
     return answer(
         torus_interference(q.a, ConvexView(q.b), q.X_AB, q.options, ring, composed.regions, out));
   }
@@ -35,7 +35,7 @@ struct TorusAndComposed : EngineBase {
   }
   template <typename A, typename B>
   static Answer run(const Question<A, B>& q, TorusSectionsScratch& ring, ComposedScratch& composed,
-                    Interference& out) noexcept {
+                    Interference& out) {
     if (!has_lines_pieces(q.b)) return Answer::kBeyond;
     composed.pieces[1].clear();
     add_lines_pieces(q.b, composed.pieces[1]);

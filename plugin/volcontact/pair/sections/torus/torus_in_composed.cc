@@ -49,7 +49,7 @@ Vec3 place_of(const Torus& torus, const LinesRegion::PlanePatch& patch) {
 
 bool torus_in_composed(const Torus& torus, const Pose& X_AB, const InterferenceOptions& options,
                        TorusSectionsScratch& ring, ComposedScratch& scratch,
-                       Interference& out) noexcept {
+                       Interference& out) {
   LinesRegions& regions = scratch.regions;
   regions.cut(0);
   out.sites.clear();

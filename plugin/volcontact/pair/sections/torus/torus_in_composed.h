@@ -11,6 +11,6 @@ namespace volcontact {
 /// the torus reaches a bore. docs/theory.md, "Tori".
 bool torus_in_composed(const Torus& torus, const Pose& X_AB, const InterferenceOptions& options,
                        TorusSectionsScratch& ring, ComposedScratch& scratch,
-                       Interference& out) noexcept;
+                       Interference& out);
 
 }  // namespace volcontact

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcontact/base/interrupt.h"
 #include "volcontact/pair/quadrature/even_steps.h"
 #include "volcontact/pair/quadrature/outer_rule.h"
 #include "volcontact/pair/sections/even_turn.h"
@@ -22,6 +23,7 @@ constexpr double kOnAxis = 1e-8;        // of a plane from the axis, per radius
 constexpr double kEndError = 5.0;       // error by its estimate where an arc ends in nothing
 constexpr double kTarget = 1e-2;   // share of the tolerance asked of an arc: kinks may be hidden
 constexpr double kGapError = 3.0;  // error of V by the gap on a first look, at most as measured
+constexpr double kLeftOver = 1e-4;  // of a surface: so little of the other is told by rounding
 constexpr double kWhole = 0.999;   // share of a solid in the overlap, that is all of it
 
 class TorusSectionsRun {
@@ -222,6 +224,7 @@ class TorusSectionsRun {
   }
 
   void integrate_arc(const Arc& arc, double x_from, double x_to, int divisions) {
+    InterruptScope::poll();
     double u[kLanes], v[kLanes], weight[kLanes], section[kLanes];
     for (int i = 0; i < kLanes; ++i) {
       double angle, speed;
@@ -255,6 +258,7 @@ class TorusSectionsRun {
     sum.first = Vec3(m[1], m[2], m[3]);
     sum.second << m[4], m[5], m[7], m[5], m[6], m[8], m[7], m[8], m[9];
     set_surface(sum);
+    shorten_vector(sum);
     VolumeMetrics metrics = sum.metrics();
     if (!metrics.touching()) return;
     const double error = std::max(error_, open_);
@@ -305,6 +309,15 @@ class TorusSectionsRun {
     }
   }
 
+  // Where a solid is nearly all within the other, the area vector is the rest of a large sum: no
+  // longer than what is left of the smaller surface.
+  static void shorten_vector(MomentSum& sum) {
+    const double least = std::min(sum.area, sum.counter_area), length = sum.area_vector.norm();
+    if (!(length > least) || least > kLeftOver * std::max(sum.area, sum.counter_area)) return;
+    sum.area_vector *= least / length;
+    sum.area_moment *= least / length;
+  }
+
   Vec3 vector_of_body() const {
     const TorusSums& sums = s_.sections.total();
     const SectionFaces& sections = s_.sections.faces().sections;
@@ -330,8 +343,9 @@ class TorusSectionsRun {
     return false;
   }
 
-  // Depth under the planes of a flat body, in proportion to the squares of their area vectors; in
-  // other bodies that under the surface of the tube, (r^2 - t^2) / 2 r.
+  // Depth under the planes of a flat body, in proportion to the squares of their area vectors, the
+  // largest to those along the normal alone; in other bodies that under the surface of the tube,
+  // (r^2 - t^2) / 2 r.
   void set_depth(VolumeMetrics& metrics) const {
     const TorusSums& sums = s_.sections.total();
     const double R = torus_.major_radius(), r = torus_.minor_radius();
@@ -340,18 +354,21 @@ class TorusSectionsRun {
     metrics.depth_moment =
         ((r * r - R * R) * m[0] + 2.0 * R * sums.radial - m[4] - m[6] - m[9]) / (2.0 * r);
     if (!by_planes()) return;
-    double weight = 0.0, moment = 0.0, depth = 0.0;
+    const Vec3 normal = metrics.normal();
+    double weight = 0.0, moment = 0.0, along = 0.0, depth = 0.0;
     const SectionFaces& sections = s_.sections.faces().sections;
     for (int i = 0; i < sections.active_planes; ++i) {
       const PlaneFace& plane = s_.faces.planes[s_.sections.plane_face(i)];
       const double area = sums.planes[i].sums[0];
       weight += area * area;
       moment += area * area * (plane.offset - plane.normal.dot(metrics.centroid)) * metrics.volume;
-      depth += area * area * (plane.offset + torus_.support_height(-plane.normal));
+      const double pressed = area * std::max(0.0, normal.dot(plane.normal));
+      along += pressed * pressed;
+      depth += pressed * pressed * (plane.offset + torus_.support_height(-plane.normal));
     }
     if (!(weight > 0.0)) return;
     metrics.depth_moment = moment / weight;
-    metrics.depth = depth / weight;
+    if (along > 0.0) metrics.depth = depth / along;
   }
 
   void settle_contained(VolumeMetrics& metrics) const {
@@ -398,13 +415,13 @@ class TorusSectionsRun {
 
 bool add_torus_regions(const Torus& torus, const ConvexView& body, const Pose& X,
                        const InterferenceOptions& options, TorusSectionsScratch& scratch,
-                       LinesRegions& regions, TorusSurface surface) noexcept {
+                       LinesRegions& regions, TorusSurface surface) {
   return TorusSectionsRun(torus, body, X, options, scratch, regions, surface).run();
 }
 
 bool torus_interference(const Torus& torus, const ConvexView& body, const Pose& X_AB,
                         const InterferenceOptions& options, TorusSectionsScratch& scratch,
-                        LinesRegions& regions, Interference& out) noexcept {
+                        LinesRegions& regions, Interference& out) {
   out.sites.clear();
   out.total = VolumeMetrics{};
   if (!(torus.own_metrics().volume > 0.0) || !(body.own_metrics().volume > 0.0)) return true;

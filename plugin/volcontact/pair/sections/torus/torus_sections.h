@@ -27,11 +27,11 @@ enum class TorusSurface { kBest, kTorus };
 /// not closed, so that part of the overlap may be missed. docs/theory.md, "Tori".
 bool add_torus_regions(const Torus& torus, const ConvexView& body, const Pose& X,
                        const InterferenceOptions& options, TorusSectionsScratch& scratch,
-                       LinesRegions& regions, TorusSurface surface = TorusSurface::kBest) noexcept;
+                       LinesRegions& regions, TorusSurface surface = TorusSurface::kBest);
 
 /// Interference of a torus with a convex body: metrics in the frame of the torus. False as above.
 bool torus_interference(const Torus& torus, const ConvexView& body, const Pose& X_AB,
                         const InterferenceOptions& options, TorusSectionsScratch& scratch,
-                        LinesRegions& regions, Interference& out) noexcept;
+                        LinesRegions& regions, Interference& out);
 
 }  // namespace volcontact
