@@ -53,6 +53,8 @@ CLIPS = {
     "peg_in_hole": Clip("peg_in_hole/scene_mesh.xml", 0.36, 0.006),
     "tippe_top": Clip("tippe_top/scene.xml", 2.2, 0.02, "follow"),
     "gear_pair": Clip("gear_pair/scene.xml", 0.1, 0.002, "teeth"),
+    "acu_insert": Clip("acu_insert/scene.xml", 24.0, 0.4, "seat"),
+    "canadarm_berth": Clip("canadarm_berth/scene.xml", 45.0, 0.75, "grasp"),
     "box_pile": Clip("box_pile/scene.xml", 1.5, 0.03),
 }
 
