@@ -14,6 +14,7 @@ constexpr double kRoundRim =
     3.0;                        // longest by shortest way to the outline; then it is round enough
 constexpr double kSpike = 6.0;  // longest by shortest of all ways: a spike between the first ones
 constexpr double kOverCorner = 0.5;  // of the steepest step: how far a corner reaches over a place
+constexpr double kCorner = 0.5;      // bend by the steepest step: less is no corner
 constexpr double kSharper = 4.0;     // bend where a corner is next, by that at the other end
 constexpr int kNarrowings = 3;  // of a place where the outline comes near the wall
 constexpr int kEndNarrowings = 2;  // of a place where it crosses the wall
@@ -125,7 +126,8 @@ void BoreOutline::look_behind_corners() {
     const double steepest = std::max({std::abs(before), std::abs(way), std::abs(after)});
     if (std::max(here.rho, next.rho) + kOverCorner * steepest <= 1.0) continue;
     const double bend = std::abs(way - before), other = std::abs(after - way);
-    if (std::max(bend, other) < kSharper * std::min(bend, other)) continue;
+    const double sharpest = std::max(bend, other);
+    if (sharpest < kSharper * std::min(bend, other) || sharpest < kCorner * steepest) continue;
     const Place top = summit(here.angle, here.angle + 2.0 * kPi / kEvenTurn, 1.0);
     if (top.rho > 1.0) places_.push_back(top);
   }

@@ -293,6 +293,7 @@ class BoreRun {
   }
 
   void integrate_arcs(bool open) {
+    InterruptScope::poll();
     s_.sections.clear();
     error_ = 0.0;
     volume_scale_ = 0.0;
@@ -335,7 +336,6 @@ class BoreRun {
   };
 
   void integrate_arc(const Arc& arc, double x_from, double x_to, int depth) {
-    InterruptScope::poll();
     double u[kLanes], v[kLanes], weight[kLanes], section[kLanes];
     for (int i = 0; i < kLanes; ++i) {
       double angle, speed;

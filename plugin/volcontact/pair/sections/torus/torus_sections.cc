@@ -151,6 +151,7 @@ class TorusSectionsRun {
   int depth() const { return outer_rule::kMaxDepth + (closer_ ? outer_rule::kCloserDepth : 0); }
 
   void integrate_corners(const TorusRange& range) {
+    InterruptScope::poll();
     s_.sections.clear();
     error_ = volume_scale_ = 0.0;
     const bool done =
@@ -224,7 +225,6 @@ class TorusSectionsRun {
   }
 
   void integrate_arc(const Arc& arc, double x_from, double x_to, int divisions) {
-    InterruptScope::poll();
     double u[kLanes], v[kLanes], weight[kLanes], section[kLanes];
     for (int i = 0; i < kLanes; ++i) {
       double angle, speed;
