@@ -270,7 +270,7 @@ class Adaptor:
         return self._library.volcontact_passive
 
     def function(self, name: str) -> Callable[..., int]:
-        """A function without a message; it fails without memory, or in a library of another MuJoCo."""
+        """A function without a message; it fails where memory or the right library is missing."""
         native = self._functions[name]
 
         def checked(*arguments: Any) -> int:
