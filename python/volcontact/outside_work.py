@@ -20,8 +20,9 @@ _IMPLICIT = frozenset(
 _RK4 = int(mujoco.mjtIntegrator.mjINT_RK4)
 _NO_EULER_DAMPING = int(getattr(mujoco.mjtDisableBit, "mjDSBL_EULERDAMP", 0))
 _NO_DAMPERS = int(
-    getattr(mujoco.mjtDisableBit, "mjDSBL_DAMPER", None)
-    or getattr(mujoco.mjtDisableBit, "mjDSBL_PASSIVE", 0)
+    mujoco.mjtDisableBit.mjDSBL_DAMPER
+    if hasattr(mujoco.mjtDisableBit, "mjDSBL_DAMPER")
+    else mujoco.mjtDisableBit.mjDSBL_PASSIVE
 )
 _AFFINE = int(mujoco.mjtBias.mjBIAS_AFFINE)
 
