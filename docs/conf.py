@@ -108,6 +108,19 @@ SECTIONS = {
         "README",
         "docs/gallery",
         "docs/start",
+        "docs/tutorials/index",
+        *(
+            f"docs/tutorials/{name}"
+            for name in (
+                "drop",
+                "insertion",
+                "jamming",
+                "own_scene",
+                "own_meshes",
+                "own_law",
+                "decision",
+            )
+        ),
         "docs/install",
         "docs/concepts",
         "docs/choosing",

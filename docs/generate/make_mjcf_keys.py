@@ -95,7 +95,7 @@ def refusal(**given: Any) -> str:
     try:
         with vc.attach(model, **given):
             pass
-    except ValueError as error:
+    except (TypeError, ValueError) as error:
         return str(error)
     raise RuntimeError(f"{given} was not refused")
 

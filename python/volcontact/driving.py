@@ -113,9 +113,10 @@ class Driver:
     def _limited(self) -> list[str]:
         """Controls beyond what the scene allows, which MuJoCo cuts."""
         model, notes = self._model, []
-        for index, values in {**self._held, **self._columns}.items():
+        held = {index: np.array([value]) for index, value in self._held.items()}
+        for index, values in (held | self._columns).items():
             low, high = (float(x) for x in model.actuator_ctrlrange[index])
-            least, most = float(np.min(values)), float(np.max(values))
+            least, most = float(values.min()), float(values.max())
             if model.actuator_ctrllimited[index] and (least < low or most > high):
                 worst = least if least < low else most
                 notes.append(

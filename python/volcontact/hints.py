@@ -171,9 +171,9 @@ def _creeping(model: mujoco.MjModel, pairs: Sequence[Mapping[str, Any]]) -> Iter
             ):
                 names = name_of(model, "body", holder), name_of(model, "body", held)
                 told[names] = float(pair["slip_speed"])
-    for (holder, held), slip in told.items():
+    for (finger, part), slip in told.items():
         yield (
-            f"what {holder} holds of {held} creeps: friction_law regularized_coulomb slides under "
+            f"what {finger} holds of {part} creeps: friction_law regularized_coulomb slides under "
             f"any load, up to slip_speed = {slip:g} m/s; elastic_coulomb and bristle hold"
         )
 

@@ -20,8 +20,9 @@ _IMPLICIT = frozenset(
 _RK4 = int(mujoco.mjtIntegrator.mjINT_RK4)
 _NO_EULER_DAMPING = int(getattr(mujoco.mjtDisableBit, "mjDSBL_EULERDAMP", 0))
 _NO_DAMPERS = int(
-    getattr(mujoco.mjtDisableBit, "mjDSBL_DAMPER", None)
-    or getattr(mujoco.mjtDisableBit, "mjDSBL_PASSIVE", 0)
+    mujoco.mjtDisableBit.mjDSBL_DAMPER
+    if hasattr(mujoco.mjtDisableBit, "mjDSBL_DAMPER")
+    else mujoco.mjtDisableBit.mjDSBL_PASSIVE
 )
 _AFFINE = int(mujoco.mjtBias.mjBIAS_AFFINE)
 
@@ -55,7 +56,8 @@ class OutsideWork:
         self._damps_late = is_implicit or not (self._by_power or flags & _NO_EULER_DAMPING)
         is_damped = not flags & _NO_DAMPERS
         self._dampers = is_damped * model.dof_damping, is_damped * model.tendon_damping
-        self._last: tuple[float, np.ndarray] | None = None  # time and power of the last row
+        # Time, power and controls of the last row.
+        self._last: tuple[float, np.ndarray, np.ndarray] | None = None
 
     def keep_power(self, row: int, data: mujoco.MjData, *, always: bool = False) -> None:
         """Adds the work up to the state of a row, by the trapezoidal rule.
@@ -67,11 +69,24 @@ class OutsideWork:
         """
         if not (self._by_power or always):
             return
-        power = self._power(data, data.qvel, data.qvel)
         if self._last is not None:
-            time, before = self._last
-            self._work[row] = self._work[row - 1] + 0.5 * (data.time - time) * (before + power)
-        self._last = float(data.time), power
+            time, before, control = self._last
+            after = self._power_under(control, data)
+            self._work[row] = self._work[row - 1] + 0.5 * (data.time - time) * (before + after)
+        power = self._power(data, data.qvel, data.qvel)
+        self._last = float(data.time), power, data.ctrl.copy()
+
+    def _power_under(self, control: np.ndarray, data: mujoco.MjData) -> np.ndarray:
+        """The power at the end of a step, over which controls are held."""
+        present = data.ctrl.copy()
+        if np.array_equal(control, present):
+            return self._power(data, data.qvel, data.qvel)
+        data.ctrl[:] = control
+        mujoco.mj_fwdActuation(self._model, data)
+        power = self._power(data, data.qvel, data.qvel)
+        data.ctrl[:] = present
+        mujoco.mj_fwdActuation(self._model, data)
+        return power
 
     def keep_step(self, row: int, data: mujoco.MjData, velocity: np.ndarray) -> None:
         """Adds the work of the step from a row to the next one; not under Runge-Kutta.

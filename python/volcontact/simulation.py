@@ -7,7 +7,7 @@ import copy
 import os
 import re
 import time as clock
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import mujoco

@@ -129,7 +129,8 @@ void SceneContact::find_room(const mjModel* m, const SceneContact* before) {
       !has_scene_keys(m) && (is_passive || !keys_.has_target),
       "mjData.userdata is too small: volcontact needs " + std::to_string(needed) +
           " numbers at its end and nuserdata is " + std::to_string(present) +
-          "; load the scene with volcontact.load, or write <size nuserdata=\"" +
+          "; load the scene with volcontact.load and the same material and options, or write "
+          "<size nuserdata=\"" +
           std::to_string(needed + present) + "\"/> into it" +
           (has_scene_keys(m) ? "" : "; without room there is volcontact/option/target/passive"));
   keys_.options.target = Target::kPassive;

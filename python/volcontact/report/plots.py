@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
+import numpy as np
 from matplotlib.axes import Axes
 
 from volcontact.recording import Recording
@@ -50,7 +51,7 @@ def plans_of_signals(runs: tuple[Recording, ...]) -> Iterator[Plan]:
         yield _plan(f"signal_{i + 1}", name, "time", known)
 
 
-def _names(text: str, known: dict[str, tuple[object, str]]) -> tuple[str, str]:
+def _names(text: str, known: Mapping[str, tuple[np.ndarray, str]]) -> tuple[str, str]:
     """The columns of `Y` or `Y:X`; names may have colons of their own."""
     if text in known:
         return text, "time"
@@ -62,7 +63,7 @@ def _names(text: str, known: dict[str, tuple[object, str]]) -> tuple[str, str]:
     raise ValueError(f"the trajectory has no column {wrong[0]!r}{nearest(wrong[0], known)}")
 
 
-def _plan(name: str, y: str, x: str, known: dict[str, tuple[object, str]]) -> Plan:
+def _plan(name: str, y: str, x: str, known: Mapping[str, tuple[np.ndarray, str]]) -> Plan:
     def draw(axes: Axes, runs: tuple[Recording, ...]) -> list[Series]:
         series = []
         for run in reversed(runs):

@@ -70,7 +70,8 @@ def surface(steps: list[Step]) -> Triangles | None:
     if any(part.shape == "half_space" for part in parts):
         return None
     if len(parts) == 1 and parts[0].shape == "convex_polytope":
-        points = parts[0].points @ parts[0].pose[:3, :3].T + parts[0].pose[:3, 3]  # type: ignore[operator]
+        assert parts[0].points is not None
+        points = parts[0].points @ parts[0].pose[:3, :3].T + parts[0].pose[:3, 3]
         return points, np.zeros((0, 3), np.int64)
     if len(parts) == 1:
         return _placed(parts[0])

@@ -100,6 +100,7 @@ def _colors(materials: Mapping[int, str]) -> dict[str, str]:
 def _scene(model: mujoco.MjModel, data: mujoco.MjData, solids: list[Any]) -> str:
     """MJCF of the solids alone: a body for each, free where it can move."""
     assets, bodies = [], []
+    corners: list[np.ndarray] = []  # of what has an end, in the world
     for i, (geom, (inner, steps), color) in enumerate(solids):
         found = surface(steps)
         place = np.eye(4)
@@ -111,6 +112,7 @@ def _scene(model: mujoco.MjModel, data: mujoco.MjData, solids: list[Any]) -> str
             body = f'<geom type="plane" size="{size:.6g} {size:.6g} 0.1" {shown}/>'
         else:
             points, faces = found
+            corners.append(points @ place[:3, :3].T + place[:3, 3])
             of_faces = f' face="{_words(faces)}"' if len(faces) else ""
             assets.append(f'<mesh name="s{i}" vertex="{_words(points)}"{of_faces}/>')
             body = (
@@ -126,11 +128,16 @@ def _scene(model: mujoco.MjModel, data: mujoco.MjData, solids: list[Any]) -> str
         f'xyaxes="{_words(data.cam_xmat[c].reshape(3, 3).T[:2])}" fovy="{model.cam_fovy[c]:.6g}"/>'
         for c in range(model.ncam)
     ]
-    center = _words(np.array(dense(model.stat.center)))
+    center, extent = np.array(dense(model.stat.center)), float(model.stat.extent)
+    near, far = (float(x) * extent for x in (model.vis.map.znear, model.vis.map.zfar))
+    if corners:
+        every = np.concatenate(corners)
+        low, high = every.min(axis=0), every.max(axis=0)
+        center, extent = 0.5 * (low + high), float(np.linalg.norm(high - low))
+    # MuJoCo measures both in extents.
     return (
-        f'<mujoco><statistic center="{center}" extent="{float(model.stat.extent):.6g}"/>'
-        f'<visual><map znear="{float(model.vis.map.znear):.6g}" '
-        f'zfar="{float(model.vis.map.zfar):.6g}"/></visual>'
+        f'<mujoco><statistic center="{_words(center)}" extent="{extent:.6g}"/>'
+        f'<visual><map znear="{near / extent:.6g}" zfar="{far / extent:.6g}"/></visual>'
         f"<asset>{''.join(assets)}</asset>"
         f"<worldbody>{''.join(cameras)}{''.join(bodies)}</worldbody></mujoco>"
     )

@@ -5,6 +5,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from volcontact.control_table import ControlTable
 from volcontact.driving import Drive
 from volcontact.outside_work import CHANNELS
 from volcontact.report.findings import findings
@@ -77,6 +78,13 @@ def test_stiff_servo_is_counted_as_the_step_took_it(integrator):
     servo = '<velocity name="push" joint="rail" kv="1000"/>'
     run = cart(integrator=integrator, actuator=servo)
     assert run.kinetic[-1] == pytest.approx(1.0, rel=1e-6)  # 2 kg at 1 m/s
+    assert np.abs(run.unbalance()).max() < 1e-12
+
+
+def test_controls_that_jump_are_held_over_a_step_of_runge_kutta():
+    times = np.linspace(0.0, 1.0, 51)
+    table = ControlTable(times, {"push": np.where(np.arange(51) % 2, 5.0, -4.0)})
+    run = cart(Drive(table=table), integrator="RK4", step=0.02)
     assert np.abs(run.unbalance()).max() < 1e-12
 
 
