@@ -40,7 +40,7 @@ void solve_implicit(const SceneContact& contact, const mjModel* m, mjData* d,
   const double fall = fall_of(m);
   std::size_t site = 0;
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    const PairContact& pair = contact.pair(scratch.cull.near[k]);
+    const PairContact& pair = scratch.pair(k);
     ContactReport& report = scratch.reports[k];
     const double along = inverse_mass(m, pair.geoms).along;
     const PairEnergy::Now now(report);
@@ -50,7 +50,7 @@ void solve_implicit(const SceneContact& contact, const mjModel* m, mjData* d,
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
       const bool is_stiff = scratch.stiff[site++] != 0;
       if (report.sites[i].normal.isZero(0.0)) continue;
-      const GeomPair& geoms = contact.pair(scratch.pair_of_site(k, i)).geoms;
+      const GeomPair& geoms = scratch.geoms_of_site(contact, k, i);
       const int a = m->geom_bodyid[geoms.a], b = m->geom_bodyid[geoms.b];
       const Vec3& point = report.sites[i].metrics.centroid;
       const Twist of_a = scratch.mocaps.at(m, d, a, point),
@@ -102,12 +102,12 @@ void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
   const bool is_rk4 = m->opt.integrator == mjINT_RK4;
   const double* begin = account.continues() ? account.begin().states() : nullptr;
   if (account.is_within_step()) {
-    hold_solved(contact, m, d, our, scratch);
+    hold_solved(m, d, our, scratch);
     now.unpaid = read_energies(contact, begin, account.since_begin(), is_rk4, scratch);
     release(account, now, scratch);
     scratch.dissipated = 0.0;
     find_unpaid_pairs(contact, m, scratch);
-    postpone_stiff(contact, scratch);
+    postpone_stiff(scratch);
     return;
   }
   now.implicit = find_stiff_sites(contact, m, d, scratch);
@@ -137,7 +137,7 @@ bool keep_sites(const SceneContact& contact, double* states, EvaluationScratch& 
   if (contact.sites().rows == 0) return true;
   scratch.kept.clear();
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    const auto size = static_cast<std::size_t>(contact.pair(scratch.cull.near[k]).model.row_size());
+    const auto size = static_cast<std::size_t>(scratch.pair(k).model.row_size());
     const std::size_t numbers = scratch.reports[k].memory.size();
     for (std::size_t site = 0; site * size < numbers; ++site) {
       scratch.kept.emplace_back(scratch.pair_of_site(k, site), k, site * size);
@@ -147,7 +147,7 @@ bool keep_sites(const SceneContact& contact, double* states, EvaluationScratch& 
   return std::all_of(scratch.kept.begin(), scratch.kept.end(), [&](const auto& row) {
     const auto& [pair, k, start] = row;
     return pool.push(pair, &scratch.reports[k].memory[start],
-                     contact.pair(scratch.cull.near[k]).model.row_size());
+                     scratch.pair(k).model.row_size());
   });
 }
 
@@ -170,7 +170,7 @@ void write_forces(const SceneContact& contact, const mjModel* m, mjData* d, bool
     const std::vector<SiteReport>& sites = scratch.reports[k].sites;
     for (std::size_t i = 0; i < sites.size(); ++i) {
       const SiteReport& site = sites[i];
-      const GeomPair& geoms = contact.pair(scratch.pair_of_site(k, i)).geoms;
+      const GeomPair& geoms = scratch.geoms_of_site(contact, k, i);
       const int a = m->geom_bodyid[geoms.a], b = m->geom_bodyid[geoms.b];
       const Vec3& c = site.metrics.centroid;
       scratch.mocaps.add_load(m, d, a, c, site.force_on_A, site.torque_on_A);

@@ -18,12 +18,12 @@ void keep_solved(const SceneContact& contact, const UserdataBlock& our,
 void recall_solved(const UserdataBlock& our, EvaluationScratch& scratch) noexcept;
 
 /// The same at a later stage of Runge-Kutta, and marks what that cannot hold in `scratch.stiff`.
-void hold_solved(const SceneContact& contact, const mjModel* m, mjData* d, const UserdataBlock& our,
+void hold_solved(const mjModel* m, mjData* d, const UserdataBlock& our,
                  EvaluationScratch& scratch) noexcept;
 
 /// What a later stage of Runge-Kutta cannot hold, and was not solved when the step began, waits
 /// for the next.
-void postpone_stiff(const SceneContact& contact, EvaluationScratch& scratch) noexcept;
+void postpone_stiff(EvaluationScratch& scratch) noexcept;
 
 /// Adds what was kept to the forces on the bodies.
 void add_held(const SceneContact& contact, const mjModel* m, const mjData* d,

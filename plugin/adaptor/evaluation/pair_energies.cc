@@ -20,7 +20,7 @@ ExplicitShare share_of(const SceneContact& contact, const mjModel* m, std::size_
                        const PairEnergy::Now& now, const EvaluationScratch& scratch) noexcept {
   const double h = m->opt.timestep;
   const double fall = fall_of(m);
-  const PairContact& pair = contact.pair(scratch.cull.near[k]);
+  const PairContact& pair = scratch.pair(k);
   const double along = inverse_mass(m, pair.geoms).along;
   WorkLimit limit = WorkLimit::of(scratch.energies[k], scratch.dissipated,
                                   contact.options().exit_speed, now.moving(along));
@@ -123,7 +123,7 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m,
     if (share == 1.0) continue;
     limited = true;
     scratch.held[k] = 1;
-    take_share(share, contact.pair(scratch.cull.near[k]).model, report);
+    take_share(share, scratch.pair(k).model, report);
     energy.rubbed = std::min(energy.rubbed, report.bristle_energy.sum());
   }
   return limited;

@@ -8,7 +8,7 @@
 #include "adaptor/evaluation/joined_pairs.h"
 #include "adaptor/evaluation/mocap_motion.h"
 #include "adaptor/evaluation/thread_choice.h"
-#include "adaptor/geoms/pair_list.h"
+#include "adaptor/geoms/cull.h"
 #include "adaptor/memory/work_limit.h"
 #include "adaptor/step/implicit_step.h"
 #include "volcontact/model/contact_model.h"
@@ -18,6 +18,7 @@ namespace volcontact::adaptor {
 /// Memory of one evaluation; one per thread, reused from call to call.
 struct EvaluationScratch {
   Cull::Scratch cull;                  ///< `near`: the pairs evaluated
+  std::vector<const PairContact*> contacts;  ///< their contact models
   JoinedPairs joined;                  ///< those of them that stand for several
   std::vector<ContactReport> reports;  ///< of the pairs in `near`, finite numbers only
   std::vector<char> invalid;           ///< whether a report was left out, having no numbers
@@ -34,13 +35,20 @@ struct EvaluationScratch {
   MocapMotion mocaps;
   std::vector<double> way;  ///< of the dofs since the evaluation before
   /// What is kept, by the pair under which it is found again: pair, place in `near`, number.
-  std::vector<std::tuple<int, std::size_t, std::size_t>> kept;
+  std::vector<std::tuple<PairId, std::size_t, std::size_t>> kept;
 
   /// The pair to which a site of the pair at place k of `near` belongs: of flush solids, that in
   /// which its centroid lies.
-  int pair_of_site(std::size_t k, std::size_t site) const {
+  PairId pair_of_site(std::size_t k, std::size_t site) const {
     return joined.pair_of_site(cull.near, k, site);
   }
+  const GeomPair& geoms_of_site(const SceneContact& contact, std::size_t k,
+                                std::size_t site) const {
+    return joined.at(k) ? contact.pair(pair_of_site(k, site)).geoms : pair(k).geoms;
+  }
+
+  /// The pair at place k of `near`.
+  const PairContact& pair(std::size_t k) const { return *contacts[k]; }
 };
 
 }  // namespace volcontact::adaptor

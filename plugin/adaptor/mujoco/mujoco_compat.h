@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 // All that differs between the releases of MuJoCo, and nothing else. mjVERSION_HEADER grows with
 // every release: 222 is 2.2.2, 340 is 3.4.0, 4000000 is 4.0.0.
@@ -25,13 +26,12 @@ extern "C" {
 
 namespace volcontact::adaptor {
 
-/// Number under which an <exclude> of two bodies is stored.
-inline int exclude_signature(int body_a, int body_b) {
-  const int low = std::min(body_a, body_b), high = std::max(body_a, body_b);
+/// The two bodies of an <exclude>, lower id first, from the number under which it is stored.
+inline std::pair<int, int> excluded_bodies(int signature) {
 #if mjVERSION_HEADER < 300
-  return ((low + 1) << 16) + high + 1;
+  return {(signature >> 16) - 1, (signature & 0xffff) - 1};
 #else
-  return (low << 16) + high;
+  return {signature >> 16, signature & 0xffff};
 #endif
 }
 
