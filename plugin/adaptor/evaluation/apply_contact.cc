@@ -11,6 +11,7 @@
 #include "adaptor/evaluation/held_forces.h"
 #include "adaptor/evaluation/pair_energies.h"
 #include "adaptor/evaluation/report_sums.h"
+#include "adaptor/evaluation/sleeping.h"
 #include "adaptor/evaluation/stiff_sites.h"
 #include "adaptor/memory/applied_ledger.h"
 #include "adaptor/memory/energy_account.h"
@@ -115,7 +116,8 @@ void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
   release(account, now, scratch);
   scratch.dissipated = 0.0;
   if (begin) {
-    double elastic = -now.unpaid;
+    const SleepingEnergy asleep = energy_asleep(contact, begin, scratch);
+    double elastic = asleep.elastic + asleep.bristle - now.unpaid;
     for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
       elastic += scratch.reports[k].elastic_energy;
     }
@@ -131,7 +133,8 @@ void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
 }
 
 // Writes what the sites of this evaluation keep; false when there was no room for all.
-bool keep_sites(const SceneContact& contact, double* states, EvaluationScratch& scratch) noexcept {
+bool keep_sites(const SceneContact& contact, const double* committed, double* states,
+                EvaluationScratch& scratch) noexcept {
   const SitePool<double> pool(states, contact.sites());
   pool.clear();
   if (contact.sites().rows == 0) return true;
@@ -143,9 +146,12 @@ bool keep_sites(const SceneContact& contact, double* states, EvaluationScratch& 
       scratch.kept.emplace_back(scratch.pair_of_site(k, site), k, site * size);
     }
   }
-  if (!scratch.joined.empty()) std::sort(scratch.kept.begin(), scratch.kept.end());
+  const SitePool<const double> before(committed, contact.sites());
+  if (committed) scratch.keep_asleep(before);
+  scratch.sort_kept();
   return std::all_of(scratch.kept.begin(), scratch.kept.end(), [&](const auto& row) {
     const auto& [pair, k, start] = row;
+    if (k == EvaluationScratch::kAsleep) return pool.copy(before, pair, start);
     return pool.push(pair, &scratch.reports[k].memory[start],
                      scratch.pair(k).model.row_size());
   });
@@ -236,13 +242,20 @@ void apply_contact(const SceneContact& contact, const mjModel* m, mjData* d,
   const double* committed = account.continues() ? our.slot(1).states() : nullptr;
   const bool goes_on = account.is_within_step();
   const double driven = follow_mocaps(m, d, our, account, scratch);
+  if (wake_what_is_touched(contact, m, d, scratch)) {
+    repeat_step_so_far(m, d);  // which calls this function
+    return;
+  }
   evaluate_pairs(contact, m, d, {committed, account.elapsed(), contact.is_implicit()}, scratch);
+  hold_together(contact, m, d, scratch);
   EnergyAccount now;
   scratch.held.assign(scratch.cull.near.size(), 0);
   if (!goes_on) our.set_solved(0);
   if (contact.is_implicit()) choose_forces(contact, m, d, our, account, now, scratch);
-  bool kept = keep_sites(contact, our.slot(0).states(), scratch);
-  if (contact.is_implicit()) kept = keep_energies(contact, our.slot(0).states(), scratch) && kept;
+  bool kept = keep_sites(contact, committed, our.slot(0).states(), scratch);
+  if (contact.is_implicit()) {
+    kept = keep_energies(contact, committed, our.slot(0).states(), scratch) && kept;
+  }
   if (!kept) our.forgotten() += 1.0;
 
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
@@ -260,6 +273,9 @@ void apply_contact(const SceneContact& contact, const mjModel* m, mjData* d,
     now.spin_energy += paid * report.bristle_energy.spin;
   }
   now.elastic -= now.unpaid;
+  const SleepingEnergy asleep = energy_asleep(contact, committed, scratch);
+  now.elastic += asleep.elastic + asleep.bristle;
+  now.slide_energy += asleep.bristle;
   write_forces(contact, m, d, goes_on, scratch);
   now.force_power = power_of(our.slot(0).forces(), d->qvel, m->nv);
   keep_motion(m, d, our);

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <utility>
 
+#include "adaptor/evaluation/sleeping.h"
 #include "adaptor/evaluation/work_sharing.h"
 #include "adaptor/mujoco/mjgeoms.h"
 
@@ -99,6 +100,7 @@ void evaluate_one(const SceneContact& contact, const mjModel* m, const mjData* d
 void evaluate_pairs(const SceneContact& contact, const mjModel* m, const mjData* d,
                     const SitesBefore& before, EvaluationScratch& scratch) noexcept {
   contact.cull().run(d, scratch.cull);
+  set_aside_sleeping(contact, m, d, scratch);
   scratch.joined.build(contact, d, scratch.cull.near);
   const std::vector<PairId>& near = scratch.cull.near;
   scratch.contacts.clear();

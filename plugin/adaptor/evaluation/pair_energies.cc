@@ -129,7 +129,7 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m,
   return limited;
 }
 
-bool keep_energies(const SceneContact& contact, double* states,
+bool keep_energies(const SceneContact& contact, const double* committed, double* states,
                    EvaluationScratch& scratch) noexcept {
   const SitePool<double> pool(states + contact.sites().size(), contact.energies());
   pool.clear();
@@ -143,8 +143,14 @@ bool keep_energies(const SceneContact& contact, double* states,
     const auto site = static_cast<std::size_t>(largest - sites.begin());
     scratch.kept.emplace_back(scratch.pair_of_site(k, site), k, site);
   }
-  if (!scratch.joined.empty()) std::sort(scratch.kept.begin(), scratch.kept.end());
+  const SitePool<const double> before(committed ? committed + contact.sites().size() : nullptr,
+                                      contact.energies());
+  if (committed) scratch.keep_asleep(before);
+  scratch.sort_kept();
   return std::all_of(scratch.kept.begin(), scratch.kept.end(), [&](const auto& kept) {
+    if (std::get<1>(kept) == EvaluationScratch::kAsleep) {
+      return pool.copy(before, std::get<0>(kept), std::get<2>(kept));
+    }
     double row[PairEnergy::kNumbers];
     scratch.energies[std::get<1>(kept)].write(row);
     return pool.push(std::get<0>(kept), row, PairEnergy::kNumbers);

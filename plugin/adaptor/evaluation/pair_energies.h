@@ -27,7 +27,7 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m,
                     EvaluationScratch& scratch) noexcept;
 
 /// Writes the rows behind those of the sites; false when there was no room for all.
-bool keep_energies(const SceneContact& contact, double* states,
+bool keep_energies(const SceneContact& contact, const double* committed, double* states,
                    EvaluationScratch& scratch) noexcept;
 
 }  // namespace volcontact::adaptor

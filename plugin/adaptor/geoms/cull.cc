@@ -56,13 +56,9 @@ void Cull::list_pairs() {
   });
 }
 
-// Two solids that do not move never touch, but where a volcontact/pair says so.
+// Two solids that do not move never touch.
 void Cull::tell_fixed_apart() {
-  std::vector<char> moves(at(rules_->geoms()), 0);
-  for (const GeomPair& pair : rules_->named()) {
-    if (rules_->is_static(pair.a) && rules_->is_static(pair.b)) moves[at(pair.a)] = moves[at(pair.b)] = 1;
-  }
-  const auto stays = [&](int geom) { return rules_->is_static(geom) && !moves[at(geom)]; };
+  const auto stays = [&](int geom) { return rules_->is_static(geom); };
   std::copy_if(moving_.begin(), moving_.end(), std::back_inserter(fixed_), stays);
   std::erase_if(moving_, stays);
   for (const int geom : fixed_) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 #include "volcontact/model/site_memory.h"
@@ -39,6 +40,12 @@ class SitePool {
     std::fill(std::copy_n(row, size, to + 1), to + layout_.stride(), 0.0);
     p_[0] = n + 1;
     return true;
+  }
+
+  /// Appends a row of a pair as it was; false when there is no room.
+  bool copy(const SitePool<const double>& before, std::int64_t pair, std::size_t row) const {
+    const SiteMemory rows = before.rows_of(pair, 0.0);
+    return push(pair, rows.rows + static_cast<std::ptrdiff_t>(row) * rows.stride, rows.stride - 1);
   }
 
   /// The rows of one pair, as its contact model wants them.

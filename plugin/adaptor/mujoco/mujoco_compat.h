@@ -18,6 +18,9 @@ extern "C" {
 [[gnu::weak]] void mjd_smooth_vel(const mjModel* m, mjData* d, int with_bias);
 [[gnu::weak]] int mjd_freeMhat(const mjModel* m, const mjData* d, int joint, mjtNum step,
                                mjtNum out[36]);
+#if mjVERSION_HEADER >= 4000000
+void mj_updateSleep(const mjModel* m, mjData* d);
+#endif
 #if mjVERSION_HEADER < 233
 [[gnu::weak]] void mj_makeMSparse(const mjModel* m, mjData* d, int* rownnz, int* rowadr,
                                   int* colind);
@@ -153,7 +156,7 @@ void for_row_of_constraint(const mjModel* m, const mjData* d, int i, Use use) {
   }
 }
 
-/// Whether bodies may fall asleep; volumetric contact would never wake them.
+/// Whether bodies may fall asleep, and whether we can wake them in this release.
 inline bool sleep_enabled([[maybe_unused]] const mjModel* m) {
 #if mjVERSION_HEADER >= 340
   return (m->opt.enableflags & mjENBL_SLEEP) != 0;
@@ -161,6 +164,8 @@ inline bool sleep_enabled([[maybe_unused]] const mjModel* m) {
   return false;
 #endif
 }
+
+inline constexpr bool kCanWake = mjVERSION_HEADER >= 4000000;
 
 inline bool has_flexes([[maybe_unused]] const mjModel* m) {
 #if mjVERSION_HEADER >= 300

@@ -112,6 +112,11 @@ void SceneContact::find_room(const mjModel* m, const SceneContact* before) {
   plugin_ = plugin_room(m);
   // mjSTATE_FULLPHYSICS has plugin_state, but not the forces that the user applies.
   if (is_in_plugin() && !keys_.has_target) keys_.options.target = Target::kPassive;
+  // MuJoCo keeps awake what forces are applied to.
+  if (sleep_enabled(m) && !keys_.has_target) keys_.options.target = Target::kPassive;
+  require(!sleep_enabled(m) || options().target == Target::kPassive,
+          "the model has <flag sleep=\"enable\"/>, and MuJoCo keeps awake what forces are applied to: "
+          "nothing that lies would fall asleep; use volcontact/option/target/passive");
   const int needed = layout(m).size();
   if (is_in_plugin()) {
     require(plugin_.size >= needed, "the state of the plugin has " + std::to_string(plugin_.size) +
@@ -277,7 +282,7 @@ PairContact SceneContact::make_pair(const GeomPair& in_order) const {
 void SceneContact::warn_about_model(const mjModel* m) {
   const std::string skipped = skipped_warning(m);
   if (!skipped.empty()) alert(skipped);
-  if (has_flexes(m)) warn_once("flexes have no volumetric contact: they touch nothing");
+  if (has_flexes(m)) warn_once("flexes have no volumetric contact: they keep MuJoCo's own");
   if (keys_.options.target != Target::kXfrc) {
     for (int i = 0; i < m->nsensor; ++i) {
       const int type = m->sensor_type[i];

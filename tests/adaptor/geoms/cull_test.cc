@@ -1,112 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/geoms/pair_list.h"
+#include "adaptor/geoms/cull.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <memory>
 #include <random>
 #include <set>
 
 #include "adaptor/geoms/solids_of_geoms.h"
 #include "adaptor/support/models.h"
 
-namespace volcontact::adaptor::pair_list_test {
+namespace volcontact::adaptor::cull_test {
 namespace {
 
 using Pairs = std::set<std::pair<int, int>>;
-
-Pairs ours(const mjModel* m) {
-  Pairs pairs;
-  for (const GeomPair& pair : pairs_that_can_touch(m, read_scene_keys(m))) {
-    EXPECT_LT(pair.a, pair.b);
-    pairs.insert({pair.a, pair.b});
-  }
-  return pairs;
-}
-
-// The pairs MuJoCo itself collides: the scenes below pile all geoms onto one place.
-Pairs native(const testing::ModelPointer& m) {
-  const testing::DataPointer d = testing::make_data(m);
-  mj_forward(m.get(), d.get());
-  Pairs pairs;
-  for (int i = 0; i < d->ncon; ++i) {
-    pairs.insert(std::minmax(d->contact[i].geom1, d->contact[i].geom2));
-  }
-  return pairs;
-}
-
-// Bodies of spheres that all overlap: what does not collide is left out by a rule.
-std::string pile(const std::string& more, const std::string& option = "") {
-  return "<mujoco><size nconmax=\"500\" njmax=\"2000\"/><option " + option +
-         R"(/><default><geom type="sphere" size=".5"/></default><worldbody>
-    <geom name="floor" type="plane" size="1 1 1"/>
-    <geom name="wall" type="plane" size="1 1 1" euler="90 0 0"/>
-    <geom name="stone" pos=".01 0 0"/>
-    <body name="shelf" pos="0 .01 0"><geom name="shelf"/></body>
-    <body name="a" pos="0 0 .02"><freejoint/>
-      <geom name="a1" contype="2" conaffinity="1"/><geom name="a2" pos=".03 0 0"/>
-      <body name="a_child" pos="0 .04 0"><joint/><geom name="a_child"/>
-        <body name="a_welded" pos="0 0 .03"><geom name="a_welded"/></body>
-        <body name="a_grandchild" pos="0 .02 0"><joint axis="1 0 0"/><geom name="a_grandchild"/>
-        </body></body></body>
-    <body name="b" pos="0 0 -.02"><freejoint/>
-      <geom name="b1" contype="4" conaffinity="2"/><geom name="ghost" contype="0" conaffinity="0"/>
-    </body>
-    <body name="c" pos=".05 0 -.02"><joint type="slide"/><geom name="c"/></body>
-  </worldbody>)" +
-         more + "</mujoco>";
-}
-
-TEST(PairList, RulesAreThoseOfMuJoCo) {
-  const testing::ModelPointer m = testing::compile(pile(""));
-  EXPECT_EQ(ours(m.get()), native(m));
-}
-
-TEST(PairList, ExcludedBodiesDoNotTouch) {
-  const std::string exclude =
-      "<contact><exclude body1=\"c\" body2=\"a\"/><exclude body1=\"b\" body2=\"c\"/>"
-      "<exclude body1=\"world\" body2=\"c\"/></contact>";
-  const testing::ModelPointer m = testing::compile(pile(exclude));
-  EXPECT_EQ(ours(m.get()), native(m));
-  EXPECT_LT(ours(m.get()).size(), ours(testing::compile(pile("")).get()).size());
-}
-
-TEST(PairList, ExplicitPairsTouchWhateverTheMasksSay) {
-  const std::string pair =
-      "<contact><pair geom1=\"ghost\" geom2=\"c\"/><pair geom1=\"a_child\" geom2=\"a1\"/>"
-      "<exclude body1=\"c\" body2=\"b\"/></contact>";
-  const testing::ModelPointer m = testing::compile(pile(pair));
-  EXPECT_EQ(ours(m.get()), native(m));
-}
-
-TEST(PairList, ParentFilterCanBeOff) {
-  const std::string option = "><flag filterparent=\"disable\"/></option><option ";
-  const testing::ModelPointer m = testing::compile(pile("", option));
-  EXPECT_EQ(ours(m.get()), native(m));
-  EXPECT_GT(ours(m.get()).size(), ours(testing::compile(pile("")).get()).size());
-}
-
-TEST(PairList, ListedPairIsAddedToTheNativeOnes) {
-  const std::string listed =
-      "<custom><tuple name=\"volcontact/pair/p\"><element objtype=\"geom\" objname=\"ghost\"/>"
-      "<element objtype=\"geom\" objname=\"c\"/></tuple></custom>";
-  const testing::ModelPointer m = testing::compile(pile(listed));
-  Pairs expected = ours(testing::compile(pile("")).get());
-  const std::pair<int, int> added =
-      std::minmax(mj_name2id(m.get(), mjOBJ_GEOM, "ghost"), mj_name2id(m.get(), mjOBJ_GEOM, "c"));
-  EXPECT_FALSE(expected.count(added));
-  expected.insert(added);
-  EXPECT_EQ(ours(m.get()), expected);
-}
-
-TEST(PairList, ListedAloneWhenTheOptionSaysSo) {
-  const std::string listed =
-      "<custom><numeric name=\"volcontact/option/pairs/listed\" data=\"1\"/>"
-      "<tuple name=\"volcontact/pair/p\"><element objtype=\"geom\" objname=\"ghost\"/>"
-      "<element objtype=\"geom\" objname=\"c\"/></tuple></custom>";
-  const testing::ModelPointer m = testing::compile(pile(listed));
-  EXPECT_EQ(ours(m.get()).size(), 1u);
-}
 
 // Random poses of all shapes: whatever MuJoCo finds in contact must pass the cull.
 
@@ -123,8 +31,10 @@ constexpr const char* kShapes = R"(
 
 class CullTest : public ::testing::Test {
  protected:
-  CullTest() : m(testing::compile(kShapes)), d(testing::make_data(m)) {
-    pairs = pairs_that_can_touch(m.get(), read_scene_keys(m.get()));
+  CullTest()
+      : m(testing::compile(kShapes)),
+        d(testing::make_data(m)),
+        rules(m.get(), read_scene_keys(m.get())) {
     for (int geom = 0; geom < m->ngeom; ++geom) solids.push_back(solid_of_geom(m.get(), geom));
   }
   void random_poses(std::mt19937& random) {
@@ -135,36 +45,42 @@ class CullTest : public ::testing::Test {
 
   testing::ModelPointer m;
   testing::DataPointer d;
-  std::vector<GeomPair> pairs;
+  Pairs near() const {
+    Pairs found;
+    GeomPair pair;
+    for (const PairId id : scratch.near) {
+      EXPECT_TRUE(rules.find(id, pair));
+      found.insert({pair.a, pair.b});
+    }
+    return found;
+  }
+
+  PairRules rules;
   std::vector<Shape> solids;
   Cull::Scratch scratch;
 };
 
 TEST_F(CullTest, KeepsEveryPairThatTouches) {
-  const Cull cull(pairs, solids);
+  const Cull cull(rules, solids);
   std::mt19937 random(7);
   int contacts = 0, left_out = 0;
   for (int trial = 0; trial < 300; ++trial) {
     random_poses(random);
     cull.run(d.get(), scratch);
-    Pairs near;
-    for (const int i : scratch.near) {
-      const GeomPair& pair = pairs[static_cast<std::size_t>(i)];
-      near.insert({pair.a, pair.b});
-    }
+    const Pairs near = this->near();
     for (int i = 0; i < d->ncon; ++i) {
       if (d->contact[i].dist >= 0.0) continue;
       EXPECT_TRUE(near.count(std::minmax(d->contact[i].geom1, d->contact[i].geom2)));
       ++contacts;
     }
-    left_out += static_cast<int>(pairs.size() - near.size());
+    left_out += static_cast<int>(rules.count() - near.size());
   }
   EXPECT_GT(contacts, 300);
   EXPECT_GT(left_out, 300);
 }
 
 TEST_F(CullTest, LeavesOutPairsThatAreFarApart) {
-  const Cull cull(pairs, solids);
+  const Cull cull(rules, solids);
   for (int i = 0; i < 6; ++i) {
     d->qpos[7 * i] = 3.0 * i;
     d->qpos[7 * i + 2] = 20.0;
@@ -175,39 +91,80 @@ TEST_F(CullTest, LeavesOutPairsThatAreFarApart) {
 }
 
 TEST_F(CullTest, KeepsPosesThatAreNoNumbersForTheEngineToReport) {
-  const Cull cull(pairs, solids);
+  const Cull cull(rules, solids);
   mj_forward(m.get(), d.get());
   d->geom_xpos[3] = std::numeric_limits<double>::quiet_NaN();
   cull.run(d.get(), scratch);
   int with_geom_1 = 0;
-  for (const int i : scratch.near) {
-    const GeomPair& pair = pairs[static_cast<std::size_t>(i)];
-    with_geom_1 += pair.a == 1 || pair.b == 1;
-  }
+  for (const auto& [a, b] : near()) with_geom_1 += a == 1 || b == 1;
   EXPECT_EQ(with_geom_1, 6);
 }
 
-// So many pairs that they are swept, against the same in heaps of few, which are compared one by
-// one.
+// Bodies of all kinds in a heap, in a world of solids that do not move, with planes, masks, an
+// exclude, a <pair> and a volcontact/pair: so many that they are swept.
+std::string heap() {
+  const char* shapes[] = {"type=\"sphere\" size=\".1\"", "type=\"box\" size=\".2 .05 .1\"",
+                          "type=\"capsule\" size=\".05 .2\""};
+  std::string world =
+      "<geom type=\"plane\" size=\"1 1 1\" pos=\"0 0 -.4\"/>"
+      "<body mocap=\"true\" name=\"hand\" pos=\"0 0 .2\"><geom type=\"box\" size=\".2 .1 .3\"/></body>"
+      "<body mocap=\"true\"><geom type=\"plane\" size=\"1 1 1\" pos=\"0 0 -.3\" contype=\"2\" "
+      "conaffinity=\"2\"/></body>";
+  for (int i = 0; i < 120; ++i) {
+    const std::string mask = i % 7 == 0 ? " contype=\"2\" conaffinity=\"2\"" : "";
+    const std::string number = std::to_string(i);
+    const std::string geom =
+        "<geom name=\"g" + number + "\" " + std::string(shapes[i % 3]) + mask;
+    if (i % 4 == 3) {
+      world += geom + " pos=\"" + std::to_string(.02 * i - 1.2) + " " +
+               std::to_string(.3 * (i % 5) - .6) + " " + std::to_string(.1 * (i % 9) - .4) +
+               "\"/>";
+    } else {
+      world += "<body name=\"b" + number + "\"><freejoint/>" + geom + "/></body>";
+    }
+  }
+  return "<mujoco><worldbody>" + world +
+         "</worldbody><contact><exclude body1=\"b0\" body2=\"b14\"/>"
+         "<pair geom1=\"g7\" geom2=\"g1\"/></contact><custom><tuple name=\"volcontact/pair/p\">"
+         "<element objtype=\"geom\" objname=\"g14\"/><element objtype=\"geom\" objname=\"g11\"/>"
+         "</tuple></custom></mujoco>";
+}
+
+// What a comparison of all leaves, with the bounds of each solid made for it.
+std::vector<PairId> compared(const PairRules& rules, const std::vector<Shape>& solids,
+                             const mjData* d) {
+  std::vector<PairId> near;
+  rules.for_each([&](const GeomPair& pair) {
+    const auto solid = [&](int geom) { return solids[static_cast<std::size_t>(geom)]; };
+    int a = pair.a, b = pair.b;
+    if (std::holds_alternative<HalfSpace>(solid(b))) std::swap(a, b);
+    const Pose X_WA = pose_of_geom(d, a), X_WB = pose_of_geom(d, b);
+    bool apart = false;
+    if (std::holds_alternative<HalfSpace>(solid(a))) {
+      const Vec3 normal = X_WA.rotation.col(2), down = -(X_WB.rotation.transpose() * normal);
+      const double reach =
+          std::visit([&](const auto& s) { return s.support_height(down); }, solid(b));
+      apart = normal.dot(X_WB.translation - X_WA.translation) >= reach;
+    } else {
+      apart = are_apart(world_bounds(solid(a), X_WA), world_bounds(solid(b), X_WB));
+    }
+    if (!apart) near.push_back(rules.id(a, b));
+    return true;
+  });
+  return near;
+}
+
 TEST(Cull, SweptPairsAreThoseOfAComparisonOfAll) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> uniform;
-  std::string bodies = "<geom type=\"plane\" size=\"1 1 1\"/>";
-  const char* shapes[] = {"type=\"sphere\" size=\".1\"", "type=\"box\" size=\".2 .05 .1\"",
-                          "type=\"capsule\" size=\".05 .2\""};
-  for (int i = 0; i < 90; ++i) {
-    const std::string mask = i % 7 == 0 ? " contype=\"2\" conaffinity=\"2\"" : "";
-    bodies += "<body><freejoint/><geom " + std::string(shapes[i % 3]) + mask + "/></body>";
-  }
-  const testing::ModelPointer m =
-      testing::compile("<mujoco><worldbody>" + bodies + "</worldbody></mujoco>");
+  const testing::ModelPointer m = testing::compile(heap());
   const testing::DataPointer d = testing::make_data(m);
-  const std::vector<GeomPair> pairs = pairs_that_can_touch(m.get(), read_scene_keys(m.get()));
-  ASSERT_GT(pairs.size(), 2500u);
+  const PairRules rules(m.get(), read_scene_keys(m.get()));
+  ASSERT_GT(rules.count(), 4000u);
   std::vector<Shape> solids;
   for (int geom = 0; geom < m->ngeom; ++geom) solids.push_back(solid_of_geom(m.get(), geom));
-  const Cull swept(pairs, solids);
-  Cull::Scratch scratch, other;
+  const Cull swept(rules, solids);
+  Cull::Scratch scratch;
   std::size_t found = 0;
   for (int trial = 0; trial < 200; ++trial) {
     const double spread = trial % 2 == 0 ? 2.0 : 0.5;
@@ -215,23 +172,36 @@ TEST(Cull, SweptPairsAreThoseOfAComparisonOfAll) {
       const double number = uniform(random) - 0.5;
       d->qpos[i] = trial % 10 > 6 ? d->qpos[i] + 0.01 * number : spread * number;
     }
+    d->mocap_pos[2] = uniform(random);
+    if (trial % 40 == 39) m->geom_pos[3 * (m->ngeom - 1)] += 0.3;  // of the world
     mj_forward(m.get(), d.get());
     if (trial % 50 == 49) d->geom_xpos[3 * 17 + 1] = std::numeric_limits<double>::quiet_NaN();
     swept.run(d.get(), scratch);
-    std::vector<int> expected;
-    constexpr std::size_t kHeap = 1000;
-    for (std::size_t first = 0; first < pairs.size(); first += kHeap) {
-      const std::vector<GeomPair> heap(
-          pairs.begin() + static_cast<std::ptrdiff_t>(first),
-          pairs.begin() + static_cast<std::ptrdiff_t>(std::min(first + kHeap, pairs.size())));
-      Cull(heap, solids).run(d.get(), other);
-      for (const int i : other.near) expected.push_back(i + static_cast<int>(first));
-    }
-    ASSERT_EQ(scratch.near, expected) << trial;
-    found += expected.size();
+    ASSERT_EQ(scratch.near, compared(rules, solids, d.get())) << trial;
+    found += scratch.near.size();
   }
   EXPECT_GT(found, 1000u);
 }
 
+// Memory that another scene left is that of another scene.
+TEST(Cull, ScratchServesScenesInTurn) {
+  const testing::ModelPointer one = testing::compile(heap()), two = testing::compile(heap());
+  for (int i = 0; i < 3 * two->ngeom; ++i) two->geom_size[i] *= 1.5;
+  Cull::Scratch scratch;
+  std::vector<std::vector<PairId>> near;
+  for (const auto& m : {one.get(), two.get(), one.get()}) {
+    const std::unique_ptr<mjData, void (*)(mjData*)> d(mj_makeData(m), mj_deleteData);
+    mj_forward(m, d.get());
+    const PairRules rules(m, read_scene_keys(m));
+    std::vector<Shape> solids;
+    for (int geom = 0; geom < m->ngeom; ++geom) solids.push_back(solid_of_geom(m, geom));
+    Cull(rules, solids).run(d.get(), scratch);
+    EXPECT_EQ(scratch.near, compared(rules, solids, d.get()));
+    near.push_back(scratch.near);
+  }
+  EXPECT_EQ(near[0], near[2]);
+  EXPECT_NE(near[0], near[1]);
+}
+
 }  // namespace
-}  // namespace volcontact::adaptor::pair_list_test
+}  // namespace volcontact::adaptor::cull_test
