@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "adaptor/mujoco/sizes.h"
 #include "volcontact/base/disjoint_sets.h"
 #include "volcontact/pair/interference.h"
 
@@ -14,8 +15,6 @@ namespace volcontact::adaptor {
 namespace {
 
 constexpr int kAwake = -(1 + mjMINAWAKE);  // a tree that has not begun to rest
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 struct Sides {
   int a, b;  // trees; -1 for a body that no joint moves
@@ -36,7 +35,7 @@ bool overlap(const SceneContact& contact, const mjData* d, const PairContact& pa
   const Pose X_WA = pose_of_geom(d, pair.geoms.a), X_WB = pose_of_geom(d, pair.geoms.b);
   InterferenceOptions options;
   options.engine = pair.engine;
-  interference(contact.solids()[at(pair.geoms.a)], contact.solids()[at(pair.geoms.b)],
+  interference(contact.solids()[size(pair.geoms.a)], contact.solids()[size(pair.geoms.b)],
                X_WA.inverse() * X_WB, options, workspace.engines, workspace.interference);
   return workspace.interference.total.touching();
 }
@@ -104,7 +103,7 @@ void hold_together(const SceneContact& contact, const mjModel* m, mjData* d,
                    EvaluationScratch& scratch) noexcept {
   if (!sleep_enabled(m)) return;
   std::vector<int>& sets = scratch.trees;
-  make_sets(sets, at(static_cast<int>(m->ntree)));
+  make_sets(sets, size(static_cast<int>(m->ntree)));
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     for (std::size_t i = 0; i < scratch.reports[k].sites.size(); ++i) {
       const auto [a, b] = trees_of(m, scratch.geoms_of_site(contact, k, i));

@@ -6,10 +6,10 @@
 #include <cstring>
 #include <numeric>
 
+#include "adaptor/mujoco/sizes.h"
+
 namespace volcontact::adaptor {
 namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 // Whether some of the solid at X_WG is below the plane geom's surface.
 bool reaches_plane(const mjData* d, int plane, const Shape& solid, const Pose& X_WG) noexcept {
@@ -34,7 +34,7 @@ Cull::Cull(const PairRules& rules, const std::vector<Shape>& solids)
   for (const int geom : rules.touching()) {
     const bool is_plane = std::holds_alternative<HalfSpace>(solid_of(geom));
     (is_plane ? planes_ : moving_).push_back(geom);
-    if (is_plane) with_plane += at(rules.partners(geom));
+    if (is_plane) with_plane += size(rules.partners(geom));
   }
   constexpr std::size_t kFew = 2000;  // comparisons that cost less than a sort
   is_swept_ = rules.count() > kFew + with_plane || rules.touching().size() > kFew;
@@ -42,11 +42,11 @@ Cull::Cull(const PairRules& rules, const std::vector<Shape>& solids)
 }
 
 void Cull::list_pairs() {
-  std::vector<int> place(at(rules_->geoms()), -1);
-  for (std::size_t i = 0; i < moving_.size(); ++i) place[at(moving_[i])] = static_cast<int>(i);
+  std::vector<int> place(size(rules_->geoms()), -1);
+  for (std::size_t i = 0; i < moving_.size(); ++i) place[size(moving_[i])] = static_cast<int>(i);
   rules_->for_each([&](const GeomPair& pair) {
     const PairId id = rules_->id(pair.a, pair.b);
-    const int a = place[at(pair.a)], b = place[at(pair.b)];
+    const int a = place[size(pair.a)], b = place[size(pair.b)];
     if (a >= 0 && b >= 0) {
       between_.push_back({id, a, b});
     } else if (a >= 0 || b >= 0) {
@@ -72,13 +72,13 @@ void Cull::tell_fixed_apart() {
 
 void Cull::compare_all(const mjData* d, Scratch& scratch) const noexcept {
   for (const Listed& pair : with_plane_) {
-    const int geom = moving_[at(pair.b)];
+    const int geom = moving_[size(pair.b)];
     if (reaches_plane(d, pair.a, solid_of(geom), pose_of_geom(d, geom))) {
       scratch.near.push_back(pair.id);
     }
   }
   for (const Listed& pair : between_) {
-    if (are_apart(scratch.boxes[at(pair.a)], scratch.boxes[at(pair.b)])) continue;
+    if (are_apart(scratch.boxes[size(pair.a)], scratch.boxes[size(pair.b)])) continue;
     scratch.near.push_back(pair.id);
   }
 }
@@ -120,7 +120,7 @@ void Cull::sort_moving(Scratch& scratch) const noexcept {
     sorted.resize(count);
     std::iota(sorted.begin(), sorted.end(), 0);
   }
-  const auto begins_before = [&](int i, int j) { return scratch.low[at(i)] < scratch.low[at(j)]; };
+  const auto begins_before = [&](int i, int j) { return scratch.low[size(i)] < scratch.low[size(j)]; };
   // They are nearly in order as a rule: bodies move little in a step.
   std::size_t moves = 0;
   for (std::size_t i = 1; i < count && moves <= 4 * count; ++i) {
@@ -133,8 +133,8 @@ void Cull::sort_moving(Scratch& scratch) const noexcept {
   scratch.ordered.resize(count);
   scratch.ends.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    scratch.ordered[i] = scratch.boxes[at(sorted[i])];
-    scratch.ends[i] = ends_of(at(sorted[i]));
+    scratch.ordered[i] = scratch.boxes[size(sorted[i])];
+    scratch.ends[i] = ends_of(size(sorted[i]));
   }
 }
 
@@ -147,7 +147,7 @@ void Cull::sweep(Scratch& scratch) const noexcept {
     const double end = scratch.ends[i].second;
     for (std::size_t j = i + 1; j < count && scratch.ends[j].first < end; ++j) {
       if (are_apart(box, scratch.ordered[j])) continue;
-      const int a = moving_[at(scratch.sorted[i])], b = moving_[at(scratch.sorted[j])];
+      const int a = moving_[size(scratch.sorted[i])], b = moving_[size(scratch.sorted[j])];
       if (rules_->admits(a, b)) scratch.near.push_back(rules_->id(a, b));
     }
   }
@@ -158,9 +158,9 @@ void Cull::follow_fixed(const mjData* d, Scratch::Fixed& fixed) const noexcept {
   const auto are_same = [&](const mjtNum* now, const std::vector<mjtNum>& then, int numbers) {
     const mjtNum* kept = then.data();
     return std::all_of(runs_of_fixed_.begin(), runs_of_fixed_.end(), [&](const auto& run) {
-      const std::size_t length = at(numbers) * at(run.second);
+      const std::size_t length = size(numbers) * size(run.second);
       const bool same =
-          std::memcmp(now + at(numbers) * at(run.first), kept, length * sizeof(mjtNum)) == 0;
+          std::memcmp(now + size(numbers) * size(run.first), kept, length * sizeof(mjtNum)) == 0;
       kept += length;
       return same;
     });
@@ -173,9 +173,9 @@ void Cull::follow_fixed(const mjData* d, Scratch::Fixed& fixed) const noexcept {
   fixed.positions.clear();
   fixed.rotations.clear();
   for (const auto& [first, count] : runs_of_fixed_) {
-    const mjtNum *p = d->geom_xpos + 3 * at(first), *r = d->geom_xmat + 9 * at(first);
-    fixed.positions.insert(fixed.positions.end(), p, p + 3 * at(count));
-    fixed.rotations.insert(fixed.rotations.end(), r, r + 9 * at(count));
+    const mjtNum *p = d->geom_xpos + 3 * size(first), *r = d->geom_xmat + 9 * size(first);
+    fixed.positions.insert(fixed.positions.end(), p, p + 3 * size(count));
+    fixed.rotations.insert(fixed.rotations.end(), r, r + 9 * size(count));
   }
   fixed.boxes.clear();
   for (const int geom : fixed_) {
@@ -189,8 +189,8 @@ void Cull::meet_fixed(const mjData* d, Scratch& scratch) const noexcept {
   follow_fixed(d, scratch.fixed);
   for (std::size_t i = 0; i < moving_.size(); ++i) {
     scratch.fixed.tree.find(scratch.boxes[i], [&](int other) {
-      if (are_apart(scratch.boxes[i], scratch.fixed.boxes[at(other)])) return;
-      const int a = moving_[i], b = fixed_[at(other)];
+      if (are_apart(scratch.boxes[i], scratch.fixed.boxes[size(other)])) return;
+      const int a = moving_[i], b = fixed_[size(other)];
       if (rules_->admits(a, b)) scratch.near.push_back(rules_->id(a, b));
     });
   }

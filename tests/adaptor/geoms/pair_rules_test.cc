@@ -125,7 +125,7 @@ std::string trees(std::mt19937& random) {
     const int depth = 1 + below(4);
     for (int level = 0; level < depth; ++level) {
       bodies += "<body name=\"b" + std::to_string(count++) + "\">";
-      if (below(3) > 0) bodies += "<joint axis=\"0 1 0\"/>";
+      if (level == 0 || below(3) > 0) bodies += "<joint axis=\"0 1 0\"/>";
       for (int i = below(3); i >= 0; --i) bodies += geom();
       ends += "</body>";
     }

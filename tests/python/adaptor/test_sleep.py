@@ -72,8 +72,9 @@ def test_stacks_fall_asleep_are_hit_and_wake():
         run_until(model, data, lambda: abs(data.qvel[hit + 2]) > 1e-3)
         of_second = model.jnt_qposadr[model.body("b0").jntadr[0]]
         assert np.array_equal(data.qpos[of_second : of_second + 21], lying[of_second:][:21])
-        run_until(model, data, lambda: not awake(model, data), 20000)
-        assert np.all(data.qvel == 0.0)
+        run_until(model, data, lambda: awake(model, data) <= {"ball"})  # which rolls on
+        boxes = data.qvel.reshape(-1, 6)[:-1]
+        assert np.all(boxes == 0.0)
 
 
 def test_a_hit_is_that_of_bodies_that_never_slept():
@@ -100,18 +101,23 @@ def test_energy_does_not_leap_when_bodies_fall_asleep():
     data = mujoco.MjData(model)
     with vc.attach(model, material=STIFF) as contact:
         run_until(model, data, lambda: not awake(model, data))
-        before = contact.energy(data)
-        assert before.elastic > 0.0
+        last = contact.energy(data)  # at the begin of the step, all awake
+        energies = []
         for _ in range(500):
             mujoco.mj_step(model, data)
-        after = contact.energy(data)
-    assert after.elastic == pytest.approx(before.elastic, rel=1e-6)
-    assert after.dissipated == pytest.approx(before.dissipated, rel=1e-9)
-    assert after.numerical == pytest.approx(before.numerical, abs=1e-9)
+            energies.append(contact.energy(data))
+    assert last.elastic > 1e-5
+    for energy in energies:
+        # What the step itself still did: the last speeds are below 1e-4 m/s.
+        assert energy.elastic == pytest.approx(last.elastic, rel=1e-3)
+        assert energy.numerical == pytest.approx(last.numerical, abs=1e-3 * last.elastic)
+        assert energy.dissipated == pytest.approx(last.dissipated, rel=1e-6)
+    assert energies[-1].elastic == energies[1].elastic
+    assert energies[-1].dissipated == energies[1].dissipated
+    assert energies[-1].released == last.released
 
 
 def test_a_copy_of_data_that_sleep_goes_on_alike():
-    model = mujoco.MjModel.from_xml_string(stacks(BALL))
     model = vc.load(stacks(BALL), material=STIFF)
     data = mujoco.MjData(model)
     with vc.attach(model, material=STIFF):
