@@ -37,7 +37,7 @@ struct AttachedScene {
   const mjModel* model;
   Attacher attacher;
   bool contact_was_disabled;
-  bool claims_pairs;  // one by one, and leaves MuJoCo's own contact on
+  bool claims_pairs;                     // one by one, and leaves MuJoCo's own contact on
   std::vector<VariantPointer> variants;  // the latest last
   std::shared_ptr<const SceneContact> last_valid;
 };

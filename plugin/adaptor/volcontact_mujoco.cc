@@ -136,8 +136,7 @@ FoundSite find_site(const EvaluationScratch& scratch, int site) {
     const auto& sites = scratch.reports[k].sites;
     if (left < sites.size()) {
       const JoinedPair* joined = scratch.joined.at(k);
-      return {&scratch.pair(k), &sites[left].metrics,
-              joined ? &joined->solids : nullptr};
+      return {&scratch.pair(k), &sites[left].metrics, joined ? &joined->solids : nullptr};
     }
     left -= sites.size();
   }

@@ -32,7 +32,7 @@ typedef struct volcontact_site_ {
   long long pair;  // number of the pair, as in the description: geom_a * ngeom + geom_b
   int geom_a;
   int geom_b;
-  int status;  // 0 ok; others as in volcontact/metrics/volume_metrics.h
+  int status;             // 0 ok; others as in volcontact/metrics/volume_metrics.h
   double volume;          // of the interference [m^3]
   double centroid[3];     // of the volume [m]
   double normal[3];       // on a, from b to a

@@ -152,8 +152,7 @@ bool keep_sites(const SceneContact& contact, const double* committed, double* st
   return std::all_of(scratch.kept.begin(), scratch.kept.end(), [&](const auto& row) {
     const auto& [pair, k, start] = row;
     if (k == EvaluationScratch::kAsleep) return pool.copy(before, pair, start);
-    return pool.push(pair, &scratch.reports[k].memory[start],
-                     scratch.pair(k).model.row_size());
+    return pool.push(pair, &scratch.reports[k].memory[start], scratch.pair(k).model.row_size());
   });
 }
 

@@ -72,8 +72,8 @@ void evaluate_one(const SceneContact& contact, const mjModel* m, const mjData* d
   memory.elapsed = before.elapsed;
   if (before.committed && pair.model.row_size() > 0) {
     const SitePool<const double> pool(before.committed, contact.sites());
-    memory =
-        joined ? joined->memory(pool, before.elapsed) : pool.rows_of(scratch.cull.near[index], before.elapsed);
+    memory = joined ? joined->memory(pool, before.elapsed)
+                    : pool.rows_of(scratch.cull.near[index], before.elapsed);
   }
   ContactReport& report = scratch.reports[index];
   report.keeps_inputs = before.keeps_inputs;

@@ -17,7 +17,7 @@ struct JoinedPair {
   /// In the frames of the pairs.
   GeometricPair solids{Sphere({}), Sphere({}), Pose{}, Pose{}};
   std::vector<PairId> site_pairs;  ///< of each site, the pair whose solids have its centroid
-  std::vector<double> rows;     ///< of the sites before, where several of the pairs left some
+  std::vector<double> rows;        ///< of the sites before, where several of the pairs left some
 
   /// The sites that the pairs left.
   SiteMemory memory(const SitePool<const double>& pool, double elapsed);

@@ -19,11 +19,11 @@ namespace volcontact::adaptor {
 
 /// Memory of one evaluation; one per thread, reused from call to call.
 struct EvaluationScratch {
-  Cull::Scratch cull;                  ///< `near`: the pairs evaluated
+  Cull::Scratch cull;                        ///< `near`: the pairs evaluated
   std::vector<const PairContact*> contacts;  ///< their contact models
   std::vector<PairId> asleep;  ///< pairs near each other of which no side is awake, ascending
   std::vector<int> trees;      ///< sets of trees that touch
-  JoinedPairs joined;                  ///< those of them that stand for several
+  JoinedPairs joined;          ///< those of them that stand for several
   std::vector<ContactReport> reports;  ///< of the pairs in `near`, finite numbers only
   std::vector<char> invalid;           ///< whether a report was left out, having no numbers
   std::vector<char> stiff;             ///< of all sites, whether an explicit step cannot hold it

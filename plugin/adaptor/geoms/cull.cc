@@ -120,7 +120,9 @@ void Cull::sort_moving(Scratch& scratch) const noexcept {
     sorted.resize(count);
     std::iota(sorted.begin(), sorted.end(), 0);
   }
-  const auto begins_before = [&](int i, int j) { return scratch.low[size(i)] < scratch.low[size(j)]; };
+  const auto begins_before = [&](int i, int j) {
+    return scratch.low[size(i)] < scratch.low[size(j)];
+  };
   // They are nearly in order as a rule: bodies move little in a step.
   std::size_t moves = 0;
   for (std::size_t i = 1; i < count && moves <= 4 * count; ++i) {

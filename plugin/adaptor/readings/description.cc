@@ -65,7 +65,8 @@ void write_materials(const mjModel* m, const SceneContact& contact, JsonText& js
     json.name("geoms").begin_array();
     for (int geom = 0; geom < m->ngeom; ++geom) {
       const bool has_it = keys.material_of_geom[static_cast<std::size_t>(geom)] == material;
-      if (has_it && (all || contact.rules().can_touch(geom))) json.value(label(m, mjOBJ_GEOM, geom));
+      if (has_it && (all || contact.rules().can_touch(geom)))
+        json.value(label(m, mjOBJ_GEOM, geom));
     }
     json.end_array();
   };

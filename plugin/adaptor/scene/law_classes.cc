@@ -35,8 +35,8 @@ const LawClasses::Laws& LawClasses::of(const GeomPair& pair) const {
   const std::lock_guard lock(mutex_);
   const auto found = known_.find(key);
   if (found != known_.end()) return found->second;
-  PairLaws made = combine(side(pair.a, std::get<1>(key)), side(pair.b, std::get<3>(key)),
-                          listed(pair));
+  PairLaws made =
+      combine(side(pair.a, std::get<1>(key)), side(pair.b, std::get<3>(key)), listed(pair));
   made.laws.formulation = keys_->options.formulation;
   return known_.emplace(key, Laws{std::move(made.laws), made.stiffness}).first->second;
 }

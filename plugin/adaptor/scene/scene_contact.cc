@@ -28,8 +28,8 @@ namespace {
 constexpr int kInnerThreads = 0;
 
 // Takes over and adds to `meshes`, by number; copies share their data.
-std::vector<Shape> solids_of(const mjModel* m, const SceneKeys& keys,
-                             const PairRules& rules, std::map<int, Shape>& meshes) {
+std::vector<Shape> solids_of(const mjModel* m, const SceneKeys& keys, const PairRules& rules,
+                             std::map<int, Shape>& meshes) {
   std::vector<Shape> solids(static_cast<std::size_t>(m->ngeom), Shape(HalfSpace()));
   for (const int geom : rules.touching()) {
     Shape& solid = solids[static_cast<std::size_t>(geom)];
@@ -114,9 +114,10 @@ void SceneContact::find_room(const mjModel* m, const SceneContact* before) {
   if (is_in_plugin() && !keys_.has_target) keys_.options.target = Target::kPassive;
   // MuJoCo keeps awake what forces are applied to.
   if (sleep_enabled(m) && !keys_.has_target) keys_.options.target = Target::kPassive;
-  require(!sleep_enabled(m) || options().target == Target::kPassive,
-          "the model has <flag sleep=\"enable\"/>, and MuJoCo keeps awake what forces are applied to: "
-          "nothing that lies would fall asleep; use volcontact/option/target/passive");
+  require(
+      !sleep_enabled(m) || options().target == Target::kPassive,
+      "the model has <flag sleep=\"enable\"/>, and MuJoCo keeps awake what forces are applied to: "
+      "nothing that lies would fall asleep; use volcontact/option/target/passive");
   const int needed = layout(m).size();
   if (is_in_plugin()) {
     require(plugin_.size >= needed, "the state of the plugin has " + std::to_string(plugin_.size) +

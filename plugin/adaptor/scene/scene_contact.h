@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "adaptor/geoms/cull.h"
 #include "adaptor/geoms/flush_groups.h"
 #include "adaptor/keys/materials.h"
 #include "adaptor/keys/scene_keys.h"
@@ -13,7 +14,6 @@
 #include "adaptor/memory/site_pool.h"
 #include "adaptor/memory/userdata_layout.h"
 #include "adaptor/mujoco/plugin_room.h"
-#include "adaptor/geoms/cull.h"
 #include "adaptor/scene/law_classes.h"
 #include "adaptor/scene/pair_contact.h"
 #include "adaptor/scene/pair_rates.h"

@@ -107,18 +107,17 @@ std::string heap() {
                           "type=\"capsule\" size=\".05 .2\""};
   std::string world =
       "<geom type=\"plane\" size=\"1 1 1\" pos=\"0 0 -.4\"/>"
-      "<body mocap=\"true\" name=\"hand\" pos=\"0 0 .2\"><geom type=\"box\" size=\".2 .1 .3\"/></body>"
+      "<body mocap=\"true\" name=\"hand\" pos=\"0 0 .2\"><geom type=\"box\" size=\".2 .1 "
+      ".3\"/></body>"
       "<body mocap=\"true\"><geom type=\"plane\" size=\"1 1 1\" pos=\"0 0 -.3\" contype=\"2\" "
       "conaffinity=\"2\"/></body>";
   for (int i = 0; i < 120; ++i) {
     const std::string mask = i % 7 == 0 ? " contype=\"2\" conaffinity=\"2\"" : "";
     const std::string number = std::to_string(i);
-    const std::string geom =
-        "<geom name=\"g" + number + "\" " + std::string(shapes[i % 3]) + mask;
+    const std::string geom = "<geom name=\"g" + number + "\" " + std::string(shapes[i % 3]) + mask;
     if (i % 4 == 3) {
       world += geom + " pos=\"" + std::to_string(.02 * i - 1.2) + " " +
-               std::to_string(.3 * (i % 5) - .6) + " " + std::to_string(.1 * (i % 9) - .4) +
-               "\"/>";
+               std::to_string(.3 * (i % 5) - .6) + " " + std::to_string(.1 * (i % 9) - .4) + "\"/>";
     } else {
       world += "<body name=\"b" + number + "\"><freejoint/>" + geom + "/></body>";
     }

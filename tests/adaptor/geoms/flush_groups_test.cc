@@ -160,17 +160,19 @@ TEST(FlushGroups, AFamilyWithAPairOfItsOwnIsNone) {
   const std::string tiles = box("a", "0 0 0") + box("b", "1 0 0");
   EXPECT_TRUE(are_touched_together(tiles));
   EXPECT_FALSE(are_touched_together(
-      tiles, "<contact><pair geom1=\"a\" geom2=\"ball\" friction=\".1 .1 .005 .0001 .0001\"/>"
-             "</contact>"));
+      tiles,
+      "<contact><pair geom1=\"a\" geom2=\"ball\" friction=\".1 .1 .005 .0001 .0001\"/>"
+      "</contact>"));
   // A second ball has one all the same.
   EXPECT_TRUE(are_touched_together(
       tiles + "<body pos=\"0 0 5\"><freejoint/><geom size=\".1\"/></body>",
       "<contact><pair geom1=\"a\" geom2=\"ball\" friction=\".1 .1 .005 .0001 .0001\"/>"
       "</contact>"));
   // One ball for each tile.
-  EXPECT_FALSE(are_touched_together(
-      box("a", "0 0 0") + box("b", "1 0 0", "contype=\"2\" conaffinity=\"2\"") +
-      "<body pos=\"0 0 5\"><freejoint/><geom size=\".1\" contype=\"2\" conaffinity=\"2\"/></body>"));
+  EXPECT_FALSE(are_touched_together(box("a", "0 0 0") +
+                                    box("b", "1 0 0", "contype=\"2\" conaffinity=\"2\"") +
+                                    "<body pos=\"0 0 5\"><freejoint/><geom size=\".1\" "
+                                    "contype=\"2\" conaffinity=\"2\"/></body>"));
 }
 
 }  // namespace

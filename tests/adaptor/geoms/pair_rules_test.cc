@@ -146,8 +146,8 @@ std::string trees(std::mt19937& random) {
     }
     const int c = below(static_cast<unsigned>(count)), e = below(static_cast<unsigned>(count));
     if (c != e && excluded.insert(std::minmax(c, e)).second) {
-      contact += "<exclude body1=\"b" + std::to_string(c) + "\" body2=\"b" + std::to_string(e) +
-                 "\"/>";
+      contact +=
+          "<exclude body1=\"b" + std::to_string(c) + "\" body2=\"b" + std::to_string(e) + "\"/>";
     }
   }
   return "<mujoco><compiler autolimits=\"true\"/><default><geom mass=\"1\"/></default><worldbody>"

@@ -30,7 +30,8 @@ TEST(PairStore, MakesEachPairOnceWhateverManyThreadsAsk) {
   for (auto& mine : seen) {
     threads.emplace_back([&] {
       for (std::size_t i = 0; i < 500; ++i) {
-        mine[i] = &store.get(PairId(i * i * 1000003), [&] { return ++made, ball_on_plane(static_cast<int>(i)); });
+        mine[i] = &store.get(PairId(i * i * 1000003),
+                             [&] { return ++made, ball_on_plane(static_cast<int>(i)); });
       }
     });
   }
