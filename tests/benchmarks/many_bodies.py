@@ -132,7 +132,7 @@ def main() -> None:
         with (RESULTS / f"{name}.csv").open("w", newline="") as file:
             writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
             writer.writeheader()
-            writer.writerows({k: f"{v:.4g}" for k, v in row.items()} for row in rows)
+            writer.writerows({k: f"{v:.5g}" for k, v in row.items()} for row in rows)
 
 
 if __name__ == "__main__":
