@@ -148,7 +148,7 @@ const Variant* find_variant(const mjModel* m) {
 
 std::vector<std::string> attach_scene(mjModel* m, const std::vector<GivenKey>& given,
                                       Attacher attacher) {
-  require(kCanWake || !sleep_enabled(m),
+  require(can_wake() || !sleep_enabled(m),
           "the model has <flag sleep=\"enable\"/>: under MuJoCo " + version_text(mjVERSION_HEADER) +
               " volumetric contact never wakes a sleeping body; disable it, or use 4.0.0 or later");
   const auto contact = make_contact(m, given);

@@ -16,6 +16,8 @@ namespace {
 
 constexpr int kAwake = -(1 + mjMINAWAKE);  // a tree that has not begun to rest
 
+bool sleeps(const mjModel* m) { return sleep_enabled(m) && can_wake(); }
+
 struct Sides {
   int a, b;  // trees; -1 for a body that no joint moves
 };
@@ -58,19 +60,20 @@ bool is_moving(const mjModel* m, const mjData* d, int tree) {
 
 bool wake_what_is_touched(const SceneContact& contact, const mjModel* m, mjData* d,
                           EvaluationScratch& scratch) noexcept {
-  if (!sleep_enabled(m) || d->ntree_awake == m->ntree) return false;
+  if (!sleeps(m) || d->ntree_awake == m->ntree) return false;
   contact.cull().run(d, scratch.cull);
   if (scratch.workspaces.empty()) scratch.workspaces.resize(1);
-  const auto sleeps = [d](int tree) { return tree >= 0 && d->tree_asleep[tree] >= 0; };
+  const auto is_asleep = [d](int tree) { return tree >= 0 && d->tree_asleep[tree] >= 0; };
   bool woke = false;
   for (bool again = true; again;) {
     again = false;
     for (const PairId id : scratch.cull.near) {
       const PairContact& pair = contact.pair(id);
       const auto [a, b] = trees_of(m, pair.geoms);
-      if (sleeps(a) == sleeps(b)) continue;
-      const int sleeper = sleeps(a) ? a : b, other = sleeps(a) ? b : a;
-      if (other < 0 && !is_driven(m, d, sleeps(a) ? pair.geoms.b : pair.geoms.a, scratch)) continue;
+      if (is_asleep(a) == is_asleep(b)) continue;
+      const int sleeper = is_asleep(a) ? a : b, other = is_asleep(a) ? b : a;
+      if (other < 0 && !is_driven(m, d, is_asleep(a) ? pair.geoms.b : pair.geoms.a, scratch))
+        continue;
       if (!overlap(contact, d, pair, scratch.workspaces.front())) continue;
       wake(d, sleeper, other < 0 ? kAwake : d->tree_asleep[other]);
       woke = again = true;
@@ -88,7 +91,7 @@ void repeat_step_so_far(const mjModel* m, mjData* d) {
 void set_aside_sleeping(const SceneContact& contact, const mjModel* m, const mjData* d,
                         EvaluationScratch& scratch) noexcept {
   scratch.asleep.clear();
-  if (!sleep_enabled(m) || d->ntree_awake == m->ntree) return;
+  if (!sleeps(m) || d->ntree_awake == m->ntree) return;
   const auto rests = [&](int geom) { return d->body_awake[m->geom_bodyid[geom]] != mjS_AWAKE; };
   std::vector<PairId>& near = scratch.cull.near;
   const auto first_asleep = std::stable_partition(near.begin(), near.end(), [&](PairId id) {
@@ -101,7 +104,7 @@ void set_aside_sleeping(const SceneContact& contact, const mjModel* m, const mjD
 
 void hold_together(const SceneContact& contact, const mjModel* m, mjData* d,
                    EvaluationScratch& scratch) noexcept {
-  if (!sleep_enabled(m)) return;
+  if (!sleeps(m)) return;
   std::vector<int>& sets = scratch.trees;
   make_sets(sets, size(static_cast<int>(m->ntree)));
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {

@@ -19,7 +19,7 @@ extern "C" {
 [[gnu::weak]] int mjd_freeMhat(const mjModel* m, const mjData* d, int joint, mjtNum step,
                                mjtNum out[36]);
 #if mjVERSION_HEADER >= 4000000
-void mj_updateSleep(const mjModel* m, mjData* d);
+[[gnu::weak]] void mj_updateSleep(const mjModel* m, mjData* d);
 #endif
 #if mjVERSION_HEADER < 233
 [[gnu::weak]] void mj_makeMSparse(const mjModel* m, mjData* d, int* rownnz, int* rowadr,
@@ -156,7 +156,7 @@ void for_row_of_constraint(const mjModel* m, const mjData* d, int i, Use use) {
   }
 }
 
-/// Whether bodies may fall asleep, and whether we can wake them in this release.
+/// Whether bodies may fall asleep.
 inline bool sleep_enabled([[maybe_unused]] const mjModel* m) {
 #if mjVERSION_HEADER >= 340
   return (m->opt.enableflags & mjENBL_SLEEP) != 0;
@@ -165,7 +165,14 @@ inline bool sleep_enabled([[maybe_unused]] const mjModel* m) {
 #endif
 }
 
-inline constexpr bool kCanWake = mjVERSION_HEADER >= 4000000;
+/// Whether we can wake them in this release.
+inline bool can_wake() {
+#if mjVERSION_HEADER >= 4000000
+  return mj_updateSleep != nullptr;
+#else
+  return false;
+#endif
+}
 
 inline bool has_flexes([[maybe_unused]] const mjModel* m) {
 #if mjVERSION_HEADER >= 300

@@ -241,7 +241,8 @@ void SceneContact::check_engine(const mjModel* m, const GeomPair& geoms) {
 
 PairContact SceneContact::make_pair(PairId id) const {
   GeomPair geoms;
-  require(rules_.find(id, geoms), "pair " + std::to_string(id) + " is none of the scene");
+  require(rules_.find(id, geoms), "pair " + std::to_string(id) + " is none of the " +
+                                      std::to_string(rules_.count()) + " of the scene");
   return make_pair(geoms);
 }
 
