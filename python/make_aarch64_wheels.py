@@ -25,7 +25,8 @@ MACHINE = "aarch64"
 TOOLCHAIN = ROOT / "python" / "toolchains" / "aarch64-linux-gnu.cmake"
 LIBRARIES = Path("/usr/aarch64-linux-gnu/lib")  # of the cross compiler
 EMULATOR = Path("/usr/bin/qemu-aarch64-static")
-SYSTEM = ("python3", "python3-pip", "coreutils", "bash")  # of the machine the wheel is tried on
+# Of the machine that the wheel is tried on; NumPy and MuJoCo want the library of C++.
+SYSTEM = ("python3", "python3-pip", "libstdc++6", "coreutils", "bash")
 SUITE, PYTHON = "bookworm", "3.11"  # and the CPython that it has
 # What its pip takes: of this C library and of older ones.
 PLATFORMS = [f"manylinux_2_{minor}_{MACHINE}" for minor in range(17, 37)]
@@ -123,7 +124,7 @@ def try_wheel(out: Path, system: Path, wheel: Path, release: str) -> dict[str, o
 
 def there(system: Path, *arguments: object) -> str:
     """What Python prints on that machine."""
-    python = ["chroot", system, f"/usr/bin/{EMULATOR.name}", f"/usr/bin/python{PYTHON}"]
+    python = ["/usr/sbin/chroot", system, f"/usr/bin/{EMULATOR.name}", f"/usr/bin/python{PYTHON}"]
     surroundings = {"HOME": "/home", "PATH": "/usr/local/bin:/usr/bin:/bin", "LANG": "C.UTF-8"}
     return native.run(*python, *arguments, env=surroundings)
 

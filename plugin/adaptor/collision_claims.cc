@@ -15,7 +15,8 @@ int holders = 0;
 
 bool is_claimed(const mjModel* m, int a, int b) {
   const SceneContact* contact = contact_of(m);
-  if (!contact || contact->options().pairs != PairRule::kListed) return false;
+  if (!contact) return false;
+  if (contact->options().pairs != PairRule::kListed) return true;  // flexes alone are MuJoCo's
   const SceneKeys& keys = contact->keys();
   // MuJoCo knows the geoms of a composed solid only one by one, holes as if they were bodies.
   if (keys.composed(a) || keys.composed(b)) return true;
@@ -39,7 +40,7 @@ constexpr mjfCollision kWrapper = Wrapper<mjfCollision>::collide;
 
 }  // namespace
 
-void claim_listed_pairs() {
+void claim_pairs() {
   if (holders++ > 0) return;
   for (int i = 0; i < mjNGEOMTYPES; ++i) {
     for (int j = 0; j < mjNGEOMTYPES; ++j) {
@@ -49,7 +50,7 @@ void claim_listed_pairs() {
   }
 }
 
-void unclaim_listed_pairs() {
+void unclaim_pairs() {
   if (--holders > 0) return;
   for (int i = 0; i < mjNGEOMTYPES; ++i) {
     for (int j = 0; j < mjNGEOMTYPES; ++j) {

@@ -38,6 +38,7 @@ struct AttachedScene {
   const mjModel* model;
   Attacher attacher;
   bool contact_was_disabled;
+  bool claims_pairs;                     // one by one, and leaves MuJoCo's own contact on
   std::vector<VariantPointer> variants;  // the latest last
   std::shared_ptr<const SceneContact> last_valid;
 };
@@ -64,7 +65,7 @@ std::vector<AttachedScene>::iterator find_scene(const mjModel* m) {
 }
 
 void forget(std::vector<AttachedScene>::iterator scene) {
-  if (scene->last_valid->options().pairs == PairRule::kListed) unclaim_listed_pairs();
+  if (scene->claims_pairs) unclaim_pairs();
   registry().erase(scene);
 }
 
@@ -150,9 +151,9 @@ const Variant* find_variant(const mjModel* m) {
 
 std::vector<std::string> attach_scene(mjModel* m, const std::vector<GivenKey>& given,
                                       Attacher attacher) {
-  require(!sleep_enabled(m),
-          "the model has <flag sleep=\"enable\"/>: volumetric contact never wakes a sleeping body; "
-          "disable it");
+  require(can_wake() || !sleep_enabled(m),
+          "the model has <flag sleep=\"enable\"/>: under MuJoCo " + version_text(mjVERSION_HEADER) +
+              " volumetric contact never wakes a sleeping body; disable it, or use 4.0.0 or later");
   const auto contact = make_contact(m, given);
   const auto first = std::make_shared<const Variant>(m, contact, "");
   const std::lock_guard lock(registry_mutex);
@@ -168,10 +169,11 @@ std::vector<std::string> attach_scene(mjModel* m, const std::vector<GivenKey>& g
   // In a copy of an attached model the flag is ours.
   const bool was_disabled =
       (m->opt.disableflags & mjDSBL_CONTACT) != 0 && (m->opt.disableflags & kAttachedMark) == 0;
-  registry().push_back({m, attacher, was_disabled, {first}, contact});
+  const bool claims_pairs = contact->options().pairs == PairRule::kListed || has_flexes(m);
+  registry().push_back({m, attacher, was_disabled, claims_pairs, {first}, contact});
   m->opt.disableflags |= kAttachedMark;
-  if (contact->options().pairs == PairRule::kListed) {
-    claim_listed_pairs();
+  if (claims_pairs) {
+    claim_pairs();
   } else {
     m->opt.disableflags |= mjDSBL_CONTACT;
   }

@@ -85,9 +85,9 @@ std::vector<GivenKey> given_keys(const volcontact_key* keys, int count) {
   return given;
 }
 
-volcontact_site record_of(const PairContact& pair, int index, const SiteReport& report) {
+volcontact_site record_of(const PairContact& pair, PairId id, const SiteReport& report) {
   volcontact_site site{};
-  site.pair = index;
+  site.pair = id;
   std::tie(site.geom_a, site.geom_b) = std::minmax(pair.geoms.a, pair.geoms.b);
   const double sign = site.geom_a == pair.geoms.a ? 1.0 : -1.0;  // of what is told of a
   site.status = static_cast<int>(report.metrics.status);
@@ -134,14 +134,13 @@ struct FoundSite {
   const VolumeMetrics* metrics = nullptr;
   const GeometricPair* joined = nullptr;
 };
-FoundSite find_site(const SceneContact& contact, const EvaluationScratch& scratch, int site) {
+FoundSite find_site(const EvaluationScratch& scratch, int site) {
   std::size_t left = static_cast<std::size_t>(site);
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const auto& sites = scratch.reports[k].sites;
     if (left < sites.size()) {
       const JoinedPair* joined = scratch.joined.at(k);
-      return {&contact.pair(scratch.cull.near[k]), &sites[left].metrics,
-              joined ? &joined->solids : nullptr};
+      return {&scratch.pair(k), &sites[left].metrics, joined ? &joined->solids : nullptr};
     }
     left -= sites.size();
   }
@@ -270,8 +269,8 @@ int volcontact_sites(const mjModel* m, const mjData* d, volcontact_site* sites, 
     for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
       const std::vector<volcontact::SiteReport>& reports = scratch.reports[k].sites;
       for (std::size_t i = 0; i < reports.size(); ++i) {
-        const int index = scratch.pair_of_site(k, i);
-        if (count < capacity) sites[count] = record_of(contact->pair(index), index, reports[i]);
+        const PairId id = scratch.pair_of_site(k, i);
+        if (count < capacity) sites[count] = record_of(contact->pair(id), id, reports[i]);
         ++count;
       }
     }
@@ -306,7 +305,7 @@ int volcontact_site_surface(const mjModel* m, const mjData* d, int site, int res
     }
     EvaluationScratch& scratch = thread_scratch();
     if (!revisit(*contact, m, d, scratch)) return static_cast<int>(VOLCONTACT_ERROR_SCENE);
-    const FoundSite found = find_site(*contact, scratch, site);
+    const FoundSite found = find_site(scratch, site);
     if (!found.pair) return static_cast<int>(VOLCONTACT_ERROR_SCENE);
     const volcontact::GeometricPair& solids =
         found.joined ? *found.joined : found.pair->model.pairs().front();
@@ -368,17 +367,17 @@ int volcontact_describe(const mjModel* m, char* text, int capacity, char* messag
   });
 }
 
-int volcontact_pair_text(const mjModel* m, int pair, char* text, int capacity, char* message,
+int volcontact_pair_text(const mjModel* m, long long pair, char* text, int capacity, char* message,
                          int message_size) {
   return guarded(message, message_size, [&] {
     const SceneContact* contact = contact_of(m);
     std::optional<SceneContact> own;
     if (!contact) contact = &own.emplace(m);
-    const int count = static_cast<int>(contact->pairs().size());
-    volcontact::require(pair >= 0 && pair < count, "pair " + std::to_string(pair) +
-                                                       " is none of the " + std::to_string(count) +
-                                                       " of the scene");
-    return copy_text(volcontact::text_of(contact->pair(pair).model), text, capacity);
+    GeomPair geoms;
+    volcontact::require(contact->rules().find(pair, geoms),
+                        "pair " + std::to_string(pair) + " is none of the " +
+                            std::to_string(contact->rules().count()) + " of the scene");
+    return copy_text(volcontact::text_of(contact->make_pair(geoms).model), text, capacity);
   });
 }
 

@@ -30,7 +30,7 @@ enum {
 
 // One contact site: a connected region in which two geoms overlap.
 typedef struct volcontact_site_ {
-  int pair;  // index of the pair in the description
+  long long pair;  // number of the pair, as in the description: geom_a * ngeom + geom_b
   int geom_a;
   int geom_b;
   int status;             // 0 ok; others as in volcontact/metrics/volume_metrics.h
@@ -270,7 +270,7 @@ VOLCONTACT_API int volcontact_describe(const mjModel* m, char* text, int capacit
 
 // The contact model of pair `pair` of the description as text, in the frames of its two geoms, as
 // vc_model_create_text of the C container reads it. Writes and returns as volcontact_describe.
-VOLCONTACT_API int volcontact_pair_text(const mjModel* m, int pair, char* text, int capacity,
+VOLCONTACT_API int volcontact_pair_text(const mjModel* m, long long pair, char* text, int capacity,
                                         char* message, int message_size);
 
 // Why numbers that were changed in an attached model are not in force; empty when they are. Returns

@@ -92,7 +92,7 @@ void feel_sites(const SceneContact& contact, const EvaluationScratch& scratch, F
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     for (std::size_t i = 0; i < scratch.reports[k].sites.size(); ++i) {
       const SiteReport& site = scratch.reports[k].sites[i];
-      const GeomPair& geoms = contact.pair(scratch.pair_of_site(k, i)).geoms;
+      const GeomPair& geoms = scratch.geoms_of_site(contact, k, i);
       feeling.add(geoms.a, geoms.b, site.force_on_A.norm(), site.torque_on_A.norm());
     }
   }

@@ -26,7 +26,7 @@ GIVEN_MATERIAL = "volcontact/material/given/"
 
 SITE_DTYPE = np.dtype(
     [
-        ("pair", "i4"),
+        ("pair", "i8"),
         ("geom_a", "i4"),
         ("geom_b", "i4"),
         ("status", "i4"),

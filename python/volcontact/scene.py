@@ -235,12 +235,13 @@ class Contact(Closing):
 
         Returns:
             Structured array, one row a connected region of overlap, shape (0,) when all is apart.
-            Vectors have shape (3,) and are in the world frame. Fields: `pair` (index into
-            `description["pairs"]`), `geom_a`, `geom_b`, `volume` [m^3], `centroid` of the volume
-            [m], `normal` (on a, from b to a), `area` of the patch projected along the normal
-            [m^2], `depth` of the volume along the normal [m], `force` on a [N], `torque` on a
-            about the centroid [N m], `normal_force` [N], `slip` [m/s], `spin` [rad/s],
-            `elastic_energy` [J], `flatness` [-], `volume_error` [m^3], `status` (0 is good).
+            Vectors have shape (3,) and are in the world frame. Fields: `pair` (`geom_a * ngeom +
+            geom_b`, as in `description["pairs"]`), `geom_a`, `geom_b`, `volume` [m^3], `centroid`
+            of the volume [m], `normal` (on a, from b to a), `area` of the patch projected along
+            the normal [m^2], `depth` of the volume along the normal [m], `force` on a [N],
+            `torque` on a about the centroid [N m], `normal_force` [N], `slip` [m/s], `spin`
+            [rad/s], `elastic_energy` [J], `flatness` [-], `volume_error` [m^3], `status` (0 is
+            good).
         """
         model = self._require_open()
         self._check(data)

@@ -11,6 +11,7 @@
 #include "adaptor/evaluation/held_forces.h"
 #include "adaptor/evaluation/pair_energies.h"
 #include "adaptor/evaluation/report_sums.h"
+#include "adaptor/evaluation/sleeping.h"
 #include "adaptor/evaluation/stiff_sites.h"
 #include "adaptor/memory/applied_ledger.h"
 #include "adaptor/memory/energy_account.h"
@@ -40,7 +41,7 @@ void solve_implicit(const SceneContact& contact, const mjModel* m, mjData* d,
   const double fall = fall_of(m);
   std::size_t site = 0;
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    const PairContact& pair = contact.pair(scratch.cull.near[k]);
+    const PairContact& pair = scratch.pair(k);
     ContactReport& report = scratch.reports[k];
     const double along = inverse_mass(m, pair.geoms).along;
     const PairEnergy::Now now(report);
@@ -50,7 +51,7 @@ void solve_implicit(const SceneContact& contact, const mjModel* m, mjData* d,
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
       const bool is_stiff = scratch.stiff[site++] != 0;
       if (report.sites[i].normal.isZero(0.0)) continue;
-      const GeomPair& geoms = contact.pair(scratch.pair_of_site(k, i)).geoms;
+      const GeomPair& geoms = scratch.geoms_of_site(contact, k, i);
       const int a = m->geom_bodyid[geoms.a], b = m->geom_bodyid[geoms.b];
       const Vec3& point = report.sites[i].metrics.centroid;
       const Twist of_a = scratch.mocaps.at(m, d, a, point),
@@ -101,12 +102,12 @@ void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
   const bool is_rk4 = m->opt.integrator == mjINT_RK4;
   const double* begin = account.continues() ? account.begin().states() : nullptr;
   if (account.is_within_step()) {
-    hold_solved(contact, m, d, our, scratch);
+    hold_solved(m, d, our, scratch);
     now.unpaid = read_energies(contact, begin, account.since_begin(), is_rk4, scratch);
     release(account, now, scratch);
     scratch.dissipated = 0.0;
     find_unpaid_pairs(contact, m, scratch);
-    postpone_stiff(contact, scratch);
+    postpone_stiff(scratch);
     return;
   }
   now.implicit = find_stiff_sites(contact, m, d, scratch);
@@ -114,7 +115,8 @@ void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
   release(account, now, scratch);
   scratch.dissipated = 0.0;
   if (begin) {
-    double elastic = -now.unpaid;
+    const SleepingEnergy asleep = energy_asleep(contact, begin, scratch);
+    double elastic = asleep.elastic + asleep.bristle - now.unpaid;
     for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
       elastic += scratch.reports[k].elastic_energy;
     }
@@ -130,23 +132,26 @@ void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
 }
 
 // Writes what the sites of this evaluation keep; false when there was no room for all.
-bool keep_sites(const SceneContact& contact, double* states, EvaluationScratch& scratch) {
+bool keep_sites(const SceneContact& contact, const double* committed, double* states,
+                EvaluationScratch& scratch) {
   const SitePool<double> pool(states, contact.sites());
   pool.clear();
   if (contact.sites().rows == 0) return true;
   scratch.kept.clear();
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    const auto size = static_cast<std::size_t>(contact.pair(scratch.cull.near[k]).model.row_size());
+    const auto size = static_cast<std::size_t>(scratch.pair(k).model.row_size());
     const std::size_t numbers = scratch.reports[k].memory.size();
     for (std::size_t site = 0; site * size < numbers; ++site) {
       scratch.kept.emplace_back(scratch.pair_of_site(k, site), k, site * size);
     }
   }
-  if (!scratch.joined.empty()) std::sort(scratch.kept.begin(), scratch.kept.end());
+  const SitePool<const double> before(committed, contact.sites());
+  if (committed) scratch.keep_asleep(before);
+  scratch.sort_kept();
   return std::all_of(scratch.kept.begin(), scratch.kept.end(), [&](const auto& row) {
     const auto& [pair, k, start] = row;
-    return pool.push(pair, &scratch.reports[k].memory[start],
-                     contact.pair(scratch.cull.near[k]).model.row_size());
+    if (k == EvaluationScratch::kAsleep) return pool.copy(before, pair, start);
+    return pool.push(pair, &scratch.reports[k].memory[start], scratch.pair(k).model.row_size());
   });
 }
 
@@ -169,7 +174,7 @@ void write_forces(const SceneContact& contact, const mjModel* m, mjData* d, bool
     const std::vector<SiteReport>& sites = scratch.reports[k].sites;
     for (std::size_t i = 0; i < sites.size(); ++i) {
       const SiteReport& site = sites[i];
-      const GeomPair& geoms = contact.pair(scratch.pair_of_site(k, i)).geoms;
+      const GeomPair& geoms = scratch.geoms_of_site(contact, k, i);
       const int a = m->geom_bodyid[geoms.a], b = m->geom_bodyid[geoms.b];
       const Vec3& c = site.metrics.centroid;
       scratch.mocaps.add_load(m, d, a, c, site.force_on_A, site.torque_on_A);
@@ -228,13 +233,20 @@ void fill_slot(const SceneContact& contact, const mjModel* m, mjData* d, const U
   const double* committed = account.continues() ? our.slot(1).states() : nullptr;
   const bool goes_on = account.is_within_step();
   const double driven = follow_mocaps(m, d, our, account, scratch);
+  if (wake_what_is_touched(contact, m, d, scratch)) {
+    repeat_step_so_far(m, d);  // which calls this function
+    return;
+  }
   evaluate_pairs(contact, m, d, {committed, account.elapsed(), contact.is_implicit()}, scratch);
+  hold_together(contact, m, d, scratch);
   EnergyAccount now;
   scratch.held.assign(scratch.cull.near.size(), 0);
   if (!goes_on) our.set_solved(0);
   if (contact.is_implicit()) choose_forces(contact, m, d, our, account, now, scratch);
-  bool kept = keep_sites(contact, our.slot(0).states(), scratch);
-  if (contact.is_implicit()) kept = keep_energies(contact, our.slot(0).states(), scratch) && kept;
+  bool kept = keep_sites(contact, committed, our.slot(0).states(), scratch);
+  if (contact.is_implicit()) {
+    kept = keep_energies(contact, committed, our.slot(0).states(), scratch) && kept;
+  }
 
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const ContactReport& report = scratch.reports[k];
@@ -251,6 +263,9 @@ void fill_slot(const SceneContact& contact, const mjModel* m, mjData* d, const U
     now.spin_energy += paid * report.bristle_energy.spin;
   }
   now.elastic -= now.unpaid;
+  const SleepingEnergy asleep = energy_asleep(contact, committed, scratch);
+  now.elastic += asleep.elastic + asleep.bristle;
+  now.slide_energy += asleep.bristle;
   write_forces(contact, m, d, goes_on, scratch);
   if (!kept) our.forgotten() += 1.0;
   now.force_power = power_of(our.slot(0).forces(), d->qvel, m->nv);

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <utility>
 
+#include "adaptor/evaluation/sleeping.h"
 #include "adaptor/evaluation/work_sharing.h"
 #include "adaptor/mujoco/mjgeoms.h"
 #include "volcontact/base/first_failure.h"
@@ -37,14 +38,13 @@ struct Work {
   int own_sharing = 0;
   int single_tasks = 0;
 };
-Work plan_work(const SceneContact& contact, int threads, EvaluationScratch& scratch) {
-  const std::vector<int>& near = scratch.cull.near;
+Work plan_work(int threads, EvaluationScratch& scratch) {
   const auto is_long = [&](int k) {
-    return shares_its_own_work(contact.pair(near[static_cast<std::size_t>(k)]).engine);
+    return shares_its_own_work(scratch.pair(static_cast<std::size_t>(k)).engine);
   };
   Work work;
   work.threads = threads;
-  work.pairs = static_cast<int>(near.size());
+  work.pairs = static_cast<int>(scratch.contacts.size());
   scratch.order.clear();
   for (const bool wanted : {true, false}) {
     for (int k = 0; k < work.pairs; ++k) {
@@ -60,8 +60,7 @@ void evaluate_one(const SceneContact& contact, const mjModel* m, const mjData* d
                   const SitesBefore& before, int k, ContactModel::Workspace& workspace,
                   EvaluationScratch& scratch) {
   const std::size_t index = static_cast<std::size_t>(k);
-  const int pair_index = scratch.cull.near[index];
-  const PairContact& pair = contact.pair(pair_index);
+  const PairContact& pair = scratch.pair(index);
   const auto twist_of = [&](int geom) {
     const Twist own = twist_of_geom(m, d, geom);
     const Twist driven = scratch.mocaps.at(m, d, m->geom_bodyid[geom], vec3_at(d->geom_xpos, geom));
@@ -74,8 +73,8 @@ void evaluate_one(const SceneContact& contact, const mjModel* m, const mjData* d
   memory.elapsed = before.elapsed;
   if (before.committed && pair.model.row_size() > 0) {
     const SitePool<const double> pool(before.committed, contact.sites());
-    memory =
-        joined ? joined->memory(pool, before.elapsed) : pool.rows_of(pair_index, before.elapsed);
+    memory = joined ? joined->memory(pool, before.elapsed)
+                    : pool.rows_of(scratch.cull.near[index], before.elapsed);
   }
   ContactReport& report = scratch.reports[index];
   report.keeps_inputs = before.keeps_inputs;
@@ -102,8 +101,11 @@ void evaluate_one(const SceneContact& contact, const mjModel* m, const mjData* d
 void evaluate_pairs(const SceneContact& contact, const mjModel* m, const mjData* d,
                     const SitesBefore& before, EvaluationScratch& scratch) {
   contact.cull().run(d, scratch.cull);
+  set_aside_sleeping(contact, m, d, scratch);
   scratch.joined.build(contact, d, scratch.cull.near);
-  const std::vector<int>& near = scratch.cull.near;
+  const std::vector<PairId>& near = scratch.cull.near;
+  scratch.contacts.clear();
+  for (const PairId pair : near) scratch.contacts.push_back(&contact.pair(pair));
   if (scratch.reports.size() < near.size()) {
     scratch.reports.resize(near.size());
     scratch.invalid.resize(near.size());
@@ -114,7 +116,7 @@ void evaluate_pairs(const SceneContact& contact, const mjModel* m, const mjData*
   ThreadChoice& choice = scratch.choices.of(&contact);
   if (is_free && !choice.shares(guard.threads(), near.size())) guard.take_one();
   const auto begin = std::chrono::steady_clock::now();
-  const Work work = plan_work(contact, guard.threads(), scratch);
+  const Work work = plan_work(guard.threads(), scratch);
   if (scratch.workspaces.size() < static_cast<std::size_t>(work.threads)) {
     scratch.workspaces.resize(static_cast<std::size_t>(work.threads));
   }

@@ -55,7 +55,7 @@ class Kept {
     const JoinedPair* joined = scratch.joined.at(k);
     if (!joined) return take(scratch.cull.near[k], report);
     // Another of its pairs may have led.
-    const bool taken = std::any_of(joined->pairs.begin(), joined->pairs.end(), [&](int pair) {
+    const bool taken = std::any_of(joined->pairs.begin(), joined->pairs.end(), [&](PairId pair) {
       next_ = 0;
       return take(pair, report);
     });
@@ -64,7 +64,7 @@ class Kept {
   }
 
  private:
-  bool take(int pair, ContactReport& report) {
+  bool take(PairId pair, ContactReport& report) {
     while (next_ < our_.solved() && our_.solved_site(next_).pair() < pair) ++next_;
     const int first = next_;
     while (next_ < our_.solved() && our_.solved_site(next_).pair() == pair) ++next_;
@@ -98,14 +98,14 @@ void recall_solved(const UserdataBlock& our, EvaluationScratch& scratch) {
   }
 }
 
-void hold_solved(const SceneContact& contact, const mjModel* m, mjData* d, const UserdataBlock& our,
+void hold_solved(const mjModel* m, mjData* d, const UserdataBlock& our,
                  EvaluationScratch& scratch) {
   Kept kept(our);
   scratch.stiff.clear();
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     ContactReport& report = scratch.reports[k];
     scratch.held[k] = kept.take(k, scratch) ? 1 : 0;
-    const PairContact& pair = contact.pair(scratch.cull.near[k]);
+    const PairContact& pair = scratch.pair(k);
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
       const bool stiff =
           scratch.held[k] || is_stiff(m, d, pair, report, i, ExplicitBounds::of_stage(), scratch);
@@ -114,7 +114,7 @@ void hold_solved(const SceneContact& contact, const mjModel* m, mjData* d, const
   }
 }
 
-void postpone_stiff(const SceneContact& contact, EvaluationScratch& scratch) {
+void postpone_stiff(EvaluationScratch& scratch) {
   std::size_t site = 0;
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     ContactReport& report = scratch.reports[k];
@@ -123,7 +123,7 @@ void postpone_stiff(const SceneContact& contact, EvaluationScratch& scratch) {
       is_stiff = scratch.stiff[site++] != 0 || is_stiff;
     }
     if (is_stiff && !scratch.held[k]) {
-      take_share(0.0, contact.pair(scratch.cull.near[k]).model, report);
+      take_share(0.0, scratch.pair(k).model, report);
     }
   }
 }

@@ -18,12 +18,11 @@ void keep_solved(const SceneContact& contact, const UserdataBlock& our,
 void recall_solved(const UserdataBlock& our, EvaluationScratch& scratch);
 
 /// The same at a later stage of Runge-Kutta, and marks what that cannot hold in `scratch.stiff`.
-void hold_solved(const SceneContact& contact, const mjModel* m, mjData* d, const UserdataBlock& our,
-                 EvaluationScratch& scratch);
+void hold_solved(const mjModel* m, mjData* d, const UserdataBlock& our, EvaluationScratch& scratch);
 
 /// What a later stage of Runge-Kutta cannot hold, and was not solved when the step began, waits
 /// for the next.
-void postpone_stiff(const SceneContact& contact, EvaluationScratch& scratch);
+void postpone_stiff(EvaluationScratch& scratch);
 
 /// Adds what was kept to the forces on the bodies.
 void add_held(const SceneContact& contact, const mjModel* m, const mjData* d,

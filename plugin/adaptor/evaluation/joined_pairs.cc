@@ -47,7 +47,7 @@ double squared_distance(const Aabb& box, const Vec3& p) {
 SiteMemory JoinedPair::memory(const SitePool<const double>& pool, double elapsed) {
   SiteMemory found{nullptr, 0, 0, elapsed};
   rows.clear();
-  for (const int pair : pairs) {
+  for (const PairId pair : pairs) {
     const SiteMemory more = pool.rows_of(pair, elapsed);
     if (more.count == 0) continue;
     const auto copy = [&](const SiteMemory& from) {
@@ -70,9 +70,9 @@ void JoinedPair::place_sites(const SceneContact& contact, const BodyMotion& moti
   const Pose X_AW = motion.X_WA.inverse(), X_BW = motion.X_WB.inverse();
   for (const SiteReport& site : report.sites) {
     const Vec3 c_A = X_AW * site.metrics.centroid, c_B = X_BW * site.metrics.centroid;
-    int nearest = pairs.front();
+    PairId nearest = pairs.front();
     double least = HUGE_VAL;
-    for (const int pair : pairs) {
+    for (const PairId pair : pairs) {
       const GeomPair& geoms = contact.pair(pair).geoms;
       double distance = 0.0;
       if (flush.is_tile(geoms.a)) distance += squared_distance(flush.bounds(geoms.a), c_A);
@@ -167,10 +167,10 @@ void JoinedPairs::set_solid(const SceneContact& contact, const Side& side, int p
 }
 
 void JoinedPairs::add_family(const SceneContact& contact, const mjData* d,
-                             std::span<const int> pairs) {
+                             std::span<const PairId> pairs) {
   a_.geoms.clear();
   b_.geoms.clear();
-  for (const int pair : pairs) {
+  for (const PairId pair : pairs) {
     const PairContact& at = contact.pair(pair);
     a_.geoms.push_back(at.geoms.a);
     b_.geoms.push_back(at.geoms.b);
@@ -183,7 +183,7 @@ void JoinedPairs::add_family(const SceneContact& contact, const mjData* d,
   }
   const bool has_poses = join_sides(contact, d);
   part_.assign(has_poses ? size(a_.count() * b_.count()) : 0, kNone);
-  for (const int pair : pairs) {
+  for (const PairId pair : pairs) {
     const GeomPair& geoms = contact.pair(pair).geoms;
     if (!has_poses) {  // for the engine to tell
       JoinedPair& joined = next();
@@ -205,14 +205,14 @@ void JoinedPairs::add_family(const SceneContact& contact, const mjData* d,
   }
 }
 
-void JoinedPairs::build(const SceneContact& contact, const mjData* d, std::vector<int>& near) {
+void JoinedPairs::build(const SceneContact& contact, const mjData* d, std::vector<PairId>& near) {
   count_ = 0;
   const FlushGroups& flush = contact.flush();
   if (flush.empty()) return;
   of_families_.clear();
   leads_.clear();
-  for (const int pair : near) {
-    const int family = flush.family_of(pair);
+  for (const PairId pair : near) {
+    const PairId family = contact.pair(pair).family;
     if (family >= 0) {
       of_families_.emplace_back(family, pair);
     } else {
@@ -223,7 +223,7 @@ void JoinedPairs::build(const SceneContact& contact, const mjData* d, std::vecto
   std::sort(of_families_.begin(), of_families_.end());
   for (auto first = of_families_.begin(); first != of_families_.end();) {
     pairs_.clear();
-    const int family = first->first;
+    const PairId family = first->first;
     for (; first != of_families_.end() && first->first == family; ++first) {
       pairs_.push_back(first->second);
     }

@@ -20,7 +20,7 @@ ExplicitShare share_of(const SceneContact& contact, const mjModel* m, std::size_
                        const PairEnergy::Now& now, const EvaluationScratch& scratch) {
   const double h = m->opt.timestep;
   const double fall = fall_of(m);
-  const PairContact& pair = contact.pair(scratch.cull.near[k]);
+  const PairContact& pair = scratch.pair(k);
   const double along = inverse_mass(m, pair.geoms).along;
   WorkLimit limit = WorkLimit::of(scratch.energies[k], scratch.dissipated,
                                   contact.options().exit_speed, now.moving(along));
@@ -121,13 +121,14 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m, EvaluationScr
     if (share == 1.0) continue;
     limited = true;
     scratch.held[k] = 1;
-    take_share(share, contact.pair(scratch.cull.near[k]).model, report);
+    take_share(share, scratch.pair(k).model, report);
     energy.rubbed = std::min(energy.rubbed, report.bristle_energy.sum());
   }
   return limited;
 }
 
-bool keep_energies(const SceneContact& contact, double* states, EvaluationScratch& scratch) {
+bool keep_energies(const SceneContact& contact, const double* committed, double* states,
+                   EvaluationScratch& scratch) {
   const SitePool<double> pool(states + contact.sites().size(), contact.energies());
   pool.clear();
   scratch.kept.clear();
@@ -140,8 +141,14 @@ bool keep_energies(const SceneContact& contact, double* states, EvaluationScratc
     const auto site = static_cast<std::size_t>(largest - sites.begin());
     scratch.kept.emplace_back(scratch.pair_of_site(k, site), k, site);
   }
-  if (!scratch.joined.empty()) std::sort(scratch.kept.begin(), scratch.kept.end());
+  const SitePool<const double> before(committed ? committed + contact.sites().size() : nullptr,
+                                      contact.energies());
+  if (committed) scratch.keep_asleep(before);
+  scratch.sort_kept();
   return std::all_of(scratch.kept.begin(), scratch.kept.end(), [&](const auto& kept) {
+    if (std::get<1>(kept) == EvaluationScratch::kAsleep) {
+      return pool.copy(before, std::get<0>(kept), std::get<2>(kept));
+    }
     double row[PairEnergy::kNumbers];
     scratch.energies[std::get<1>(kept)].write(row);
     return pool.push(std::get<0>(kept), row, PairEnergy::kNumbers);

@@ -25,6 +25,7 @@ bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m, Evaluation
 bool limit_explicit(const SceneContact& contact, const mjModel* m, EvaluationScratch& scratch);
 
 /// Writes the rows behind those of the sites; false when there was no room for all.
-bool keep_energies(const SceneContact& contact, double* states, EvaluationScratch& scratch);
+bool keep_energies(const SceneContact& contact, const double* committed, double* states,
+                   EvaluationScratch& scratch);
 
 }  // namespace volcontact::adaptor

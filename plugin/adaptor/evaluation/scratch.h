@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <tuple>
 #include <vector>
 
@@ -8,7 +9,8 @@
 #include "adaptor/evaluation/joined_pairs.h"
 #include "adaptor/evaluation/mocap_motion.h"
 #include "adaptor/evaluation/thread_choice.h"
-#include "adaptor/geoms/pair_list.h"
+#include "adaptor/geoms/cull.h"
+#include "adaptor/memory/site_pool.h"
 #include "adaptor/memory/work_limit.h"
 #include "adaptor/step/implicit_step.h"
 #include "volcontact/model/contact_model.h"
@@ -17,8 +19,11 @@ namespace volcontact::adaptor {
 
 /// Memory of one evaluation; one per thread, reused from call to call.
 struct EvaluationScratch {
-  Cull::Scratch cull;                  ///< `near`: the pairs evaluated
-  JoinedPairs joined;                  ///< those of them that stand for several
+  Cull::Scratch cull;                        ///< `near`: the pairs evaluated
+  std::vector<const PairContact*> contacts;  ///< their contact models
+  std::vector<PairId> asleep;  ///< pairs near each other of which no side is awake, ascending
+  std::vector<int> trees;      ///< sets of trees that touch
+  JoinedPairs joined;          ///< those of them that stand for several
   std::vector<ContactReport> reports;  ///< of the pairs in `near`, finite numbers only
   std::vector<char> invalid;           ///< whether a report was left out, having no numbers
   std::vector<char> stiff;             ///< of all sites, whether an explicit step cannot hold it
@@ -34,13 +39,33 @@ struct EvaluationScratch {
   MocapMotion mocaps;
   std::vector<double> way;  ///< of the dofs since the evaluation before
   /// What is kept, by the pair under which it is found again: pair, place in `near`, number.
-  std::vector<std::tuple<int, std::size_t, std::size_t>> kept;
+  std::vector<std::tuple<PairId, std::size_t, std::size_t>> kept;
 
   /// The pair to which a site of the pair at place k of `near` belongs: of flush solids, that in
   /// which its centroid lies.
-  int pair_of_site(std::size_t k, std::size_t site) const {
+  PairId pair_of_site(std::size_t k, std::size_t site) const {
     return joined.pair_of_site(cull.near, k, site);
   }
+  const GeomPair& geoms_of_site(const SceneContact& contact, std::size_t k,
+                                std::size_t site) const {
+    return joined.at(k) ? contact.pair(pair_of_site(k, site)).geoms : pair(k).geoms;
+  }
+
+  /// In place of a place in `near`, for rows that are kept as they were.
+  static constexpr auto kAsleep = static_cast<std::size_t>(-1);
+  /// Adds the rows of the pairs that sleep to what is kept.
+  void keep_asleep(const SitePool<const double>& before) {
+    for (const PairId pair : asleep) {
+      const auto rows = static_cast<std::size_t>(before.rows_of(pair, 0.0).count);
+      for (std::size_t i = 0; i < rows; ++i) kept.emplace_back(pair, kAsleep, i);
+    }
+  }
+  void sort_kept() {
+    if (!joined.empty() || !asleep.empty()) std::sort(kept.begin(), kept.end());
+  }
+
+  /// The pair at place k of `near`.
+  const PairContact& pair(std::size_t k) const { return *contacts[k]; }
 };
 
 }  // namespace volcontact::adaptor

@@ -100,7 +100,7 @@ bool find_stiff_sites(const SceneContact& contact, const mjModel* m, mjData* d,
   const auto most = ExplicitBounds::of(m->opt.integrator == mjINT_RK4);
   scratch.stiff.clear();
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
-    const PairContact& pair = contact.pair(scratch.cull.near[k]);
+    const PairContact& pair = scratch.pair(k);
     ContactReport& report = scratch.reports[k];
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
       scratch.stiff.push_back(all || is_stiff(m, d, pair, report, i, most, scratch) ? 1 : 0);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -125,21 +126,25 @@ double largest_face_of(const Aabb& box) {
 }  // namespace
 
 FlushGroups::FlushGroups(const mjModel* m, const SceneKeys& keys, const std::vector<Shape>& solids,
-                         const std::vector<GeomPair>& pairs) {
-  find_groups(m, keys, solids, pairs);
-  if (!groups_.empty()) find_families(pairs);
+                         const PairRules& rules)
+    : rules_(&rules) {
+  find_groups(m, keys, solids);
+  for (const std::vector<int>& group : groups_) {
+    std::vector<int>& differing = differing_.emplace_back();
+    for (const int geom : group) {
+      const auto is_like = [&](int other) { return rules.are_alike(geom, other); };
+      if (std::none_of(differing.begin(), differing.end(), is_like)) differing.push_back(geom);
+    }
+  }
 }
 
 void FlushGroups::find_groups(const mjModel* m, const SceneKeys& keys,
-                              const std::vector<Shape>& solids,
-                              const std::vector<GeomPair>& pairs) {
-  std::vector<char> can_touch(solids.size(), 0);
-  for (const GeomPair& pair : pairs) can_touch[size(pair.a)] = can_touch[size(pair.b)] = 1;
+                              const std::vector<Shape>& solids) {
   // Boxes of one body, material and friction; in it, of parallel axes.
   std::map<std::tuple<int, int, double>, std::vector<std::vector<Block>>> alike;
   for (int geom = 0; geom < m->ngeom; ++geom) {
     const Box* box = std::get_if<Box>(&solids[size(geom)]);
-    if (!box || !can_touch[size(geom)]) continue;
+    if (!box || !rules_->can_touch(geom)) continue;
     auto& sets = alike[{rigid_root(m, m->geom_bodyid[geom]), keys.material_of_geom[size(geom)],
                         m->geom_friction[3 * geom]}];
     Block block{geom, pose_in_rigid_root(m, geom), box->half_sizes(), {}};
@@ -196,42 +201,34 @@ void FlushGroups::add_group(const mjModel* m, const std::vector<const Block*>& b
   largest_faces_.push_back(largest_face_of(all));
 }
 
-// A family is complete: each solid of one side can touch each of the other, by the same laws.
-void FlushGroups::find_families(const std::vector<GeomPair>& pairs) {
-  struct Seen {
-    int side_a;  // of the first pair
-    std::size_t pairs_wanted;
-    int listed;
-    bool is_plain = true;
-    std::vector<int> pairs{};
+FlushGroups::Family FlushGroups::family_of(const GeomPair& pair) const {
+  if (empty()) return {};
+  const int group_a = group_of(pair.a), group_b = group_of(pair.b);
+  if (group_a < 0 && group_b < 0) return {};
+  if (group_a == group_b) return {};
+  const auto side = [&](const int& geom, int group) -> std::span<const int> {
+    return group < 0 ? std::span(&geom, 1) : std::span(differing_[size(group)]);
   };
-  const auto geoms = static_cast<int>(tiles_.size());
-  const auto side_of = [&](int geom) {
-    const int group = tiles_[size(geom)].group;
-    return group < 0 ? geom : geoms + group;
+  const auto all_can = [&](const int& a) {
+    const std::span<const int> others = side(pair.b, group_b);
+    return std::all_of(others.begin(), others.end(), [&](int b) {
+      GeomPair other;
+      return rules_->admit(a, b, other) && other.listed == pair.listed && other.native < 0;
+    });
   };
-  const auto solids_of = [&](int side) {
-    return side < geoms ? std::size_t{1} : groups_[size(side - geoms)].size();
-  };
-  std::map<std::pair<int, int>, Seen> found;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const int a = side_of(pairs[i].a), b = side_of(pairs[i].b);
-    if (a < geoms && b < geoms) continue;
-    const auto [at, is_new] =
-        found.try_emplace(std::minmax(a, b), Seen{a, solids_of(a) * solids_of(b), pairs[i].listed});
-    Seen& seen = at->second;
-    seen.is_plain = seen.is_plain && pairs[i].listed == seen.listed && pairs[i].native < 0;
-    seen.pairs.push_back(static_cast<int>(i));
-  }
-  int number = 0;
-  for (const auto& [sides, seen] : found) {
-    if (!seen.is_plain || seen.pairs.size() != seen.pairs_wanted) continue;
-    if (families_.empty()) families_.resize(pairs.size());
-    for (const int pair : seen.pairs) {
-      families_[size(pair)] = {number, side_of(pairs[size(pair)].a) != seen.side_a};
-    }
-    ++number;
-  }
+  const std::span<const int> ours = side(pair.a, group_a);
+  if (!std::all_of(ours.begin(), ours.end(), all_can)) return {};
+  const int first_a = group_a < 0 ? pair.a : groups_[size(group_a)].front();
+  const int first_b = group_b < 0 ? pair.b : groups_[size(group_b)].front();
+  return {rules_->id(first_a, first_b), first_a > first_b};
+}
+
+bool FlushGroups::can_touch_together(const std::vector<int>& group) const {
+  const std::vector<int>& touching = rules_->touching();
+  return std::any_of(touching.begin(), touching.end(), [&](int geom) {
+    GeomPair pair;
+    return rules_->admit(geom, group.front(), pair) && family_of(pair).number >= 0;
+  });
 }
 
 }  // namespace volcontact::adaptor

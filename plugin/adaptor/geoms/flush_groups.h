@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "adaptor/geoms/pair_list.h"
+#include "adaptor/geoms/pair_rules.h"
 #include "volcontact/shape/shapes.h"
 
 namespace volcontact::adaptor {
@@ -25,21 +25,20 @@ class FlushGroups {
 
   /// Of no scene: without groups.
   FlushGroups() = default;
-  /// `solids` has one entry per geom; `pairs` in ascending order.
+  /// `solids` has one entry per geom. Refers to `rules`.
   FlushGroups(const mjModel* m, const SceneKeys& keys, const std::vector<Shape>& solids,
-              const std::vector<GeomPair>& pairs);
+              const PairRules& rules);
 
-  bool empty() const { return families_.empty(); }
+  bool empty() const { return groups_.empty(); }
 
   /// Pairs of geoms whose solids on one side or on both are of one group: what touches one of them
-  /// may touch others. -1 for a pair that has none.
-  int family_of(int pair) const {
-    return empty() ? -1 : families_[static_cast<std::size_t>(pair)].number;
-  }
-  /// Whether the sides of the pair change places, so that all of a family are in one order.
-  bool is_swapped(int pair) const {
-    return !empty() && families_[static_cast<std::size_t>(pair)].swapped;
-  }
+  /// may touch others. A family is complete: each solid of one side can touch each of the other, by
+  /// the same laws.
+  struct Family {
+    PairId number = -1;    ///< -1 for a pair that has none
+    bool swapped = false;  ///< the sides of the pair change places, so that all are in one order
+  };
+  Family family_of(const GeomPair& pair) const;
 
   /// The geom in whose frame a geom's group is described; itself for one of no group.
   int frame_of(int geom) const {
@@ -58,6 +57,9 @@ class FlushGroups {
     return largest_faces_[static_cast<std::size_t>(tiles_[static_cast<std::size_t>(geom)].group)];
   }
 
+  /// Whether some solid can touch those of a group together.
+  bool can_touch_together(const std::vector<int>& group) const;
+
   /// Geoms by group.
   const std::vector<std::vector<int>>& groups() const { return groups_; }
 
@@ -68,19 +70,15 @@ class FlushGroups {
     Pose X_FG;
     Aabb bounds;
   };
-  struct Family {
-    int number = -1;
-    bool swapped = false;
-  };
-  void find_groups(const mjModel* m, const SceneKeys& keys, const std::vector<Shape>& solids,
-                   const std::vector<GeomPair>& pairs);
+  void find_groups(const mjModel* m, const SceneKeys& keys, const std::vector<Shape>& solids);
   void add_group(const mjModel* m, const std::vector<const Block*>& blocks);
-  void find_families(const std::vector<GeomPair>& pairs);
+  int group_of(int geom) const { return tiles_[static_cast<std::size_t>(geom)].group; }
 
+  const PairRules* rules_ = nullptr;
   std::vector<Tile> tiles_;  // by geom
   std::vector<std::vector<int>> groups_;
-  std::vector<double> largest_faces_;  // by group
-  std::vector<Family> families_;       // by pair
+  std::vector<std::vector<int>> differing_;  // of each group, without those that are alike
+  std::vector<double> largest_faces_;        // by group
 };
 
 }  // namespace volcontact::adaptor

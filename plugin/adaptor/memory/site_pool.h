@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 
 #include "volcontact/model/site_memory.h"
 
@@ -17,7 +19,7 @@ struct SitePoolLayout {
 };
 
 /// The contact sites of one evaluation, in the states of its slot: their number, then a row each,
-/// the index of the pair before what its contact model keeps. In ascending order of pairs.
+/// the number of the pair before what its contact model keeps. In ascending order of pairs.
 template <typename Number>
 class SitePool {
  public:
@@ -30,18 +32,25 @@ class SitePool {
   }
 
   /// Appends a row of `size` numbers; false when there is no room.
-  bool push(int pair, const double* row, int size) const {
+  bool push(std::int64_t pair, const double* row, int size) const {
     const int n = count();
     if (n >= layout_.rows) return false;
     Number* to = row_at(n);
-    to[0] = pair;
+    to[0] = static_cast<double>(pair);
     std::fill(std::copy_n(row, size, to + 1), to + layout_.stride(), 0.0);
     p_[0] = n + 1;
     return true;
   }
 
+  /// Appends a row of a pair as it was; false when there is no room.
+  bool copy(const SitePool<const double>& before, std::int64_t pair, std::size_t row) const {
+    const SiteMemory rows = before.rows_of(pair, 0.0);
+    return push(pair, rows.rows + static_cast<std::ptrdiff_t>(row) * rows.stride, rows.stride - 1);
+  }
+
   /// The rows of one pair, as its contact model wants them.
-  SiteMemory rows_of(int pair, double elapsed) const {
+  SiteMemory rows_of(std::int64_t number, double elapsed) const {
+    const auto pair = static_cast<double>(number);
     int first = 0;
     for (int length = count(); length > 0;) {  // lower bound
       const int half = length / 2;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
 #include "volcontact/model/contact_report.h"
 
@@ -20,7 +21,7 @@ namespace volcontact::adaptor {
 
 /// Sizes of the block, in numbers.
 struct UserdataLayout {
-  static constexpr int kVersion = 7;
+  static constexpr int kVersion = 8;
   static constexpr int kHeader = 9;
   /// A Runge-Kutta step and the one before it, which a step that is redone needs.
   static constexpr int kSlots = 5;
@@ -52,14 +53,14 @@ struct UserdataLayout {
 /// The forces at a site of a step whose forces were solved.
 struct HeldSite {
   double* p;
-  int pair() const { return static_cast<int>(p[0]); }
+  std::int64_t pair() const { return static_cast<std::int64_t>(p[0]); }
   double normal_force() const { return p[1]; }           // [N]
   Vec3 force() const { return {p[2], p[3], p[4]}; }      // on A [N]
   Vec3 torque() const { return {p[5], p[6], p[7]}; }     // on A, about the centroid [N m]
   Vec3 centroid() const { return {p[8], p[9], p[10]}; }  // [m]
 
-  void set(int pair, const SiteReport& site) const {
-    p[0] = pair;
+  void set(std::int64_t pair, const SiteReport& site) const {
+    p[0] = static_cast<double>(pair);
     p[1] = site.normal_force;
     const Vec3 vectors[] = {site.force_on_A, site.torque_on_A, site.metrics.centroid};
     double* out = p + 2;

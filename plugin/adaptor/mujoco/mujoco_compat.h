@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 // All that differs between the releases of MuJoCo, and nothing else. mjVERSION_HEADER grows with
 // every release: 222 is 2.2.2, 340 is 3.4.0, 4000000 is 4.0.0.
@@ -17,6 +18,9 @@ extern "C" {
 [[gnu::weak]] void mjd_smooth_vel(const mjModel* m, mjData* d, int with_bias);
 [[gnu::weak]] int mjd_freeMhat(const mjModel* m, const mjData* d, int joint, mjtNum step,
                                mjtNum out[36]);
+#if mjVERSION_HEADER >= 4000000
+[[gnu::weak]] void mj_updateSleep(const mjModel* m, mjData* d);
+#endif
 #if mjVERSION_HEADER < 233
 [[gnu::weak]] void mj_makeMSparse(const mjModel* m, mjData* d, int* rownnz, int* rowadr,
                                   int* colind);
@@ -25,13 +29,12 @@ extern "C" {
 
 namespace volcontact::adaptor {
 
-/// Number under which an <exclude> of two bodies is stored.
-inline int exclude_signature(int body_a, int body_b) {
-  const int low = std::min(body_a, body_b), high = std::max(body_a, body_b);
+/// The two bodies of an <exclude>, lower id first, from the number under which it is stored.
+inline std::pair<int, int> excluded_bodies(int signature) {
 #if mjVERSION_HEADER < 300
-  return ((low + 1) << 16) + high + 1;
+  return {(signature >> 16) - 1, (signature & 0xffff) - 1};
 #else
-  return (low << 16) + high;
+  return {signature >> 16, signature & 0xffff};
 #endif
 }
 
@@ -153,10 +156,19 @@ void for_row_of_constraint(const mjModel* m, const mjData* d, int i, Use use) {
   }
 }
 
-/// Whether bodies may fall asleep; volumetric contact would never wake them.
+/// Whether bodies may fall asleep.
 inline bool sleep_enabled([[maybe_unused]] const mjModel* m) {
 #if mjVERSION_HEADER >= 340
   return (m->opt.enableflags & mjENBL_SLEEP) != 0;
+#else
+  return false;
+#endif
+}
+
+/// Whether we can wake them in this release.
+inline bool can_wake() {
+#if mjVERSION_HEADER >= 4000000
+  return mj_updateSleep != nullptr;
 #else
   return false;
 #endif

@@ -50,7 +50,7 @@ void list_contacts(const SceneContact& contact, const mjModel* m, const mjData* 
     for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
       for (std::size_t i = 0; i < scratch.reports[k].sites.size(); ++i) {
         const SiteReport& site = scratch.reports[k].sites[i];
-        const GeomPair& geoms = contact.pair(scratch.pair_of_site(k, i)).geoms;
+        const GeomPair& geoms = scratch.geoms_of_site(contact, k, i);
         const auto [a, b] = std::minmax(geoms.a, geoms.b);
         const double sign = a == geoms.a ? 1.0 : -1.0;  // of what is told of a
         out.push_back({a, b, false, site.metrics.centroid, sign * site.normal,

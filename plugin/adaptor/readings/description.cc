@@ -2,7 +2,6 @@
 #include "adaptor/readings/description.h"
 
 #include <cstdio>
-#include <set>
 
 #include "adaptor/readings/json_text.h"
 #include "adaptor/scene/pair_rates.h"
@@ -62,13 +61,12 @@ void write_default_material(JsonText& json) {
 
 void write_materials(const mjModel* m, const SceneContact& contact, JsonText& json) {
   const SceneKeys& keys = contact.keys();
-  std::set<int> touching;
-  for (const GeomPair& pair : contact.pairs()) touching.insert({pair.a, pair.b});
   const auto write_geoms = [&](int material, bool all) {
     json.name("geoms").begin_array();
     for (int geom = 0; geom < m->ngeom; ++geom) {
       const bool has_it = keys.material_of_geom[static_cast<std::size_t>(geom)] == material;
-      if (has_it && (all || touching.count(geom))) json.value(label(m, mjOBJ_GEOM, geom));
+      if (has_it && (all || contact.rules().can_touch(geom)))
+        json.value(label(m, mjOBJ_GEOM, geom));
     }
     json.end_array();
   };
@@ -108,10 +106,8 @@ void write_parts(const mjModel* m, const ComposedGeoms& solid, JsonText& json) {
 }
 
 void write_solids(const mjModel* m, const SceneContact& contact, JsonText& json) {
-  std::set<int> touching;
-  for (const GeomPair& pair : contact.pairs()) touching.insert({pair.a, pair.b});
   json.name("solids").begin_array();
-  for (const int geom : touching) {
+  for (const int geom : contact.rules().touching()) {
     const Shape& solid = contact.solids()[static_cast<std::size_t>(geom)];
     json.begin_object();
     json.member("geom", label(m, mjOBJ_GEOM, geom));
@@ -129,13 +125,12 @@ void write_solids(const mjModel* m, const SceneContact& contact, JsonText& json)
 // Those that some solid can touch together.
 void write_flush_solids(const mjModel* m, const SceneContact& contact, JsonText& json) {
   json.name("flush_solids").begin_array();
-  if (!contact.flush().empty()) {
-    for (const std::vector<int>& group : contact.flush().groups()) {
-      json.begin_object();
-      json.name("geoms").begin_array();
-      for (const int geom : group) json.value(label(m, mjOBJ_GEOM, geom));
-      json.end_array().end_object();
-    }
+  for (const std::vector<int>& group : contact.flush().groups()) {
+    if (!contact.flush().can_touch_together(group)) continue;
+    json.begin_object();
+    json.name("geoms").begin_array();
+    for (const int geom : group) json.value(label(m, mjOBJ_GEOM, geom));
+    json.end_array().end_object();
   }
   json.end_array();
 }
@@ -157,11 +152,12 @@ std::string implicit_text(const mjModel* m, const SceneContact& contact, const P
   return text;
 }
 
-void write_pair(const mjModel* m, const SceneContact& contact, int index, JsonText& json) {
-  const PairContact& pair = contact.pair(index);
-  const PairLaws laws = contact.laws_of(m, index);
+void write_pair(const mjModel* m, const SceneContact& contact, const GeomPair& geoms,
+                JsonText& json) {
+  const PairContact pair = contact.make_pair(geoms);
+  const PairLaws laws = contact.laws().in_words(m, geoms);
   json.begin_object();
-  json.member("pair", index);
+  json.member("pair", contact.rules().id(geoms.a, geoms.b));
   json.member("geom_a", label(m, mjOBJ_GEOM, pair.geoms.a));
   json.member("geom_b", label(m, mjOBJ_GEOM, pair.geoms.b));
   json.member("id_a", pair.geoms.a);
@@ -198,9 +194,10 @@ std::string describe(const mjModel* m, const SceneContact& contact) {
   write_solids(m, contact, json);
   write_flush_solids(m, contact, json);
   json.name("pairs").begin_array();
-  for (std::size_t i = 0; i < contact.pairs().size(); ++i) {
-    write_pair(m, contact, static_cast<int>(i), json);
-  }
+  contact.rules().for_each([&](const GeomPair& geoms) {
+    write_pair(m, contact, geoms, json);
+    return true;
+  });
   json.end_array();
   json.name("warnings").begin_array();
   for (const std::string& warning : contact.warnings()) json.value(warning);

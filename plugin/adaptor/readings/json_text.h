@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <string_view>
@@ -32,6 +33,7 @@ class JsonText {
   JsonText& value(const char* text) { return value(std::string_view(text)); }
   JsonText& value(bool flag) { return raw(flag ? "true" : "false"); }
   JsonText& value(int number) { return raw(std::to_string(number)); }
+  JsonText& value(std::int64_t number) { return raw(std::to_string(number)); }
   /// Numbers that are not finite are not JSON: null.
   JsonText& value(double number) {
     char digits[32];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "adaptor/geoms/pair_list.h"
+#include "adaptor/geoms/pair_rules.h"
 #include "volcontact/model/contact_model.h"
 
 namespace volcontact::adaptor {
@@ -21,6 +21,7 @@ struct PairContact {
   bool is_jointed = false;              ///< whether one of the bodies hangs on joints
   /// Geoms whose frames are body A and body B: those of `geoms`, but of flush solids.
   int frame_a = 0, frame_b = 0;
+  PairId family = -1;  ///< FlushGroups::Family::number
 };
 
 }  // namespace volcontact::adaptor

@@ -10,6 +10,14 @@
 #include "adaptor/step/implicit_step.h"
 
 namespace volcontact::adaptor {
+std::array<double, 3> sides_of(const Shape& solid) {
+  const auto bounds = bounds_of(solid);
+  std::array<double, 3> sides{};
+  for (int i = 0; i < 3; ++i) sides[static_cast<std::size_t>(i)] = bounds.max[i] - bounds.min[i];
+  std::sort(sides.begin(), sides.end());
+  return sides;
+}
+
 namespace {
 
 // As kEulerSpring and kEulerDamper.
@@ -48,14 +56,6 @@ bool follows_patch(const Friction& friction) {
          slope_at_rest(friction, 1.0, 1.0, 2.0).stiffness;
 }
 
-// Sides of the solid's box, the smallest first [m].
-std::array<double, 3> sides_of(const Shape& solid) {
-  const auto bounds = bounds_of(solid);
-  std::array<double, 3> sides{};
-  for (int i = 0; i < 3; ++i) sides[static_cast<std::size_t>(i)] = bounds.max[i] - bounds.min[i];
-  std::sort(sides.begin(), sides.end());
-  return sides;
-}
 double largest_face(const Shape& solid) {
   const auto sides = sides_of(solid);
   return sides[1] * sides[2];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "adaptor/mujoco/mujoco_compat.h"
@@ -17,6 +18,9 @@ inline constexpr double kEulerSpring = 4.0, kEulerDamper = 2.0;
 
 /// The mass at the patch is that of a solid ball: 1/m and 5/2 of it for the arm.
 inline constexpr double kBall = 3.5;
+
+/// Sides of the solid's box, the smallest first [m].
+std::array<double, 3> sides_of(const Shape& solid);
 
 /// Inverse of the mass that two bodies have against displacements, and against turns, as MuJoCo
 /// knows it at the first pose [1/kg, 1/(kg m^2)].

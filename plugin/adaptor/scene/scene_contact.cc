@@ -17,6 +17,7 @@
 #include "adaptor/memory/work_limit.h"
 #include "adaptor/mujoco/mjgeoms.h"
 #include "adaptor/scene/largest_state.h"
+#include "adaptor/scene/pair_kinds.h"
 #include "adaptor/scene/pair_rates.h"
 #include "volcontact/base/check.h"
 
@@ -27,12 +28,10 @@ namespace {
 constexpr int kInnerThreads = 0;
 
 // Takes over and adds to `meshes`, by number; copies share their data.
-std::vector<Shape> solids_of(const mjModel* m, const SceneKeys& keys,
-                             const std::vector<GeomPair>& pairs, std::map<int, Shape>& meshes) {
+std::vector<Shape> solids_of(const mjModel* m, const SceneKeys& keys, const PairRules& rules,
+                             std::map<int, Shape>& meshes) {
   std::vector<Shape> solids(static_cast<std::size_t>(m->ngeom), Shape(HalfSpace()));
-  std::set<int> geoms;
-  for (const GeomPair& pair : pairs) geoms.insert({pair.a, pair.b});
-  for (const int geom : geoms) {
+  for (const int geom : rules.touching()) {
     Shape& solid = solids[static_cast<std::size_t>(geom)];
     const ComposedGeoms* parts = keys.composed(geom);
     if (parts) {
@@ -49,9 +48,9 @@ std::vector<Shape> solids_of(const mjModel* m, const SceneKeys& keys,
   return solids;
 }
 
-std::vector<GeomPair> pairs_of(const mjModel* m, const SceneKeys& keys, bool listed_only) {
+PairRules rules_of(const mjModel* m, const SceneKeys& keys, bool listed_only) {
   require(m->ngeom > 0, "the model has no geoms: there is nothing that could touch");
-  return pairs_that_can_touch(m, keys, listed_only);
+  return PairRules(m, keys, listed_only);
 }
 
 // The flag with which the author of the model turned contact off; empty where it is on, or where
@@ -65,11 +64,7 @@ std::string flag_without_contact(const mjModel* m, const SceneKeys& keys) {
   return (m->opt.disableflags & mjDSBL_CONTACT) && !is_ours ? "contact=\"disable\"" : "";
 }
 
-int rows_of(const std::vector<GeomPair>& pairs) {
-  std::set<int> geoms;
-  for (const GeomPair& pair : pairs) geoms.insert({pair.a, pair.b});
-  return rows_for(pairs.size(), geoms.size());
-}
+int rows_of(const PairRules& rules) { return rows_for(rules.count(), rules.touching().size()); }
 
 // What to tell the author when the flags of the model make MuJoCo leave out the callback; empty
 // when they do not.
@@ -86,28 +81,29 @@ SceneContact::SceneContact(const mjModel* m, const std::vector<GivenKey>& given,
                            const SceneContact* before)
     : keys_(read_scene_keys(m, given)),
       no_contact_(before != nullptr ? before->no_contact_ : flag_without_contact(m, keys_)),
-      geom_pairs_(pairs_of(m, keys_, !no_contact_.empty())),
+      rules_(rules_of(m, keys_, !no_contact_.empty())),
       meshes_(before != nullptr && before->options().mesh == options().mesh
                   ? before->meshes_
                   : std::map<int, Shape>()),
-      solids_(solids_of(m, keys_, geom_pairs_, meshes_)),
-      flush_(m, keys_, solids_, geom_pairs_),
-      made_(geom_pairs_.size()),
-      cull_(geom_pairs_, solids_) {
+      solids_(solids_of(m, keys_, rules_, meshes_)),
+      flush_(m, keys_, solids_, rules_),
+      laws_(m, keys_),
+      cull_(rules_, solids_) {
   warn_about_model(m);
   if (!no_contact_.empty()) {
     warn_once(
         "the model has <flag " + no_contact_ +
         "/>, so there is no contact; volcontact/option/disabled/ignore makes it volumetric all the "
         "same");
-  } else if (geom_pairs_.empty()) {
+  } else if (rules_.count() == 0) {
     warn_once("no two geoms can touch: check contype, conaffinity and volcontact/option/pairs");
   }
   warn_about_meshes(m);
+  check_engines(m);
   read_laws(m);
   warn_about_friction(m);
-  if (sites_.row_size > 0) sites_.rows = rows_of(geom_pairs_);
-  if (options().implicit != Implicit::kNever) solved_rows_ = rows_of(geom_pairs_);
+  if (sites_.row_size > 0) sites_.rows = rows_of(rules_);
+  if (options().implicit != Implicit::kNever) solved_rows_ = rows_of(rules_);
   energies_ = {solved_rows_, PairEnergy::kNumbers};
 }
 
@@ -116,6 +112,12 @@ void SceneContact::find_room(const mjModel* m, const SceneContact* before) {
   plugin_ = plugin_room(m);
   // mjSTATE_FULLPHYSICS has plugin_state, but not the forces that the user applies.
   if (is_in_plugin() && !keys_.has_target) keys_.options.target = Target::kPassive;
+  // MuJoCo keeps awake what forces are applied to.
+  if (sleep_enabled(m) && !keys_.has_target) keys_.options.target = Target::kPassive;
+  require(
+      !sleep_enabled(m) || options().target == Target::kPassive,
+      "the model has <flag sleep=\"enable\"/>, and MuJoCo keeps awake what forces are applied to: "
+      "nothing that lies would fall asleep; use volcontact/option/target/passive");
   const int needed = layout(m).size();
   if (is_in_plugin()) {
     require(plugin_.size >= needed, "the state of the plugin has " + std::to_string(plugin_.size) +
@@ -140,7 +142,7 @@ void SceneContact::find_room(const mjModel* m, const SceneContact* before) {
       "the model has no room in userdata, so what laws with a memory keep, as sticking friction "
       "and restitution do, lies beside mjData: it is not copied, reset or restored with it; load "
       "the scene with volcontact.load";
-  if (keeps_by_choice()) {
+  if (keeps_by_choice_) {
     alert(told);
   } else {
     warn_once(told);
@@ -149,13 +151,10 @@ void SceneContact::find_room(const mjModel* m, const SceneContact* before) {
 
 // Whether a law with a memory was asked for. The default friction has one too: a micrometre of way,
 // and less than a line for everybody who attaches to a model.
-bool SceneContact::keeps_by_choice() const {
-  return std::any_of(law_classes_.begin(), law_classes_.end(), [](const LawClass& law_class) {
-    const ContactLaws& laws = law_class.laws;
-    if (!laws.normal->states().empty()) return true;
-    return laws.friction && !laws.friction->states().empty() &&
-           friction_laws().front().name != laws.friction->name();
-  });
+bool SceneContact::keeps_by_choice(const ContactLaws& laws) {
+  if (!laws.normal->states().empty()) return true;
+  return laws.friction && !laws.friction->states().empty() &&
+         friction_laws().front().name != laws.friction->name();
 }
 
 void SceneContact::warn_about_meshes(const mjModel* m) {
@@ -187,60 +186,21 @@ void SceneContact::alert(const std::string& warning) {
   alerts_.push_back(warning);
 }
 
-PairLaws SceneContact::laws_of(const mjModel* m, const GeomPair& geoms) const {
-  const int native = geoms.native;
-  const auto side = [&](int geom) {
-    const int material = keys_.material_of_geom[static_cast<std::size_t>(geom)];
-    return Side{label(m, mjOBJ_GEOM, geom),
-                native < 0 ? m->geom_friction[3 * geom] : m->pair_friction[5 * native],
-                material < 0 ? nullptr : &keys_.materials[static_cast<std::size_t>(material)],
-                native < 0 ? "" : native_pair_label(m, native)};
-  };
-  const KeyedValues* listed =
-      geoms.listed < 0 ? nullptr : &keys_.pairs[static_cast<std::size_t>(geoms.listed)].keyed;
-  PairLaws laws = combine(side(geoms.a), side(geoms.b), listed);
-  laws.laws.formulation = keys_.options.formulation;
-  return laws;
-}
-
-PairLaws SceneContact::laws_of(const mjModel* m, int index) const {
-  return laws_of(m, geom_pairs_[static_cast<std::size_t>(index)]);
-}
-
-// Laws are made once for all pairs of the same materials and frictions.
 void SceneContact::read_laws(const mjModel* m) {
   gravity_ = Eigen::Map<const Vec3>(m->opt.gravity).norm();
   facts_.resize(static_cast<std::size_t>(m->ngeom));
-  std::vector<char> has_facts(facts_.size(), 0);
-  using Key = std::tuple<int, double, int, double, int>;
-  std::map<Key, int> classes;
-  class_of_pair_.reserve(geom_pairs_.size());
-  for (const GeomPair& geoms : geom_pairs_) {
-    for (const int geom : {geoms.a, geoms.b}) {
-      const auto i = static_cast<std::size_t>(geom);
-      if (!std::exchange(has_facts[i], 1)) facts_[i] = facts_of(m, geom, solids_[i]);
-    }
+  for (const int geom : rules_.touching()) {
+    const auto i = static_cast<std::size_t>(geom);
+    facts_[i] = facts_of(m, geom, solids_[i]);
+  }
+  laws_.read_all(m, rules_, [&](const GeomPair& geoms, const PairLaws& laws) {
+    for (const std::string& warning : laws.warnings) warn_once(warning);
+    keeps_by_choice_ = keeps_by_choice_ || keeps_by_choice(laws.laws);
+    const PairContact& first = pair(rules_.id(geoms.a, geoms.b));
+    sites_.row_size = std::max(sites_.row_size, first.model.row_size());
+  });
+  for (const GeomPair& geoms : rules_.named()) {
     if (geoms.native >= 0) warn_about_native_pair(m, geoms.native);
-    const auto friction = [&](int geom) {
-      return geoms.native < 0 ? m->geom_friction[3 * geom] : m->pair_friction[5 * geoms.native];
-    };
-    const auto material = [&](int geom) {
-      return keys_.material_of_geom[static_cast<std::size_t>(geom)];
-    };
-    const Key key{material(geoms.a), friction(geoms.a), material(geoms.b), friction(geoms.b),
-                  geoms.listed};
-    const auto [found, is_new] = classes.emplace(key, static_cast<int>(law_classes_.size()));
-    if (is_new) {
-      const PairLaws laws = laws_of(m, geoms);
-      for (const std::string& warning : laws.warnings) warn_once(warning);
-      law_classes_.push_back({laws.laws, laws.stiffness});
-    }
-    class_of_pair_.push_back(found->second);
-    check_engine(m, geoms);
-    if (is_new) {
-      const auto index = static_cast<int>(class_of_pair_.size()) - 1;
-      sites_.row_size = std::max(sites_.row_size, pair(index).model.row_size());
-    }
   }
 }
 
@@ -252,10 +212,19 @@ void SceneContact::warn_about_native_pair(const mjModel* m, int native) {
             " no meaning under volumetric contact; of a <pair> its sliding friction counts");
 }
 
+// Where the program asks for what not every pair has, each is asked.
+void SceneContact::check_engines(const mjModel* m) {
+  const SceneOptions& options = keys_.options;
+  if (options.engine == Engine::kAuto && options.formulation != Formulation::kPotential) return;
+  rules_.for_each([&](const GeomPair& geoms) {
+    check_engine(m, geoms);
+    return true;
+  });
+}
+
 void SceneContact::check_engine(const mjModel* m, const GeomPair& geoms) {
   const SceneOptions& options = keys_.options;
   const bool has_field = options.formulation == Formulation::kPotential;
-  if (options.engine == Engine::kAuto && !has_field) return;
   const Shape& a = solids_[static_cast<std::size_t>(geoms.a)];
   const Shape& b = solids_[static_cast<std::size_t>(geoms.b)];
   if (has_field) {
@@ -271,35 +240,44 @@ void SceneContact::check_engine(const mjModel* m, const GeomPair& geoms) {
             " with " + name_of(b) + "; auto serves them");
 }
 
-PairContact SceneContact::make_pair(int index) const {
-  const auto i = static_cast<std::size_t>(index);
-  GeomPair geoms = geom_pairs_[i];
-  const bool is_swapped = flush_.is_swapped(index);
-  if (is_swapped) std::swap(geoms.a, geoms.b);
-  const LawClass& law_class = law_classes_[static_cast<std::size_t>(class_of_pair_[i])];
+PairContact SceneContact::make_pair(PairId id) const {
+  GeomPair geoms;
+  require(rules_.find(id, geoms), "pair " + std::to_string(id) + " is none of the " +
+                                      std::to_string(rules_.count()) + " of the scene");
+  return make_pair(geoms);
+}
+
+PairContact SceneContact::make_pair(const GeomPair& in_order) const {
+  GeomPair geoms = in_order;
+  const FlushGroups::Family family = flush_.family_of(geoms);
+  if (family.swapped) std::swap(geoms.a, geoms.b);
+  const LawClasses::Laws& law_class = laws_.of(in_order);
   const auto a = static_cast<std::size_t>(geoms.a), b = static_cast<std::size_t>(geoms.b);
   const SceneOptions& options = keys_.options;
   const bool is_asked =
       options.engine != Engine::kAuto && serves(options.engine, solids_[a], solids_[b]);
   const Engine engine = is_asked ? options.engine : engine_for(solids_[a], solids_[b]);
   const int most_cells = options.engine == Engine::kOctree ? kMostCells : kMostCellsInStep;
-  const int frame_a = flush_.frame_of(geoms.a), frame_b = flush_.frame_of(geoms.b);
+  const bool joins = family.number >= 0;
+  const int frame_a = joins ? flush_.frame_of(geoms.a) : geoms.a;
+  const int frame_b = joins ? flush_.frame_of(geoms.b) : geoms.b;
   // Flush solids are taken as one: their bodies as that of the frame, a patch as large as on all.
   const auto facts_of = [&](int geom, int frame) {
     GeomFacts facts = facts_[static_cast<std::size_t>(frame)];
-    if (flush_.is_tile(geom)) facts.largest_face = flush_.largest_face(geom);
+    if (joins && flush_.is_tile(geom)) facts.largest_face = flush_.largest_face(geom);
     return facts;
   };
   const GeomFacts facts_a = facts_of(geoms.a, frame_a), facts_b = facts_of(geoms.b, frame_b);
   ContactLaws laws = law_class.laws;
   laws.mass = reduced_mass(facts_a, facts_b);
-  if (is_swapped) laws.share_of_a = 1.0 - laws.share_of_a;
+  if (family.swapped) laws.share_of_a = 1.0 - laws.share_of_a;
   PairContact pair{geoms, engine,
                    ContactModel({{solids_[a], solids_[b], Pose{}, Pose{}}}, std::move(laws),
                                 {options.tolerance, engine, kInnerThreads, most_cells}),
                    law_class.stiffness};
   pair.frame_a = frame_a;
   pair.frame_b = frame_b;
+  pair.family = family.number;
   set_rates(facts_a, facts_b, gravity_, pair);
   return pair;
 }
@@ -307,7 +285,7 @@ PairContact SceneContact::make_pair(int index) const {
 void SceneContact::warn_about_model(const mjModel* m) {
   const std::string skipped = skipped_warning(m);
   if (!skipped.empty()) alert(skipped);
-  if (has_flexes(m)) warn_once("flexes have no volumetric contact: they touch nothing");
+  if (has_flexes(m)) warn_once("flexes have no volumetric contact: they keep MuJoCo's own");
   if (keys_.options.target != Target::kXfrc) {
     for (int i = 0; i < m->nsensor; ++i) {
       const int type = m->sensor_type[i];
@@ -331,11 +309,17 @@ void SceneContact::warn_about_friction(const mjModel* m) {
   if (is_implicit() && !(m->opt.integrator == mjINT_RK4 && options().implicit == Implicit::kAuto)) {
     return;
   }
-  for (std::size_t i = 0; i < geom_pairs_.size(); ++i) {
-    const GeomPair& geoms = geom_pairs_[i];
-    const LawClass& law_class = law_classes_[static_cast<std::size_t>(class_of_pair_[i])];
+  using Key = std::tuple<int, double, double, double, std::array<double, 3>>;
+  const auto kinds = kinds_of<std::map<Key, int>>(rules_, [&](int geom) -> Key {
+    const auto i = static_cast<std::size_t>(geom);
+    const mjtNum* inverse = m->body_invweight0 + 2 * m->geom_bodyid[geom];
+    return {keys_.material_of_geom[i], m->geom_friction[3 * geom], inverse[0], inverse[1],
+            sides_of(solids_[i])};
+  });
+  for (const GeomPair& geoms : pairs_of_kinds(rules_, kinds)) {
+    const LawClasses::Laws& laws = laws_.of(geoms);
     const double longest =
-        longest_step_at_rest(m, solids_, geoms, law_class.laws.friction.get(), law_class.stiffness);
+        longest_step_at_rest(m, solids_, geoms, laws.laws.friction.get(), laws.stiffness);
     if (m->opt.timestep <= longest) continue;
     warn_once("friction of geoms '" + label(m, mjOBJ_GEOM, geoms.a) + "' and '" +
               label(m, mjOBJ_GEOM, geoms.b) +

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "adaptor/geoms/cull.h"
 #include "adaptor/geoms/flush_groups.h"
 #include "adaptor/keys/materials.h"
 #include "adaptor/keys/scene_keys.h"
@@ -13,6 +14,7 @@
 #include "adaptor/memory/site_pool.h"
 #include "adaptor/memory/userdata_layout.h"
 #include "adaptor/mujoco/plugin_room.h"
+#include "adaptor/scene/law_classes.h"
 #include "adaptor/scene/pair_contact.h"
 #include "adaptor/scene/pair_rates.h"
 #include "adaptor/scene/pair_store.h"
@@ -44,16 +46,18 @@ class SceneContact {
   const SceneKeys& keys() const { return keys_; }
   const SceneOptions& options() const { return keys_.options; }
   const std::vector<Shape>& solids() const { return solids_; }
-  /// The pairs that can touch, and their contact models: each is made when it is first asked for.
-  const std::vector<GeomPair>& pairs() const { return geom_pairs_; }
-  const PairContact& pair(int index) const {
-    return made_.get(static_cast<std::size_t>(index), [&] { return make_pair(index); });
+  /// Which geoms can touch, and the contact models of pairs: each is made when it is first asked
+  /// for.
+  const PairRules& rules() const { return rules_; }
+  const PairContact& pair(PairId id) const {
+    return made_.get(id, [&] { return make_pair(id); });
   }
+  /// The same of a pair that can touch, made anew.
+  PairContact make_pair(const GeomPair& geoms) const;
   std::size_t made_pairs() const { return made_.made(); }
   /// The solids that continue each other.
   const FlushGroups& flush() const { return flush_; }
-  /// The laws of a pair in words, with where each number comes from.
-  PairLaws laws_of(const mjModel* m, int index) const;
+  const LawClasses& laws() const { return laws_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
   /// Those of the warnings that say the simulation will not be what its author expects.
   const std::vector<std::string>& alerts() const { return alerts_; }
@@ -80,18 +84,13 @@ class SceneContact {
   bool is_implicit() const { return options().implicit != Implicit::kNever; }
 
  private:
-  // The laws of the pairs of some materials, frictions and a volcontact/pair.
-  struct LawClass {
-    ContactLaws laws;
-    double stiffness;
-  };
-  PairLaws laws_of(const mjModel* m, const GeomPair& geoms) const;
   void read_laws(const mjModel* m);
   void warn_about_native_pair(const mjModel* m, int native);
+  void check_engines(const mjModel* m);
   void check_engine(const mjModel* m, const GeomPair& geoms);
-  PairContact make_pair(int index) const;
+  PairContact make_pair(PairId id) const;
   void warn_about_model(const mjModel* m);
-  bool keeps_by_choice() const;
+  static bool keeps_by_choice(const ContactLaws& laws);
   void warn_about_meshes(const mjModel* m);
   void warn_about_friction(const mjModel* m);
   void warn_once(const std::string& warning);
@@ -99,14 +98,14 @@ class SceneContact {
 
   SceneKeys keys_;
   std::string no_contact_;  // the flag of the model that says so; else empty
-  std::vector<GeomPair> geom_pairs_;
+  PairRules rules_;
   std::map<int, Shape> meshes_;  // by number
   std::vector<Shape> solids_;    // by geom; of geoms without a pair a placeholder
   FlushGroups flush_;
-  std::vector<LawClass> law_classes_;
-  std::vector<int> class_of_pair_;
+  LawClasses laws_;
   std::vector<GeomFacts> facts_;  // by geom
   double gravity_ = 0.0;
+  bool keeps_by_choice_ = false;
   PairStore made_;
   Cull cull_;
   SitePoolLayout sites_;

@@ -113,7 +113,7 @@ def of_scene(
     ids = _ids(model, names)
     with attach(model, material=material, options=options) as contact:
         description = contact.description
-        texts = [contact._pair_text(i) for i in range(len(description["pairs"]))]
+        texts = [contact._pair_text(pair["pair"]) for pair in description["pairs"]]
     models: dict[tuple[int, int, str], list[str]] = {}
     for pair, text in zip(description["pairs"], texts, strict=True):
         sides = [_side(model, int(pair[key]), ids) for key in ("id_a", "id_b")]

@@ -234,6 +234,27 @@ TEST(JoinedPairs, SitesSumToWhatActs) {
   }
 }
 
+// Two balls on two tiles. What one tile and one ball say of themselves in a <pair> leaves that ball
+// without a family; it lies where it lay, on the tile under it.
+TEST(JoinedPairs, ATileStandsWhereItIsForWhatHasNoFamily) {
+  const std::string scene =
+      "<mujoco><worldbody><geom name=\"near\" type=\"box\" size=\".5 .5 .1\"/>"
+      "<geom name=\"far\" type=\"box\" size=\".5 .5 .1\" pos=\"1 0 0\"/>"
+      "<body pos=\"-.3 0 .199\"><freejoint/><geom size=\".1\" mass=\"1\"/></body>"
+      "<body pos=\"1.3 0 .199\"><freejoint/><geom name=\"ball\" size=\".1\" mass=\"1\"/></body>"
+      "</worldbody><contact><pair geom1=\"far\" geom2=\"ball\" friction=\"1 1 .005 .0001 .0001\"/>"
+      "</contact></mujoco>";
+  const auto m = testing::load(scene);
+  const auto d = testing::make_data(m);
+  const testing::Attached attached(m);
+  mj_step(m.get(), d.get());
+  const std::vector<volcontact_site> sites = sites_of(m, d);
+  ASSERT_EQ(sites.size(), 2u);
+  EXPECT_NEAR(sites[0].centroid[0], -0.3, 1e-9);
+  EXPECT_NEAR(sites[1].centroid[0], 1.3, 1e-9);
+  EXPECT_NEAR(sites[0].volume, sites[1].volume, 1e-12);
+}
+
 TEST(JoinedPairs, CopiedDataGoOnAsTheOriginal) {
   const auto m = testing::load(scene(kSliding, floor_of_tiles()));
   const auto a = testing::make_data(m), b = testing::make_data(m);

@@ -21,11 +21,11 @@ class Scene {
         <geom name="ball" type="sphere" size=".1"/></body></worldbody>)" +
                            more + "</mujoco>")),
         keys(read_scene_keys(m.get())),
-        pairs(pairs_that_can_touch(m.get(), keys)) {
+        rules(m.get(), keys) {
     for (int geom = 0; geom < m->ngeom; ++geom) {
       solids.push_back(simple_solid(m.get(), geom, keys));
     }
-    groups = FlushGroups(m.get(), keys, solids, pairs);
+    groups = FlushGroups(m.get(), keys, solids, rules);
   }
   int geom(const char* name) const { return mj_name2id(m.get(), mjOBJ_GEOM, name); }
   std::size_t tiles() const {
@@ -36,7 +36,7 @@ class Scene {
 
   testing::ModelPointer m;
   SceneKeys keys;
-  std::vector<GeomPair> pairs;
+  PairRules rules;
   std::vector<Shape> solids;
   FlushGroups groups;
 };
@@ -118,11 +118,13 @@ TEST(FlushGroups, OnlyBodiesThatCannotMoveAgainstEachOther) {
 TEST(FlushGroups, FamiliesAreWhatTouchesTheSameSolids) {
   const Scene scene(box("a", "0 0 0") + box("b", "1 0 0") + "<body pos=\"0 0 5\"><freejoint/>" +
                     box("c", "0 0 0") + box("d", "1 0 0") + "</body>");
-  std::map<int, int> sizes;
-  for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
-    ++sizes[scene.groups.family_of(static_cast<int>(i))];
-    EXPECT_FALSE(scene.groups.is_swapped(static_cast<int>(i)));
-  }
+  std::map<PairId, int> sizes;
+  scene.rules.for_each([&](const GeomPair& pair) {
+    const FlushGroups::Family family = scene.groups.family_of(pair);
+    ++sizes[family.number];
+    EXPECT_FALSE(family.swapped);
+    return true;
+  });
   std::multiset<int> found;
   for (const auto& [family, size] : sizes) found.insert(size);
   // Ball with floor, floor with slab, ball with slab.
@@ -137,27 +139,40 @@ TEST(FlushGroups, SidesOfAFamilyAreInOneOrder) {
                        "<body>" +
                        box("b", "1 0 0") + "</body></worldbody></mujoco>");
   const SceneKeys keys = read_scene_keys(m.get());
-  const std::vector<GeomPair> pairs = pairs_that_can_touch(m.get(), keys);
-  ASSERT_EQ(pairs.size(), 2u);
+  const PairRules rules(m.get(), keys);
+  ASSERT_EQ(rules.count(), 2u);
   std::vector<Shape> solids;
   for (int geom = 0; geom < m->ngeom; ++geom) solids.push_back(simple_solid(m.get(), geom, keys));
-  const FlushGroups groups(m.get(), keys, solids, pairs);
-  ASSERT_FALSE(groups.empty());
-  EXPECT_EQ(groups.family_of(0), groups.family_of(1));
-  EXPECT_NE(groups.is_swapped(0), groups.is_swapped(1));
+  const FlushGroups groups(m.get(), keys, solids, rules);
+  GeomPair first, second;
+  ASSERT_TRUE(rules.admit(0, 1, first) && rules.admit(1, 2, second));
+  EXPECT_GE(groups.family_of(first).number, 0);
+  EXPECT_EQ(groups.family_of(first).number, groups.family_of(second).number);
+  EXPECT_NE(groups.family_of(first).swapped, groups.family_of(second).swapped);
 }
 
 TEST(FlushGroups, AFamilyWithAPairOfItsOwnIsNone) {
+  const auto are_touched_together = [](const std::string& tiles, const std::string& more = "") {
+    const Scene scene(tiles, more);
+    EXPECT_EQ(scene.tiles(), 2u);
+    return scene.groups.can_touch_together(scene.groups.groups().front());
+  };
   const std::string tiles = box("a", "0 0 0") + box("b", "1 0 0");
-  EXPECT_FALSE(Scene(tiles).groups.empty());
-  EXPECT_TRUE(
-      Scene(tiles,
-            "<contact><pair geom1=\"a\" geom2=\"ball\" friction=\".1 .1 .005 .0001 .0001\"/>"
-            "</contact>")
-          .groups.empty());
-  const std::string masked =
-      box("a", "0 0 0") + box("b", "1 0 0", "contype=\"2\" conaffinity=\"2\"");
-  EXPECT_TRUE(Scene(masked).groups.empty());
+  EXPECT_TRUE(are_touched_together(tiles));
+  EXPECT_FALSE(are_touched_together(
+      tiles,
+      "<contact><pair geom1=\"a\" geom2=\"ball\" friction=\".1 .1 .005 .0001 .0001\"/>"
+      "</contact>"));
+  // A second ball has one all the same.
+  EXPECT_TRUE(are_touched_together(
+      tiles + "<body pos=\"0 0 5\"><freejoint/><geom size=\".1\"/></body>",
+      "<contact><pair geom1=\"a\" geom2=\"ball\" friction=\".1 .1 .005 .0001 .0001\"/>"
+      "</contact>"));
+  // One ball for each tile.
+  EXPECT_FALSE(are_touched_together(box("a", "0 0 0") +
+                                    box("b", "1 0 0", "contype=\"2\" conaffinity=\"2\"") +
+                                    "<body pos=\"0 0 5\"><freejoint/><geom size=\".1\" "
+                                    "contype=\"2\" conaffinity=\"2\"/></body>"));
 }
 
 }  // namespace

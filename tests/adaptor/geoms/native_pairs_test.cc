@@ -51,8 +51,9 @@ TEST(NativePairs, TheDescriptionSaysWhoseFrictionItIs) {
   const testing::ModelPointer m =
       testing::compile(scene(pair("name=\"slippery\" friction=\".1 .1 .005 .0001 .0001\"")));
   const SceneContact contact(m.get());
-  ASSERT_EQ(contact.pairs().size(), 1u);
-  for (const PairField& field : contact.laws_of(m.get(), 0).fields) {
+  ASSERT_EQ(contact.rules().count(), 1u);
+  const GeomPair pair = contact.rules().named().front();
+  for (const PairField& field : contact.laws().in_words(m.get(), pair).fields) {
     if (field.name != "friction") continue;
     EXPECT_EQ(field.value, std::vector<double>{0.1});
     EXPECT_TRUE(testing::contains(field.source, "friction of <pair> 'slippery'"));
@@ -65,7 +66,8 @@ TEST(NativePairs, FrictionChangedInACompiledModelIsInForce) {
   m->pair_friction[0] = m->pair_friction[1] = 0.3;
   const SceneContact* contact = contact_of(m.get());
   ASSERT_NE(contact, nullptr);
-  for (const PairField& field : contact->laws_of(m.get(), 0).fields) {
+  const GeomPair named = contact->rules().named().front();
+  for (const PairField& field : contact->laws().in_words(m.get(), named).fields) {
     if (field.name == "friction") {
       EXPECT_EQ(field.value, std::vector<double>{0.3});
     }

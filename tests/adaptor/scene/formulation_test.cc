@@ -25,7 +25,7 @@ TEST(Formulation, PotentialServesEveryPairOfGeoms) {
   for (const std::string& table : {box, egg, mesh}) {
     for (const std::string& thing : {box, egg, mesh}) {
       const ModelPointer m = testing::load(scene(table, thing));
-      EXPECT_EQ(SceneContact(m.get()).pair(0).model.laws().formulation, Formulation::kPotential);
+      EXPECT_EQ(SceneContact(m.get()).pair(1).model.laws().formulation, Formulation::kPotential);
     }
   }
 }
@@ -57,7 +57,7 @@ TEST(Formulation, SoftBodyTakesTheLargerShareOfTheCompliance) {
       "<numeric name='volcontact/material/soft/stiffness' data='1e7'/>" + tuple +
       "soft'><element objtype='geom' objname='thing'/></tuple></custom></mujoco>");
   // Geom a is the table: k_v / k_a = (3 * 1 / 4) / 3.
-  EXPECT_DOUBLE_EQ(SceneContact(m.get()).pair(0).model.laws().share_of_a, 0.25);
+  EXPECT_DOUBLE_EQ(SceneContact(m.get()).pair(1).model.laws().share_of_a, 0.25);
 }
 
 }  // namespace

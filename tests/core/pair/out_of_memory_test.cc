@@ -112,8 +112,8 @@ TEST_P(OutOfMemory, EveryAllocationOfAColdEvaluationMayFail) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Engines, OutOfMemory, ::testing::ValuesIn(kPairings),
-                         [](const auto& info) {
-                           std::string name = info.param.name;
+                         [](const auto& tested) {
+                           std::string name = tested.param.name;
                            std::erase_if(name, [](char c) { return !std::isalnum(c); });
                            return name;
                          });

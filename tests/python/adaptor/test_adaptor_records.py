@@ -41,9 +41,10 @@ def declaration(record):
 def fields_of(record):
     """Names, types and lengths of its fields, in their order."""
     body = re.sub(r"//[^\n]*", "", declaration(record)).partition("{")[2].rpartition("}")[0]
-    fields = re.findall(r"(int|double) (\w+)(?:\[(\d+)\])?;", body)
+    fields = re.findall(r"(int|long long|double) (\w+)(?:\[(\d+)\])?;", body)
     assert len(fields) == body.count(";")
-    return [(name, {"int": "i4", "double": "f8"}[kind], int(n or 1)) for kind, name, n in fields]
+    types = {"int": "i4", "long long": "i8", "double": "f8"}
+    return [(name, types[kind], int(n or 1)) for kind, name, n in fields]
 
 
 @pytest.mark.parametrize("record", RECORDS)

@@ -180,9 +180,11 @@ def test_values_are_numbers_or_words(wrong):
         vc.attach(theirs(), **wrong)
 
 
-def test_sleep_is_refused():
+def test_sleep_is_refused_where_nobody_can_wake():
     if not hasattr(mujoco.mjtEnableBit, "mjENBL_SLEEP"):
         pytest.skip("this MuJoCo has no sleep")
+    if int(mujoco.__version__.split(".")[0]) >= 4:
+        pytest.skip("test_sleep.py")
     with pytest.raises(ValueError, match="never wakes a sleeping body; disable it"):
         vc.attach(theirs(flag='<flag sleep="enable"/>'))
 

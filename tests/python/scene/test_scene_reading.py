@@ -43,7 +43,7 @@ def test_sites_have_the_documented_fields_and_one_row_a_site():
     assert site["volume"] == pytest.approx(math.pi * h * h * (3 * radius - h) / 3, rel=1e-9)
     assert site["area"] == pytest.approx(math.pi * h * (2 * radius - h), rel=1e-9)
     assert site["depth"] == pytest.approx(h, rel=1e-9)
-    assert (site["geom_a"], site["geom_b"], site["pair"], site["status"]) == (0, 1, 0, 0)
+    assert (site["geom_a"], site["geom_b"], site["pair"], site["status"]) == (0, 1, 1, 0)
     assert site["normal"] == pytest.approx([0, 0, -1])  # on the floor
     assert site["normal_force"] == pytest.approx(1e8 * site["volume"])
     assert site["force"] == pytest.approx([0, 0, -site["normal_force"]])

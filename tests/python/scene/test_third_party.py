@@ -48,11 +48,10 @@ def test_row_has_both_contacts(script):
 
 
 def test_row_of_a_scene_that_is_refused_has_the_reason(script):
-    if not hasattr(mujoco.mjtEnableBit, "mjENBL_SLEEP"):
-        pytest.skip("this MuJoCo has no sleep")
-    text = SCENE.format(flag='<flag sleep="enable"/>')
+    keys = '<custom><numeric name="volcontact/option/tolerance" data="1e-3"/></custom>'
+    text = SCENE.format(flag="").replace("</mujoco>", keys + "</mujoco>")  # without room
     row = script.examine(lambda: mujoco.MjModel.from_xml_string(text), 10)
-    assert "never wakes a sleeping body" in row["refused"]
+    assert "mjData.userdata is too small" in row["refused"]
     assert "volumetric_us" not in row and row["native_contacts"] == 4
 
 

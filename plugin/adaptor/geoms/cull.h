@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "adaptor/geoms/bounds_tree.h"
+#include "adaptor/geoms/pair_rules.h"
+
+namespace volcontact::adaptor {
+
+/// Leaves out, step by step, the pairs whose bounds are apart: of few by comparison of all, of many
+/// by a sweep of the solids that move along one axis, and a tree of those that do not. Const once
+/// made.
+class Cull {
+ public:
+  /// `solids` has one entry per geom of the model; those of no pair are not looked at. Refers to
+  /// `rules` and `solids`.
+  Cull(const PairRules& rules, const std::vector<Shape>& solids);
+
+  /// Memory of one call, reused. What it holds changes no result.
+  struct Scratch {
+    std::vector<Bounds> boxes;    ///< of the solids that move
+    std::vector<int> sorted;      ///< them by their lower ends, as they were sorted last
+    std::vector<double> low;      ///< by solid, along the axis of the sweep
+    std::vector<Bounds> ordered;  ///< in the order of the sweep
+    std::vector<std::pair<double, double>> ends;
+    struct Fixed {  ///< of the solids that do not move, as long as their poses are these
+      std::uint64_t owner = 0;
+      std::vector<mjtNum> positions, rotations;
+      std::vector<Bounds> boxes;
+      BoundsTree tree;
+    } fixed;
+    std::vector<PairId> near;  ///< result, ascending
+  };
+
+  void run(const mjData* d, Scratch& scratch) const;
+
+ private:
+  struct Listed {
+    PairId id;
+    int a, b;  // a plane and a place in moving_; else two places in moving_
+  };
+  const Shape& solid_of(int geom) const { return (*solids_)[static_cast<std::size_t>(geom)]; }
+  void list_pairs();
+  void tell_fixed_apart();
+  void compare_all(const mjData* d, Scratch& scratch) const;
+  void reach_planes(const mjData* d, Scratch& scratch) const;
+  void sort_moving(Scratch& scratch) const;
+  void sweep(Scratch& scratch) const;
+  void follow_fixed(const mjData* d, Scratch::Fixed& fixed) const;
+  void meet_fixed(const mjData* d, Scratch& scratch) const;
+
+  const PairRules* rules_;
+  const std::vector<Shape>* solids_;
+  std::uint64_t number_;  // no other one has it
+  bool is_swept_ = false;
+  std::vector<int> planes_, moving_, fixed_;        // geoms that can touch others, ascending
+  std::vector<Listed> with_plane_, between_;        // where there are few
+  std::vector<std::pair<int, int>> runs_of_fixed_;  // neighbours among the geoms: first, count
+};
+
+}  // namespace volcontact::adaptor
