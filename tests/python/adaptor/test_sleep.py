@@ -159,3 +159,27 @@ def test_forces_that_are_applied_keep_bodies_awake():
     model = mujoco.MjModel.from_xml_string(stacks())
     with pytest.raises(ValueError, match="nothing that lies would fall asleep"):
         vc.attach(model, options={"target": "applied"})
+
+
+def test_a_batch_that_sleeps_equals_single_runs():
+    from mujoco.batch import Batch
+
+    model = vc.load(stacks(BALL), material=STIFF)
+    heights = (1.0, 1.4, 1.8)
+    ball = model.jnt_qposadr[model.body("ball").jntadr[0]]
+    with vc.attach(model, material=STIFF):
+        batch = Batch(model, nsim=len(heights), nthread=2, persistent=True)
+        batch.bind("qpos")[:, ball + 2] = heights
+        asleep = 0
+        for _ in range(450):
+            batch.step()
+        qpos, qvel = batch.bind("qpos"), batch.bind("qvel")
+        for i, height in enumerate(heights):
+            data = mujoco.MjData(model)
+            data.qpos[ball + 2] = height
+            for _ in range(450):
+                mujoco.mj_step(model, data)
+                asleep += len(awake(model, data)) < 7
+            assert np.array_equal(qpos[i], data.qpos), i
+            assert np.array_equal(qvel[i], data.qvel), i
+    assert asleep > 100
