@@ -67,7 +67,9 @@ ROOMS = {
 }
 # Files of python/bindings; each may use those before it. `bind` stands for all bind_*.cc, which are
 # side by side.
-BINDINGS = ("arrays", "fields", "python_distance", "python_law", "bindings", "bind", "module")
+BINDINGS = (
+    "arrays", "fields", "python_distance", "python_law", "signals", "bindings", "bind", "module",
+)  # fmt: skip
 MOST_FILES = 25  # in a folder of the plugin
 # The only folder that may include each library of others.
 OWNER = {"mujoco": "adaptor", "CGAL": "cgal"}

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "adaptor/support/models.h"
-#include "core/support/fail_allocations.h"
+#include "adaptor/support/fail_allocations.h"
 
 namespace volcontact::adaptor::out_of_memory_test {
 namespace {

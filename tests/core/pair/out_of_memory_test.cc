@@ -6,7 +6,7 @@
 #include <new>
 #include <optional>
 
-#include "core/support/fail_allocations.h"
+#include "adaptor/support/fail_allocations.h"
 #include "core/support/meshes.h"
 #include "core/support/random_shapes.h"
 #include "volcontact/force/laws.h"

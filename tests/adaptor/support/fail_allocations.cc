@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/support/fail_allocations.h"
+#include "adaptor/support/fail_allocations.h"
 
 #include <atomic>
 #include <cstddef>
