@@ -7,8 +7,8 @@
 #include <cstring>
 #include <thread>
 
-#include "adaptor/support/models.h"
 #include "adaptor/support/fail_allocations.h"
+#include "adaptor/support/models.h"
 
 namespace volcontact::adaptor::out_of_memory_test {
 namespace {

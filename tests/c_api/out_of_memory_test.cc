@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "c_api/support.h"
 #include "adaptor/support/fail_allocations.h"
+#include "c_api/support.h"
 
 namespace volcontact::c_api::testing::out_of_memory_test {
 namespace {
