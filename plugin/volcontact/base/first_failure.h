@@ -11,9 +11,11 @@ namespace volcontact {
 /// that ends the program.
 class FirstFailure {
  public:
-  /// Runs a part of the work in any thread.
+  /// Runs a part of the work in any thread; none after a failure, which may have left the memory of
+  /// its thread half grown.
   template <typename Work>
   void guard(Work&& work) noexcept {
+    if (taken_.load(std::memory_order_acquire)) return;
     try {
       work();
     } catch (...) {

@@ -134,7 +134,8 @@ std::string trees(std::mt19937& random) {
   std::set<std::pair<int, int>> named, excluded;
   for (int i = 0; i < 6; ++i) {
     const int a = below(static_cast<unsigned>(geoms)), b = below(static_cast<unsigned>(geoms));
-    const std::string first = "g" + std::to_string(a), second = "g" + std::to_string(b);
+    // Not "g" + ...: GCC 12 then warns of a copy that cannot be.
+    const std::string g = "g", first = g + std::to_string(a), second = g + std::to_string(b);
     const bool is_new = a != b && named.insert(std::minmax(a, b)).second;
     if (is_new && i < 3) {
       contact += "<pair geom1=\"" + first + "\" geom2=\"" + second + "\"/>";
