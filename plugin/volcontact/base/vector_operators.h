@@ -18,11 +18,11 @@ namespace vector_operators {
 /// A vector of three, or an expression for one whose numbers Eigen can load in pairs. Others, such
 /// as the transpose of a row, stay its own: of them it adds in another order.
 template <typename T>
-concept Column = std::same_as<T, Vec3> ||
-                 (std::derived_from<T, Eigen::MatrixBase<T>> &&
-                  std::same_as<typename T::Scalar, double> && T::RowsAtCompileTime == 3 &&
-                  T::ColsAtCompileTime == 1 &&
-                  (Eigen::internal::evaluator<T>::Flags & Eigen::PacketAccessBit) != 0);
+concept Column =
+    std::same_as<T, Vec3> ||
+    (std::derived_from<T, Eigen::MatrixBase<T>> && std::same_as<typename T::Scalar, double> &&
+     T::RowsAtCompileTime == 3 && T::ColsAtCompileTime == 1 &&
+     (Eigen::internal::evaluator<T>::Flags & Eigen::PacketAccessBit) != 0);
 template <typename T>
 concept Number = std::is_arithmetic_v<T>;
 template <typename T>
@@ -59,12 +59,11 @@ VOLCONTACT_VECTOR_INLINE Vec3 quotient(const Vec3& a, double s) {
   return {a.x() / s, a.y() / s, a.z() / s};
 }
 
-/// x + y + z as Eigen adds them. It makes the first two rows of a product as a pair, from its left
-/// factor column by column, and the third by itself.
-template <Square A, bool kTransposedToo = false>
+/// x + y + z as Eigen adds them in row i of a product with a vector: it makes the first two rows as
+/// a pair, column by column, and the third by itself.
+template <Square M>
 VOLCONTACT_VECTOR_INLINE double sum_of_row(int i, double x, double y, double z) {
-  const bool from_left = Transposed<A> ? !kTransposedToo : i < 2;
-  return from_left ? (x + y) + z : x + (y + z);
+  return Transposed<M> || i < 2 ? (x + y) + z : x + (y + z);
 }
 
 }  // namespace vector_operators
@@ -103,25 +102,6 @@ VOLCONTACT_VECTOR_INLINE Vec3 operator*(const M& m, const A& a) {
                                            at(m, i, 2) * v.z());
   };
   return {entry(0), entry(1), entry(2)};
-}
-template <vector_operators::Square A, vector_operators::Square B>
-VOLCONTACT_VECTOR_INLINE Mat3 operator*(const A& a, const B& b) {
-  using vector_operators::at;
-  const auto entry = [&](int i, int j) {
-    return vector_operators::sum_of_row<A, vector_operators::Transposed<B>>(
-        i, at(a, i, 0) * at(b, 0, j), at(a, i, 1) * at(b, 1, j), at(a, i, 2) * at(b, 2, j));
-  };
-  Mat3 c;
-  c.coeffRef(0, 0) = entry(0, 0);
-  c.coeffRef(1, 0) = entry(1, 0);
-  c.coeffRef(2, 0) = entry(2, 0);
-  c.coeffRef(0, 1) = entry(0, 1);
-  c.coeffRef(1, 1) = entry(1, 1);
-  c.coeffRef(2, 1) = entry(2, 1);
-  c.coeffRef(0, 2) = entry(0, 2);
-  c.coeffRef(1, 2) = entry(1, 2);
-  c.coeffRef(2, 2) = entry(2, 2);
-  return c;
 }
 
 #undef VOLCONTACT_VECTOR_INLINE
