@@ -87,8 +87,7 @@ void solve_implicit(const SceneContact& contact, const mjModel* m, mjData* d,
 }
 
 // What the step that ends here released: solved pairs know when they are, others at its end.
-void release(const AccountKeeper& account, EnergyAccount& now,
-             EvaluationScratch& scratch) {
+void release(const AccountKeeper& account, EnergyAccount& now, EvaluationScratch& scratch) {
   if (!account.continues()) return;
   const EnergyAccount before = account.begin().energy();
   now.released = before.released + before.releasing;

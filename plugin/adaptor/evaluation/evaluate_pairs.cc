@@ -134,8 +134,8 @@ void evaluate_pairs(const SceneContact& contact, const mjModel* m, const mjData*
   for (int task = 0; task < tasks; ++task) {
     const int thread = is_shared ? omp_get_thread_num() : 0;
     const bool is_single = task < work.single_tasks;
-    const int first = is_single ? work.own_sharing + task
-                                : single + (task - work.single_tasks) * kPairsPerTask;
+    const int first =
+        is_single ? work.own_sharing + task : single + (task - work.single_tasks) * kPairsPerTask;
     const int last = is_single ? first + 1 : std::min(first + kPairsPerTask, work.pairs);
     failure.guard([&] { evaluate_some(first, last, thread); });
   }

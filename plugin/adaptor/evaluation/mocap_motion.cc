@@ -27,8 +27,7 @@ int body_of(const mjModel* m, int mocap) {
 
 }  // namespace
 
-Twist MocapMotion::at(const mjModel* m, const mjData* d, int body,
-                      const Vec3& point) const {
+Twist MocapMotion::at(const mjModel* m, const mjData* d, int body, const Vec3& point) const {
   const int mocap = mocap_of(m, body);
   if (mocap < 0 || !rows_) return {};
   const MocapRow row = this->row(mocap);
@@ -75,8 +74,7 @@ void MocapMotion::add_load(const mjModel* m, const mjData* d, int body, const Ve
   row.torque() += torque + (point - vec3_at(d->xpos, m->body_rootid[body])).cross(force);
 }
 
-double MocapMotion::work_since(const mjModel* m, const MocapMotion& before,
-                               double elapsed) const {
+double MocapMotion::work_since(const mjModel* m, const MocapMotion& before, double elapsed) const {
   double power = 0.0;
   for (int mocap = 0; mocap < m->nmocap; ++mocap) {
     const MocapRow now = row(mocap), last = before.row(mocap);

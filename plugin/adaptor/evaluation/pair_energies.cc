@@ -78,8 +78,7 @@ double read_energies(const SceneContact& contact, const double* committed, doubl
   return unpaid;
 }
 
-bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m,
-                       EvaluationScratch& scratch) {
+bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m, EvaluationScratch& scratch) {
   constexpr double kRounding = 1e-9;
   bool some = false;
   std::size_t first = 0;  // of the pair's sites
@@ -107,8 +106,7 @@ bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m,
   return some;
 }
 
-bool limit_explicit(const SceneContact& contact, const mjModel* m,
-                    EvaluationScratch& scratch) {
+bool limit_explicit(const SceneContact& contact, const mjModel* m, EvaluationScratch& scratch) {
   bool limited = false;
   for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
     PairEnergy& energy = scratch.energies[k];
@@ -129,8 +127,7 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m,
   return limited;
 }
 
-bool keep_energies(const SceneContact& contact, double* states,
-                   EvaluationScratch& scratch) {
+bool keep_energies(const SceneContact& contact, double* states, EvaluationScratch& scratch) {
   const SitePool<double> pool(states + contact.sites().size(), contact.energies());
   pool.clear();
   scratch.kept.clear();

@@ -18,16 +18,13 @@ double read_energies(const SceneContact& contact, const double* committed, doubl
 
 /// Runge-Kutta's stages are exact enough, but for what no motion put in: pairs that would give it
 /// back count as stiff. Returns whether there are some.
-bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m,
-                       EvaluationScratch& scratch);
+bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m, EvaluationScratch& scratch);
 
 /// The same bound for pairs whose forces are explicit. Returns whether some are less than their
 /// laws say.
-bool limit_explicit(const SceneContact& contact, const mjModel* m,
-                    EvaluationScratch& scratch);
+bool limit_explicit(const SceneContact& contact, const mjModel* m, EvaluationScratch& scratch);
 
 /// Writes the rows behind those of the sites; false when there was no room for all.
-bool keep_energies(const SceneContact& contact, double* states,
-                   EvaluationScratch& scratch);
+bool keep_energies(const SceneContact& contact, double* states, EvaluationScratch& scratch);
 
 }  // namespace volcontact::adaptor

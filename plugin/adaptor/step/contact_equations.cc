@@ -76,8 +76,7 @@ void ContactEquations::solve_blocks(const ContactSpace& space, double step, Bloc
 }
 
 void ContactEquations::solve_for_forces(const ContactSpace& space, double step,
-                                        std::vector<double>& force,
-                                        std::vector<double>& velocity) {
+                                        std::vector<double>& force, std::vector<double>& velocity) {
   const int rows = space.rows();
   make_slopes(space.places());
   factors_.resize(slopes_.size());

@@ -169,8 +169,7 @@ void ContactSpace::constrain_places() {
   }
 }
 
-ContactSpace::Square ContactSpace::constrained(const Square& free, int place,
-                                               int other) const {
+ContactSpace::Square ContactSpace::constrained(const Square& free, int place, int other) const {
   Square out = free;
   const std::size_t count = matrix_.columns().size();
   for (std::size_t c = 0; c < count; ++c) {

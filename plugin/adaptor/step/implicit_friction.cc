@@ -42,8 +42,7 @@ double speed_left(double free, double mobility, const DampingAt& damping_at) {
 }  // namespace
 
 // Slip as the friction law sees it: along t_1, along t_2, lever times about n.
-Vec3 ImplicitStep::slip_of(const Site& site, const std::vector<double>& u,
-                           std::size_t i) const {
+Vec3 ImplicitStep::slip_of(const Site& site, const std::vector<double>& u, std::size_t i) const {
   const double* at = &u[i * size(kRows) + 3];
   return {at[0], at[1], site.tangent.friction.lever * at[2]};
 }

@@ -425,8 +425,7 @@ void ImplicitStep::solve_with_constraints(const mjModel* m, mjData* d, ImplicitP
   }
 }
 
-void ImplicitStep::solve(const mjModel* m, mjData* d, ImplicitParts parts,
-                         const double* known) {
+void ImplicitStep::solve(const mjModel* m, mjData* d, ImplicitParts parts, const double* known) {
   constraints_.read(m, d);
   damping_ = make_damping(m, d);
   acceleration_.assign(size(static_cast<int>(m->nv)), 0.0);

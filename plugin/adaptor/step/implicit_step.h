@@ -128,9 +128,7 @@ class ImplicitStep {
   enum class FrictionBound { kCut, kDamped };
 
   Site& site(std::size_t i) { return sites_[static_cast<std::size_t>(island_[i])]; }
-  const Site& site(std::size_t i) const {
-    return sites_[static_cast<std::size_t>(island_[i])];
-  }
+  const Site& site(std::size_t i) const { return sites_[static_cast<std::size_t>(island_[i])]; }
   void solve_island(ImplicitParts parts, double step, double resting);
   void solve_contacts(FrictionBound bound, double step);
   void limit_work(double step, double resting);

@@ -45,8 +45,7 @@ void NativeConstraints::select(const mjModel* m, mjData* d, const ContactIslands
   evaluate(m, d);
 }
 
-bool NativeConstraints::improve(const mjModel* m, mjData* d,
-                                std::span<const double> acceleration) {
+bool NativeConstraints::improve(const mjModel* m, mjData* d, std::span<const double> acceleration) {
   constexpr double kChange = 1e-10;
   way_ = violation_;
   linear_ = force_;

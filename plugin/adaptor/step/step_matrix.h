@@ -23,8 +23,7 @@ class StepMatrix {
  public:
   /// Uses the mass matrix that is current in `d`, and what make_damping() left there. Without
   /// constraints.
-  void build(const mjModel* m, const mjData* d, Damping damping,
-             std::span<const DofRange> trees);
+  void build(const mjModel* m, const mjData* d, Damping damping, std::span<const DofRange> trees);
   /// Takes the constraints as they are now in place of those before.
   void constrain(const NativeConstraints& constraints);
 

@@ -18,11 +18,11 @@ namespace vector_operators {
 /// A vector of three, or an expression for one whose numbers Eigen can load in pairs. Others, such
 /// as the transpose of a row, stay its own: of them it adds in another order.
 template <typename T>
-concept Column = std::same_as<T, Vec3> ||
-                 (std::derived_from<T, Eigen::MatrixBase<T>> &&
-                  std::same_as<typename T::Scalar, double> && T::RowsAtCompileTime == 3 &&
-                  T::ColsAtCompileTime == 1 &&
-                  (Eigen::internal::evaluator<T>::Flags & Eigen::PacketAccessBit) != 0);
+concept Column =
+    std::same_as<T, Vec3> ||
+    (std::derived_from<T, Eigen::MatrixBase<T>> && std::same_as<typename T::Scalar, double> &&
+     T::RowsAtCompileTime == 3 && T::ColsAtCompileTime == 1 &&
+     (Eigen::internal::evaluator<T>::Flags & Eigen::PacketAccessBit) != 0);
 template <typename T>
 concept Number = std::is_arithmetic_v<T>;
 template <typename T>

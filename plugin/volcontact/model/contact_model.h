@@ -88,8 +88,7 @@ class ContactModel {
   }
   /// The same of other pairs by the laws and options of this model, which serve them.
   void evaluate(std::span<const GeometricPair> pairs, const BodyMotion& motion,
-                const SiteMemory& memory, Workspace& workspace,
-                ContactReport& report) const;
+                const SiteMemory& memory, Workspace& workspace, ContactReport& report) const;
 
  private:
   double* new_row(int pair, const VolumeMetrics& metrics_W, const BodyMotion& motion,

@@ -30,8 +30,9 @@ Shape some_polytope() {
 const Shape kGem = some_polytope();
 const Shape kMesh = test::mesh_of(test::box_soup(Vec3(0.2, 0.16, 0.12), 3));
 const Shape kFineMesh = test::mesh_of(test::box_soup(Vec3(0.2, 0.16, 0.12), 12));
-const Shape kBored = Csg(Csg::Operation::kDifference, Csg(Box({.half_sizes = Vec3(0.2, 0.16, 0.12)})),
-                         Csg(Cylinder({.radius = 0.08, .half_length = 0.3})));
+const Shape kBored =
+    Csg(Csg::Operation::kDifference, Csg(Box({.half_sizes = Vec3(0.2, 0.16, 0.12)})),
+        Csg(Cylinder({.radius = 0.08, .half_length = 0.3})));
 
 struct Pairing {
   const char* name;

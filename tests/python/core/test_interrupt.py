@@ -33,7 +33,9 @@ def bumpy_ball(rings: int) -> vc.Mesh:
     around = np.stack(
         [np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)], axis=-1
     )
-    points = np.concatenate([(radius[..., None] * around).reshape(-1, 3), [[0, 0, 0.2], [0, 0, -0.2]]])
+    points = np.concatenate(
+        [(radius[..., None] * around).reshape(-1, 3), [[0, 0, 0.2], [0, 0, -0.2]]]
+    )
     sides, last = 2 * rings, len(points) - 2
     faces = []
     for j in range(sides):

@@ -54,8 +54,7 @@ double rounding_at(double reach) { return 4.0 * kEpsilon * reach; }
 
 }  // namespace
 
-VolumeMetrics clip(const HalfSpace&, const Box& b, const Pose& X_AB,
-                   ClipScratch& scratch) {
+VolumeMetrics clip(const HalfSpace&, const Box& b, const Pose& X_AB, ClipScratch& scratch) {
   const Vec3& half = b.half_sizes();
   const double height = X_AB.translation.z();
   const double reach = X_AB.rotation.row(2).cwiseAbs().dot(half);
@@ -114,8 +113,7 @@ VolumeMetrics clip(const Box& a, const Box& b, const Pose& X_AB, ClipScratch& sc
   return clip_solids(planes, box, box.center, rounding, scratch);
 }
 
-VolumeMetrics clip(const Box& a, const ConvexPolytope& b, const Pose& X_AB,
-                   ClipScratch& scratch) {
+VolumeMetrics clip(const Box& a, const ConvexPolytope& b, const Pose& X_AB, ClipScratch& scratch) {
   const Aabb bounds = b.bounds();
   const Vec3 p_AM = X_AB * bounds.center(), half_b = bounds.half_sizes();
   if (boxes_apart(a.half_sizes(), half_b, X_AB.rotation, p_AM)) return VolumeMetrics{};

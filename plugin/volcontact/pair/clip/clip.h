@@ -31,13 +31,11 @@ struct ClipScratch {
 /// other, and a solid pierced so evenly that S is rounding noise: S = 0, no normal, and no depth
 /// (but in a half-space depth is always along its axis). Faces of both solids in one plane, facing
 /// the same way, count as B's.
-VolumeMetrics clip(const HalfSpace& a, const Box& b, const Pose& X_AB,
-                   ClipScratch& scratch);
+VolumeMetrics clip(const HalfSpace& a, const Box& b, const Pose& X_AB, ClipScratch& scratch);
 VolumeMetrics clip(const HalfSpace& a, const ConvexPolytope& b, const Pose& X_AB,
                    ClipScratch& scratch);
 VolumeMetrics clip(const Box& a, const Box& b, const Pose& X_AB, ClipScratch& scratch);
-VolumeMetrics clip(const Box& a, const ConvexPolytope& b, const Pose& X_AB,
-                   ClipScratch& scratch);
+VolumeMetrics clip(const Box& a, const ConvexPolytope& b, const Pose& X_AB, ClipScratch& scratch);
 VolumeMetrics clip(const ConvexPolytope& a, const ConvexPolytope& b, const Pose& X_AB,
                    ClipScratch& scratch);
 

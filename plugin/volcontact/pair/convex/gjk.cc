@@ -122,8 +122,7 @@ Vec3 nearest_in_hull(const std::vector<Vec3>& points) {
   return v;
 }
 
-BallGap ball_gap(const ConvexView& solid, const Pose& X_AS, const Vec3& center,
-                 double radius) {
+BallGap ball_gap(const ConvexView& solid, const Pose& X_AS, const Vec3& center, double radius) {
   Corner corners[4];
   double weights[4];
   int count = 1;
@@ -161,8 +160,7 @@ BallGap ball_gap(const ConvexView& solid, const Pose& X_AS, const Vec3& center,
   return gap;
 }
 
-bool find_common_point(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
-                       Vec3& point) {
+bool find_common_point(const ConvexView& a, const ConvexView& b, const Pose& X_AB, Vec3& point) {
   const Pose X_AA;
   Corner corners[4];
   double weights[4] = {1.0, 0.0, 0.0, 0.0};

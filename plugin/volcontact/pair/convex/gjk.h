@@ -11,8 +11,7 @@ namespace volcontact {
 /// which their support functions do not meet that there is none. A point of bare touch may be
 /// reported either way. Method of Gilbert, Johnson and Keerthi, IEEE J. Robotics and Automation
 /// 4(2), 1988.
-bool find_common_point(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
-                       Vec3& point);
+bool find_common_point(const ConvexView& a, const ConvexView& b, const Pose& X_AB, Vec3& point);
 
 /// What keeps a ball and a convex solid apart, or a place of the solid in the ball.
 struct BallGap {
@@ -25,8 +24,7 @@ struct BallGap {
 /// Parts the ball about `center` from a bounded convex solid, in A's frame, by a supporting plane
 /// of the solid, which is certain, or finds a place of the solid in the ball: to about a tenth of
 /// the ball's depth as near to the center as any. By Gilbert, Johnson and Keerthi's method, too.
-BallGap ball_gap(const ConvexView& solid, const Pose& X_AS, const Vec3& center,
-                 double radius);
+BallGap ball_gap(const ConvexView& solid, const Pose& X_AS, const Vec3& center, double radius);
 
 /// The point of the convex hull of some points (at least one) nearest the origin.
 Vec3 nearest_in_hull(const std::vector<Vec3>& points);

@@ -152,10 +152,9 @@ void make_cells(const ObbTree& a, const Pose& X_CA, const ObbTree& b, const Pose
   for (std::size_t i = 0; i < shares; ++i) {
     const std::size_t first = i * kShare, count = std::min(pairs - first, kShare);
     failure.guard([&] {
-      scratch.shares[i].upright = VOLCONTACT_SIMD_CALL(scratch.path, make_cells_wide, a, X_CA, b,
-                                                       X_CB, window,
-                                                       scratch.leaf_pairs.data() + 2 * first,
-                                                       count, scratch.shares[i].cells);
+      scratch.shares[i].upright = VOLCONTACT_SIMD_CALL(
+          scratch.path, make_cells_wide, a, X_CA, b, X_CB, window,
+          scratch.leaf_pairs.data() + 2 * first, count, scratch.shares[i].cells);
     });
   }
   failure.rethrow();

@@ -9,10 +9,10 @@ namespace volcontact {
 /// Sums over the cells of one region, about the origin of C: int x^i y^j z^k dz dx dy, with z from
 /// A's face to B's.
 struct CellSum {
-  MomentSum moments;      ///< with the area vector and moment of A's surface
+  MomentSum moments;                   ///< with the area vector and moment of A's surface
   Vec3 counter_vector = Vec3::Zero();  ///< area vector of B's surface: the two close the region
-  double energy = 0.0;    ///< int delta^2/2 over the cells [m^4]
-  double depth = 0.0;     ///< length of the longest column that is all overlap [m]
+  double energy = 0.0;                 ///< int delta^2/2 over the cells [m^4]
+  double depth = 0.0;                  ///< length of the longest column that is all overlap [m]
   double absolute = 0.0;  ///< sum of the magnitudes of what was added to the volume [m^3]
   double seen = 0.0;      ///< area of the faces in the cells [m^2]: by so much rounding counts
 

@@ -62,8 +62,7 @@ void add_column(double x, double y, double area, std::vector<ColumnHit>& hits, S
 }  // namespace
 
 VolumeMetrics sampled_columns(const SurfaceView& a, const Pose& X_CA, const SurfaceView& b,
-                              const Pose& X_CB, CellScratch& cells,
-                              SampledScratch& scratch) {
+                              const Pose& X_CB, CellScratch& cells, SampledScratch& scratch) {
   const Aabb in_a = bounds_in(a, X_CA), in_b = bounds_in(b, X_CB);
   const Vec3 low = in_a.min.cwiseMax(in_b.min), high = in_a.max.cwiseMin(in_b.max);
   if ((low.array() >= high.array()).any()) return VolumeMetrics{};

@@ -16,7 +16,6 @@ struct SampledScratch {
 /// to about a per cent, with Status::kApproximate. `volume_error` is an estimate: twice the
 /// difference between the two halves of the columns. In C's frame.
 VolumeMetrics sampled_columns(const SurfaceView& a, const Pose& X_CA, const SurfaceView& b,
-                              const Pose& X_CB, CellScratch& cells,
-                              SampledScratch& scratch);
+                              const Pose& X_CB, CellScratch& cells, SampledScratch& scratch);
 
 }  // namespace volcontact

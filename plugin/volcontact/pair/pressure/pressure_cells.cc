@@ -150,20 +150,17 @@ PressureField pressure_cells(const Box& a, const Box& b, const Pose& X_AB, const
 }
 
 PressureField pressure_cells(const Box& a, const ConvexPolytope& b, const Pose& X_AB,
-                             const Vec3& centroid, double share_of_a,
-                             PressureScratch& scratch) {
+                             const Vec3& centroid, double share_of_a, PressureScratch& scratch) {
   return cells_of(a, b, X_AB, centroid, share_of_a, scratch);
 }
 
 PressureField pressure_cells(const ConvexPolytope& a, const Box& b, const Pose& X_AB,
-                             const Vec3& centroid, double share_of_a,
-                             PressureScratch& scratch) {
+                             const Vec3& centroid, double share_of_a, PressureScratch& scratch) {
   return cells_of(a, b, X_AB, centroid, share_of_a, scratch);
 }
 
 PressureField pressure_cells(const ConvexPolytope& a, const ConvexPolytope& b, const Pose& X_AB,
-                             const Vec3& centroid, double share_of_a,
-                             PressureScratch& scratch) {
+                             const Vec3& centroid, double share_of_a, PressureScratch& scratch) {
   return cells_of(a, b, X_AB, centroid, share_of_a, scratch);
 }
 

@@ -13,13 +13,10 @@ namespace volcontact {
 PressureField pressure_cells(const Box& a, const Box& b, const Pose& X_AB, const Vec3& centroid,
                              double share_of_a, PressureScratch& scratch);
 PressureField pressure_cells(const Box& a, const ConvexPolytope& b, const Pose& X_AB,
-                             const Vec3& centroid, double share_of_a,
-                             PressureScratch& scratch);
+                             const Vec3& centroid, double share_of_a, PressureScratch& scratch);
 PressureField pressure_cells(const ConvexPolytope& a, const Box& b, const Pose& X_AB,
-                             const Vec3& centroid, double share_of_a,
-                             PressureScratch& scratch);
+                             const Vec3& centroid, double share_of_a, PressureScratch& scratch);
 PressureField pressure_cells(const ConvexPolytope& a, const ConvexPolytope& b, const Pose& X_AB,
-                             const Vec3& centroid, double share_of_a,
-                             PressureScratch& scratch);
+                             const Vec3& centroid, double share_of_a, PressureScratch& scratch);
 
 }  // namespace volcontact

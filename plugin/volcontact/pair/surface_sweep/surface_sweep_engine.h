@@ -36,8 +36,7 @@ struct SurfaceSweep : EngineBase {
     return !has_rounded || std::is_same_v<A, Torus> || std::is_same_v<B, Torus>;
   }
   template <typename A, typename B>
-  static Answer run(const Question<A, B>& q, SurfaceSweepScratch& scratch,
-                    Interference& out) {
+  static Answer run(const Question<A, B>& q, SurfaceSweepScratch& scratch, Interference& out) {
     return answer(surface_sweep(q.shape_a, q.shape_b, q.X_AB, q.options, scratch, out));
   }
 };

@@ -48,8 +48,8 @@ class SweepDepth {
     }
     look_at_balls(families, family_of);
     // What is neither convex nor on a plane may reach around what it lies on.
-    metrics.depth = convex_ || metrics.flatness() >= kPlanePatch ? std::max(0.0, high_ - low_)
-                                                                 : longest;
+    metrics.depth =
+        convex_ || metrics.flatness() >= kPlanePatch ? std::max(0.0, high_ - low_) : longest;
     metrics.depth_moment = volume > 0.0 ? moment * metrics.volume / volume : 0.0;
   }
 
@@ -106,7 +106,7 @@ class SweepDepth {
   OfRegion& of_region_;
   FaceCurveScratch& s_;
   const Vec3 n_;
-  const bool convex_;  // both solids
+  const bool convex_;                                // both solids
   static constexpr double kPlanePatch = 1.0 - 1e-9;  // flatness of a patch on a plane
   SweepSpans spans_;
   double high_ = -kInfinity, low_ = kInfinity;
@@ -119,8 +119,7 @@ void add_sweep_depth(const SweepSolids& solids, const std::vector<CurveFamily>& 
                      VolumeMetrics& metrics) {
   const Vec3 n = metrics.normal();
   if (n.isZero(0.0)) return;
-  SweepDepth<std::remove_reference_t<OfRegion>>(solids, surface, of_region, scratch, n,
-                                                       convex)
+  SweepDepth<std::remove_reference_t<OfRegion>>(solids, surface, of_region, scratch, n, convex)
       .run(families, family_of, metrics);
 }
 

@@ -371,8 +371,7 @@ class TorusPairRun {
 }  // namespace
 
 bool torus_pair(const Torus& a, const Torus& b, const Pose& X_AB,
-                const InterferenceOptions& options, TorusPairScratch& scratch,
-                Interference& out) {
+                const InterferenceOptions& options, TorusPairScratch& scratch, Interference& out) {
   out.sites.clear();
   out.total = VolumeMetrics{};
   if (!(a.own_metrics().volume > 0.0) || !(b.own_metrics().volume > 0.0)) return true;

@@ -30,7 +30,6 @@ struct TorusPairScratch {
 ///   V = 1/3 int x . n dS,   dS = r (R + r cos theta) dtheta dphi,
 /// over the arcs in theta of each ring's section circles, at the angle phi, that lie in the other
 bool torus_pair(const Torus& a, const Torus& b, const Pose& X_AB,
-                const InterferenceOptions& options, TorusPairScratch& scratch,
-                Interference& out);
+                const InterferenceOptions& options, TorusPairScratch& scratch, Interference& out);
 
 }  // namespace volcontact

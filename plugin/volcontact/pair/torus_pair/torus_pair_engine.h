@@ -16,8 +16,7 @@ struct TorusPair : EngineBase {
     return std::is_same_v<A, Torus> && std::is_same_v<B, Torus>;
   }
   template <typename A, typename B>
-  static Answer run(const Question<A, B>& q, TorusPairScratch& scratch,
-                    Interference& out) {
+  static Answer run(const Question<A, B>& q, TorusPairScratch& scratch, Interference& out) {
     return answer(torus_pair(q.a, q.b, q.X_AB, q.options, scratch, out));
   }
 };

@@ -42,8 +42,7 @@ MomentSum sum_of(const VolumeMetrics& m, double sign) {
 
 }  // namespace
 
-std::optional<BorePlug> bore_plug(const RadialSolid& solid, double lowest,
-                                  double highest) {
+std::optional<BorePlug> bore_plug(const RadialSolid& solid, double lowest, double highest) {
   double low = -kInfinity, high = kInfinity;
   for (int i = 0; i < solid.planes_across; ++i) {
     const SurfacePlane& plane = solid.planes[static_cast<std::size_t>(i)];

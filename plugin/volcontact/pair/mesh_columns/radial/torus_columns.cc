@@ -85,9 +85,10 @@ class TorusColumns {
     if (!add_mean(2.0 * kBothSides * normal, far) || !add_mean(kBothSides * normal, mean)) {
       return false;
     }
-    const double change = mean.volume - far.volume, scale = 0.5 * (1.0 + change / 3.0 / mean.volume);
-    for (double* x : {&mean.volume, &mean.area, &mean.counter_area, &mean.depth_moment,
-                      &mean.volume_error}) {
+    const double change = mean.volume - far.volume,
+                 scale = 0.5 * (1.0 + change / 3.0 / mean.volume);
+    for (double* x :
+         {&mean.volume, &mean.area, &mean.counter_area, &mean.depth_moment, &mean.volume_error}) {
       *x *= scale;
     }
     mean.inertia *= scale;

@@ -15,8 +15,8 @@ constexpr double kRoundRim =
 constexpr double kSpike = 6.0;  // longest by shortest of all ways: a spike between the first ones
 constexpr double kOverCorner = 0.5;  // of the steepest step: how far a corner reaches over a place
 constexpr double kSharper = 4.0;     // bend where a corner is next, by that at the other end
-constexpr int kNarrowings = 3;  // of a place where the outline comes near the wall
-constexpr int kEndNarrowings = 2;  // of a place where it crosses the wall
+constexpr int kNarrowings = 3;       // of a place where the outline comes near the wall
+constexpr int kEndNarrowings = 2;    // of a place where it crosses the wall
 
 }  // namespace
 

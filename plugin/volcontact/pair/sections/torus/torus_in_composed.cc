@@ -48,8 +48,7 @@ Vec3 place_of(const Torus& torus, const LinesRegion::PlanePatch& patch) {
 }  // namespace
 
 bool torus_in_composed(const Torus& torus, const Pose& X_AB, const InterferenceOptions& options,
-                       TorusSectionsScratch& ring, ComposedScratch& scratch,
-                       Interference& out) {
+                       TorusSectionsScratch& ring, ComposedScratch& scratch, Interference& out) {
   LinesRegions& regions = scratch.regions;
   regions.cut(0);
   out.sites.clear();

@@ -10,7 +10,6 @@ namespace volcontact {
 /// metrics in the frame of the torus. Regions that share a seam are one contact site. False when
 /// the torus reaches a bore. docs/theory.md, "Tori".
 bool torus_in_composed(const Torus& torus, const Pose& X_AB, const InterferenceOptions& options,
-                       TorusSectionsScratch& ring, ComposedScratch& scratch,
-                       Interference& out);
+                       TorusSectionsScratch& ring, ComposedScratch& scratch, Interference& out);
 
 }  // namespace volcontact

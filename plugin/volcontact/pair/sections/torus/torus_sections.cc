@@ -21,10 +21,10 @@ constexpr double kSameAngle = 1e-11;    // [rad]
 constexpr double kNearRangeEnd = 3e-4;  // of a range: to which its ends are known at least
 constexpr double kOnAxis = 1e-8;        // of a plane from the axis, per radius
 constexpr double kEndError = 5.0;       // error by its estimate where an arc ends in nothing
-constexpr double kTarget = 1e-2;   // share of the tolerance asked of an arc: kinks may be hidden
-constexpr double kGapError = 3.0;  // error of V by the gap on a first look, at most as measured
+constexpr double kTarget = 1e-2;    // share of the tolerance asked of an arc: kinks may be hidden
+constexpr double kGapError = 3.0;   // error of V by the gap on a first look, at most as measured
 constexpr double kLeftOver = 1e-4;  // of a surface: so little of the other is told by rounding
-constexpr double kWhole = 0.999;   // share of a solid in the overlap, that is all of it
+constexpr double kWhole = 0.999;    // share of a solid in the overlap, that is all of it
 
 class TorusSectionsRun {
  public:

@@ -53,8 +53,8 @@ TEST(CornerLobes, RandomBarsAndCansHaveAllOfThem) {
     if (i % 2 == 0) {
       expect_the_difference(block, bore, Box({.half_sizes = half}), X);
     } else {
-      expect_the_difference(block, bore,
-                            Cylinder({.radius = half.x(), .half_length = half.y()}), X);
+      expect_the_difference(block, bore, Cylinder({.radius = half.x(), .half_length = half.y()}),
+                            X);
     }
   }
 }
