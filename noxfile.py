@@ -150,7 +150,7 @@ def wheels(session: nox.Session) -> None:
 
 @command
 def cross(session: nox.Session) -> None:
-    """Core, C container and their tests for another machine, emulated: ARGS as x86_64-windows-gnu."""
+    """Core, C container and their tests elsewhere, emulated: ARGS as x86_64-windows-gnu."""
     system.need_system()
     machine, *rest = session.posargs or [""]
     crossing.cross(machine, rest)

@@ -68,7 +68,8 @@ ROOMS = {
 # Files of python/bindings; each may use those before it. `bind` stands for all bind_*.cc, which are
 # side by side.
 BINDINGS = (
-    "arrays", "fields", "python_distance", "python_law", "signals", "bindings", "bind", "module",
+    "arrays", "fields", "python_distance", "python_law", "signals", "bindings", "plain_errors",
+    "bind", "module",
 )  # fmt: skip
 MOST_FILES = 25  # in a folder of the plugin
 # The only folder that may include each library of others.

@@ -231,7 +231,8 @@ def test_body_that_another_carries_is_followed_on_demand():
     """As a box in the grasp of a carrier: it has no joint of its own."""
     text = """<mujoco><option gravity="0 0 0"/><worldbody><body name="carrier">
       <joint type="slide" axis="1 0 0"/><geom size=".1" mass="1"/>
-      <body name="held" pos="0 0 .5"><geom size=".1" mass="1"/></body></body></worldbody></mujoco>"""
+      <body name="held" pos="0 0 .5"><geom size=".1" mass="1"/></body></body></worldbody>
+      </mujoco>"""
     run = simulate(text, duration=0.01, frame_interval=None, follow=["held", "nobody"])
     assert run.bodies == ("held", "carrier")
     np.testing.assert_allclose(run.position[-1], [[0, 0, 0.5], [0, 0, 0]])
