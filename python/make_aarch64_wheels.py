@@ -126,6 +126,7 @@ def there(system: Path, *arguments: object) -> str:
     """What Python prints on that machine."""
     python = ["/usr/sbin/chroot", system, f"/usr/bin/{EMULATOR.name}", f"/usr/bin/python{PYTHON}"]
     surroundings = {"HOME": "/home", "PATH": "/usr/local/bin:/usr/bin:/bin", "LANG": "C.UTF-8"}
+    surroundings["MUJOCO_GL"] = "disabled"  # what draws starts programs, which are not emulated
     return native.run(*python, *arguments, env=surroundings)
 
 

@@ -214,8 +214,16 @@ def validation(what: str) -> str:
 
 
 def wheels(_: str) -> str:
-    """Which wheel was tried with which MuJoCo."""
+    """Which wheel was tried with which MuJoCo, by machine."""
     rows = read("wheels")
+    parts = []
+    for platform in sorted({row["platform"] for row in rows}, reverse=True):
+        parts.append(wheels_of([row for row in rows if row["platform"] == platform], platform))
+    return "\n".join(parts)
+
+
+def wheels_of(rows: list[dict[str, str]], platform: str) -> str:
+    """The table of one platform."""
     depth = {row["depth_um"] for row in rows}
     pythons = sorted({row["python"] for row in rows}, key=lambda tag: int(tag[3:]))
     releases = sorted({row["mujoco"] for row in rows}, key=lambda r: [int(n) for n in r.split(".")])
@@ -223,12 +231,11 @@ def wheels(_: str) -> str:
     for release in releases:
         how = {row["python"]: row["adaptor"] for row in rows if row["mujoco"] == release}
         lines.append((release, *(how.get(python, "") for python in pythons)))
-    platform = {row["platform"] for row in rows}
     head = ("MuJoCo", *(f"CPython {tag[2]}.{tag[3:]}" for tag in pythons))
     return (
-        f"Platform `{', '.join(sorted(platform))}`; the box came to rest "
-        f"{', '.join(sorted(depth))} um deep in all of them. Where a field is empty that MuJoCo\n"
-        "has no package for that Python, or was not tried.\n\n" + table(head, lines)
+        f"Platform `{platform}`; the box came to rest {', '.join(sorted(depth))} um deep in all of "
+        "them. Where a field is empty that MuJoCo\nhas no package for that Python, or was not "
+        "tried.\n\n" + table(head, lines)
     )
 
 
