@@ -10,39 +10,33 @@ namespace volcontact {
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
-// Sums, multiples and products of vectors and matrices of three, evaluated at each step. Eigen
-// makes a type of every expression and compiles a hundred functions of it; these are better matches
-// than its operators, and leave few types. They round as Eigen does: the same bits.
+// Sums and multiples of vectors of three, evaluated at each step. Eigen makes a type of every
+// expression and compiles a hundred functions of it; these are better matches than its operators,
+// and leave few types. They round as Eigen does: the same bits. So products with matrices stay
+// Eigen's, which adds in another order in a longer product and turns s (M v) into (s M) v.
 namespace vector_operators {
+
+template <typename T>
+inline constexpr bool kIsProduct = false;
+template <typename A, typename B, int option>
+inline constexpr bool kIsProduct<Eigen::Product<A, B, option>> = true;
 
 /// A vector of three, or an expression for one whose numbers Eigen can load in pairs. Others, such
 /// as the transpose of a row, stay its own: of them it adds in another order.
 template <typename T>
 concept Column =
-    std::same_as<T, Vec3> ||
-    (std::derived_from<T, Eigen::MatrixBase<T>> && std::same_as<typename T::Scalar, double> &&
-     T::RowsAtCompileTime == 3 && T::ColsAtCompileTime == 1 &&
-     (Eigen::internal::evaluator<T>::Flags & Eigen::PacketAccessBit) != 0);
+    std::same_as<T, Vec3> || (std::derived_from<T, Eigen::MatrixBase<T>> && !kIsProduct<T> &&
+                              std::same_as<typename T::Scalar, double> &&
+                              T::RowsAtCompileTime == 3 && T::ColsAtCompileTime == 1 &&
+                              (Eigen::internal::evaluator<T>::Flags & Eigen::PacketAccessBit) != 0);
 template <typename T>
 concept Number = std::is_arithmetic_v<T>;
-template <typename T>
-concept Transposed =
-    std::same_as<T, Eigen::Transpose<Mat3>> || std::same_as<T, Eigen::Transpose<const Mat3>>;
-template <typename T>
-concept Square = std::same_as<T, Mat3> || Transposed<T>;
-
 #define VOLCONTACT_VECTOR_INLINE [[gnu::always_inline]] inline
 
 VOLCONTACT_VECTOR_INLINE const Vec3& plain(const Vec3& a) { return a; }
 template <Column T>
 VOLCONTACT_VECTOR_INLINE Vec3 plain(const T& a) {
   return a;
-}
-
-VOLCONTACT_VECTOR_INLINE double at(const Mat3& m, int i, int j) { return m.coeff(i, j); }
-template <Transposed T>
-VOLCONTACT_VECTOR_INLINE double at(const T& m, int i, int j) {
-  return m.nestedExpression().coeff(j, i);
 }
 
 VOLCONTACT_VECTOR_INLINE Vec3 sum(const Vec3& a, const Vec3& b) {
@@ -57,13 +51,6 @@ VOLCONTACT_VECTOR_INLINE Vec3 multiple(double s, const Vec3& a) {
 }
 VOLCONTACT_VECTOR_INLINE Vec3 quotient(const Vec3& a, double s) {
   return {a.x() / s, a.y() / s, a.z() / s};
-}
-
-/// x + y + z as Eigen adds them in row i of a product with a vector: it makes the first two rows as
-/// a pair, column by column, and the third by itself.
-template <Square M>
-VOLCONTACT_VECTOR_INLINE double sum_of_row(int i, double x, double y, double z) {
-  return Transposed<M> || i < 2 ? (x + y) + z : x + (y + z);
 }
 
 }  // namespace vector_operators
@@ -91,17 +78,6 @@ VOLCONTACT_VECTOR_INLINE Vec3 operator*(const A& a, S s) {
 template <vector_operators::Column A, vector_operators::Number S>
 VOLCONTACT_VECTOR_INLINE Vec3 operator/(const A& a, S s) {
   return vector_operators::quotient(vector_operators::plain(a), static_cast<double>(s));
-}
-
-template <vector_operators::Square M, vector_operators::Column A>
-VOLCONTACT_VECTOR_INLINE Vec3 operator*(const M& m, const A& a) {
-  using vector_operators::at;
-  const Vec3& v = vector_operators::plain(a);
-  const auto entry = [&](int i) {
-    return vector_operators::sum_of_row<M>(i, at(m, i, 0) * v.x(), at(m, i, 1) * v.y(),
-                                           at(m, i, 2) * v.z());
-  };
-  return {entry(0), entry(1), entry(2)};
 }
 
 #undef VOLCONTACT_VECTOR_INLINE

@@ -34,8 +34,7 @@ TEST(VectorOperators, AnExpressionIsAVector) {
   static_assert(std::is_same_v<decltype(a + b), Vec3>);
   static_assert(std::is_same_v<decltype(2.0 * a - b / 3.0), Vec3>);
   static_assert(std::is_same_v<decltype(-(a * 2)), Vec3>);
-  static_assert(std::is_same_v<decltype(m.col(0) + m * b), Vec3>);
-  static_assert(std::is_same_v<decltype(m.transpose() * a), Vec3>);
+  static_assert(std::is_same_v<decltype(m.col(0) + b), Vec3>);
 }
 
 // Eigen's own operators, named as members.
@@ -54,15 +53,18 @@ TEST(VectorOperators, SumsAndMultiplesHaveEigensBits) {
   }
 }
 
-TEST(VectorOperators, ProductsHaveEigensBits) {
+// What Eigen does with a product hangs on what stands around it.
+TEST(VectorOperators, ProductsStayEigens) {
   test::Random random(2);
   for (int i = 0; i < kCases; ++i) {
     const Mat3 m = matrix(random), n = matrix(random);
-    const Vec3 a = vector(random);
-    EXPECT_EQ(m * a, Vec3(m.operator*(a)));
-    EXPECT_EQ(m.transpose() * a, Vec3(m.transpose().operator*(a)));
-    EXPECT_EQ(m * n.col(1), Vec3(m.operator*(n.col(1))));
-    // Not a column that can be loaded in pairs: of Eigen's type, which adds in another order.
+    const Vec3 a = vector(random), b = vector(random);
+    const double s = random.uniform(-2.0, 2.0);
+    static_assert(!std::is_same_v<decltype(m * a), Vec3>);
+    EXPECT_EQ(Vec3(s * (m * a)), Vec3((s * m) * a));
+    EXPECT_EQ(Vec3(b + m * a), Vec3(b.operator+(m.operator*(a))));
+    EXPECT_EQ(Vec3(m * (a - b)), Vec3(m.operator*(a.operator-(b))));
+    // Not a column that can be loaded in pairs.
     const auto row = m.row(0).transpose() - a;
     static_assert(!std::is_same_v<std::decay_t<decltype(row)>, Vec3>);
     EXPECT_EQ((m.col(0) - a).norm(), m.col(0).operator-(a).norm());
