@@ -843,7 +843,7 @@ def interference(a: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustu
     Raises:
         ValueError: X_AB is no pose, a value is out of range, the engine does not serve the pair, or a
             SignedDistance returned no numbers of the right shape
-        whatever a SignedDistance raised itself
+        whatever a SignedDistance raised itself, and KeyboardInterrupt where Ctrl-C ends it
     """
 
 class NormalForce:

@@ -23,6 +23,11 @@ def cell(text: str) -> str:
     return printable(f"'{text}" if text.startswith(_FORMULA) else text)
 
 
+def drawn(text: str) -> str:
+    """A text as a label of a figure: Matplotlib takes what stands between dollars for a formula."""
+    return printable(text).replace("$", r"\$")
+
+
 def _spelled(found: re.Match[str]) -> str:
     code = ord(found[0])
     return f"\\x{code:02x}" if code < 256 else f"\\u{code:04x}"

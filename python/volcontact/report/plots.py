@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 import numpy as np
 from matplotlib.axes import Axes
 
+from volcontact.printable import drawn
 from volcontact.recording import Recording
 from volcontact.report import palette
 from volcontact.report.figures import Curve, Plan, curve_of_plan, thin_rows
@@ -73,7 +74,7 @@ def _plan(name: str, y: str, x: str, known: Mapping[str, tuple[np.ndarray, str]]
             color = palette.RUN_COLORS[run.contact]
             axes.plot(across, up, color=color, label=run.contact)
             series.append(Series(run.contact, color, across, up))
-        axes.set_ylabel(f"{y} {_bracketed(known[y][1])}")
+        axes.set_ylabel(drawn(f"{y} {_bracketed(known[y][1])}"))
         return series[::-1]
 
     over = "time" if x == "time" else x
@@ -82,7 +83,7 @@ def _plan(name: str, y: str, x: str, known: Mapping[str, tuple[np.ndarray, str]]
         y if x == "time" else f"{y} over {x}",
         f"{y} {_bracketed(known[y][1])} over {over}; linear.",
         draw,
-        f"{x} {_bracketed(known[x][1])}",
+        drawn(f"{x} {_bracketed(known[x][1])}"),
         is_over_time=x == "time",
     )
 

@@ -218,7 +218,7 @@ def test_forces_of_data_that_are_nobodys_are_refused():
     data = mujoco.MjData(model)
     with pytest.raises(ValueError, match="no attached model has data of this size"):
         vc.contact_forces(data)
-    with pytest.raises(TypeError, match=r"takes an mujoco\.MjData"):
+    with pytest.raises(TypeError, match=r"takes a mujoco\.MjData"):
         vc.contact_forces(model)
     second = vc.load(TABLE.format(custom=""))
     with vc.attach(model) as contact, vc.attach(second):

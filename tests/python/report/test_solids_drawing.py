@@ -44,7 +44,8 @@ def volume(triangles):
 def surfaces(scene):
     model = vc.load(scene)
     with vc.attach(model) as contact:
-        return [surface(steps) for _, steps in solids_of(contact._pair_text(0))]
+        (pair,) = contact.description["pairs"]
+        return [surface(steps) for _, steps in solids_of(contact._pair_text(pair["pair"]))]
 
 
 def test_composed_solid_is_closed_and_faces_out():
