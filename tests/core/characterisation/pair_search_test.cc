@@ -38,6 +38,15 @@ TEST(PairSearch, SeesAnOverlapThatIsMissedOrNone) {
   EXPECT_EQ(what(larger, 0.405), "overlap where none is");
 }
 
+// Found by the search: a face of a mesh whose section is an arc's width alone had slivers and no
+// triangle, and its patch none of the numbers that were read.
+TEST(PairSearch, ASectionOfSliversAlone) {
+  PairSearch search;
+  const SearchOutcome outcome = search.run(SearchCases(SearchFamily::kMeshes, 28)[474], 0, 1);
+  EXPECT_TRUE(outcome.overlapping);
+  EXPECT_TRUE(outcome.failures.empty());
+}
+
 // A sample of what `./run search` does, of the families that all answers are right in.
 TEST(PairSearch, FindsNothing) {
   PairSearch search;

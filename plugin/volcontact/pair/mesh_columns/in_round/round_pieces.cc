@@ -289,7 +289,7 @@ bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid
   bool uncut = !scratch.found.empty();
   for (const auto& [slot, inside] : scratch.found) {
     const int face = static_cast<int>(pieces.slot_of_face.size());
-    const std::size_t before = pieces.triangles.size();
+    const std::size_t before = pieces.triangles.size() + pieces.slivers.size();
     const Vec3 corner[3] = {corner_of(slot, 0), corner_of(slot, 1), corner_of(slot, 2)};
     if (inside) {
       pieces.triangles.push_back({{corner[0], corner[1], corner[2]}, face});
@@ -297,7 +297,10 @@ bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid
       FaceCut(solid, face, share, pieces, scratch.corners).cut(corner);
     }
     uncut &= inside;
-    if (pieces.triangles.size() > before) pieces.slot_of_face.push_back(slot);
+    // A section as thin as its arcs has slivers alone.
+    if (pieces.triangles.size() + pieces.slivers.size() > before) {
+      pieces.slot_of_face.push_back(slot);
+    }
     if (static_cast<int>(pieces.triangles.size()) > options.most_cells) return false;
   }
   pieces.whole = uncut && scratch.found.size() == triangle_count(tree);
