@@ -47,6 +47,14 @@ TEST(PairSearch, ASectionOfSliversAlone) {
   EXPECT_TRUE(outcome.failures.empty());
 }
 
+// The circle in the middle of the tube crosses the mesh in an edge, which no face counts: V was 0.
+TEST(PairSearch, ATubeThroughAnEdge) {
+  PairSearch search;
+  const SearchOutcome outcome = search.run(SearchCases(SearchFamily::kMeshes, 78)[78], 0, 1);
+  EXPECT_TRUE(outcome.overlapping);
+  EXPECT_TRUE(outcome.failures.empty());
+}
+
 // A sample of what `./run search` does, of the families that all answers are right in.
 TEST(PairSearch, FindsNothing) {
   PairSearch search;

@@ -18,6 +18,7 @@ constexpr double kFarSidesError = 0.5;    // of what the mean changes by from tw
 constexpr double kMostChange = 0.2;       // of V, from one side to the other
 constexpr double kBeside = 0.05;          // of a tube's radius: so near is by
 constexpr int kLooks = 64;                // at the circle
+constexpr double kNothing = 1e-9;         // of a volume, by its area and the tube's radius
 
 class TorusColumns {
  public:
@@ -135,6 +136,9 @@ class TorusColumns {
         all.depth = std::max(all.depth, patch.sum.depth);
         all.doubt += patch.sum.doubt;
       }
+      // Less than nothing: the circle crosses the surface where faces meet, and none has counted it.
+      const MomentSum& m = all.moments;
+      if (m.volume < -kNothing * b_.minor_radius() * m.area) return false;
       add_site(all);
     }
     VolumeMetrics& total = out_.total;
