@@ -136,7 +136,8 @@ class TorusColumns {
         all.depth = std::max(all.depth, patch.sum.depth);
         all.doubt += patch.sum.doubt;
       }
-      // Less than nothing: the circle crosses the surface where faces meet, and none has counted it.
+      // Less than nothing: the circle crosses the surface where faces meet, and none has counted
+      // it.
       const MomentSum& m = all.moments;
       if (m.volume < -kNothing * b_.minor_radius() * m.area) return false;
       add_site(all);
