@@ -3,6 +3,7 @@
 // nothing had been.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csetjmp>
 #include <cstring>
 #include <thread>
@@ -19,6 +20,8 @@ using testing::ModelPointer;
 
 constexpr int kStepsBefore = 5, kStepsAfter = 20;
 constexpr long kMost = 20000;  // allocations of a first step
+// MuJoCo 2 normalizes quaternions in place when a step begins, another time where one has failed.
+constexpr double kNormalized = mjVERSION_HEADER < 300 ? 1e-12 : 0.0;
 
 // Boxes on a floor, a ball in a mesh of a cup's stead, tiles that are one solid, a stiff pair.
 std::string scene(const std::string& integrator, const std::string& stiffness) {
@@ -84,6 +87,7 @@ Outcome cold_step(const mjModel* m, mjData* d, long left) {
 // `nearly`: how far what follows may be from the same without a failure; 0 is to the bit.
 void expect_unharmed(const std::string& mjcf, double nearly = 0.0) {
   const ModelPointer m = testing::load(mjcf);
+  nearly = std::max(nearly, 1e3 * kNormalized);
   const auto before = std::exchange(mju_user_error, &on_error);
   const auto begin = [&](const DataPointer& d) {
     for (int i = 0; i < kStepsBefore; ++i) mj_step(m.get(), d.get());
@@ -109,7 +113,11 @@ void expect_unharmed(const std::string& mjcf, double nearly = 0.0) {
     reached = outcome.reached;
     ASSERT_EQ(outcome.made, !reached) << "after " << failed << " allocations";
     if (reached) {
-      EXPECT_TRUE(State(m.get(), d.get()) == there) << "after " << failed << " allocations";
+      const State here(m.get(), d.get());
+      for (std::size_t i = 0; i < here.numbers.size(); ++i) {
+        EXPECT_NEAR(here.numbers[i], there.numbers[i], kNormalized)
+            << "number " << i << " after " << failed << " allocations";
+      }
       mj_step(m.get(), d.get());
     }
     for (int i = 0; i < kStepsAfter; ++i) mj_step(m.get(), d.get());
