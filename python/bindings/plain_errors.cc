@@ -20,6 +20,13 @@ std::unordered_map<PyObject*, vectorcallfunc>& calls() {
   return map;
 }
 
+// Where CPython does not use the call of a type, as 3.10 does not, its __init__ is called and
+// stands for it.
+std::unordered_map<PyObject*, PyObject*>& types() {
+  static std::unordered_map<PyObject*, PyObject*> map;
+  return map;
+}
+
 // Puts a plain line in the place of a TypeError of nanobind; any other error stays.
 void explain(PyObject* callable, PyObject* const* args, size_t flagged, PyObject* names) {
   nb::python_error error;  // takes the error over
@@ -30,17 +37,19 @@ void explain(PyObject* callable, PyObject* const* args, size_t flagged, PyObject
       return;
     }
     const auto count = static_cast<size_t>(PyVectorcall_NARGS(flagged));
+    const auto type = types().find(callable);
+    const bool is_init = type != types().end();
     nb::list positional;
-    for (size_t i = 0; i < count; ++i) positional.append(nb::handle(args[i]));
+    for (size_t i = is_init ? 1 : 0; i < count; ++i) positional.append(nb::handle(args[i]));
     nb::dict keywords;
     const size_t named = names ? static_cast<size_t>(PyTuple_GET_SIZE(names)) : 0;
     for (size_t i = 0; i < named; ++i) {
       keywords[nb::handle(PyTuple_GET_ITEM(names, static_cast<Py_ssize_t>(i)))] =
           nb::handle(args[count + i]);
     }
-    const nb::object line =
-        nb::module_::import_("volcontact.type_errors")
-            .attr("explained")(nb::handle(callable), positional, keywords, error.value());
+    const nb::object line = nb::module_::import_("volcontact.type_errors")
+                                .attr("explained")(nb::handle(is_init ? type->second : callable),
+                                                   positional, keywords, error.value());
     PyErr_SetObject(PyExc_TypeError, line.ptr());
   } catch (nb::python_error& other) {
     other.restore();
@@ -75,7 +84,9 @@ void speak_plainly(nb::module_& m) {
     if (is_function(value.ptr())) make_plain(value.ptr());
     if (!nb::type_check(value)) continue;
     auto* type = reinterpret_cast<PyTypeObject*>(value.ptr());
-    if (type->tp_vectorcall && !calls().contains(value.ptr())) {
+    const bool has_call =
+        type->tp_vectorcall && PyType_HasFeature(Py_TYPE(type), Py_TPFLAGS_HAVE_VECTORCALL);
+    if (has_call && !calls().contains(value.ptr())) {
       calls()[value.ptr()] = type->tp_vectorcall;
       type->tp_vectorcall = plain_call;
     }
@@ -84,7 +95,10 @@ void speak_plainly(nb::module_& m) {
       // What is called __x__ answers by NotImplemented, or is __init__, which the type calls.
       if (is_function(key.ptr())) {
         const nb::str word(nb::handle(key).attr("__name__"));
-        if (std::string_view(word.c_str()).substr(0, 2) != "__") make_plain(key.ptr());
+        const std::string_view name_of(word.c_str());
+        const bool is_init = name_of == "__init__" && !has_call;
+        if (is_init) types()[key.ptr()] = value.ptr();
+        if (is_init || name_of.substr(0, 2) != "__") make_plain(key.ptr());
       }
     }
   }
