@@ -45,7 +45,8 @@ void CurveFamily::set_plane(const Vec3& half) {
     if (std::abs(axis_[i]) > 0.8) continue;
     if (across < 0 || half[i] < half[across]) across = i;
   }
-  e_ = (Vec3::Unit(across) - axis_[across] * axis_).normalized();
+  const Vec3 e = Vec3::Unit(across) - axis_[across] * axis_;
+  e_ = e.normalized();
   f_ = axis_.cross(e_);
   low_ = kInfinity;
   high_ = -kInfinity;
