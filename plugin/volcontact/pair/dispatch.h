@@ -16,9 +16,9 @@
 namespace volcontact {
 namespace dispatch {
 
-/// Metrics made for (B, A) as those of (A, B).
-inline VolumeMetrics mirrored(const VolumeMetrics& metrics_B, const Pose& X_AB) {
-  return metrics_B.touching() ? reversed(transformed(metrics_B, X_AB)) : metrics_B;
+/// Makes metrics of (B, A) those of (A, B).
+inline void mirror(const Pose& X_AB, VolumeMetrics& metrics) {
+  if (metrics.touching()) metrics = reversed(transformed(metrics, X_AB));
 }
 
 /// `out.total` as the only site.
@@ -276,11 +276,11 @@ class Dispatch<TypeList<Engines...>> {
       const Pose X_BA = q_.X_AB.inverse();
       const Answer answer = service.run({q_.b, q_.a, X_BA, q_.options}, scratch_, out_);
       if (answer == Answer::kBeyond) return answer;
-      out_.total = dispatch::mirrored(out_.total, q_.X_AB);
+      dispatch::mirror(q_.X_AB, out_.total);
       if (service.one_site) {
         dispatch::set_one_site(out_);
       } else {
-        for (VolumeMetrics& site : out_.sites) site = dispatch::mirrored(site, q_.X_AB);
+        for (VolumeMetrics& site : out_.sites) dispatch::mirror(q_.X_AB, site);
       }
       return answer;
     }
