@@ -16,7 +16,8 @@ MAY_INCLUDE = {
     "volcontact/pair": {"base", "metrics", "shape"},
     "volcontact/force": {"base", "metrics"},  # a law knows no shape and no pair
     "volcontact/model": {"base", "metrics", "shape", "pair", "force"},
-    "adaptor": {"base", "metrics", "shape", "pair", "force", "model"},
+    "volcontact/step": {"base", "metrics", "force", "model"},  # of bodies it knows motions alone
+    "adaptor": {"base", "metrics", "shape", "pair", "force", "model", "step"},
     "c_api": {"base", "metrics", "shape", "pair", "force", "model"},
     "fmu": {"base", "metrics", "model", "c_api"},  # of the model, where a row of states lies
     "simulink": {"c_api"},

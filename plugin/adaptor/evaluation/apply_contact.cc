@@ -19,6 +19,7 @@
 #include "adaptor/mujoco/mjgeoms.h"
 #include "adaptor/scene/pair_rates.h"
 #include "adaptor/step/look_ahead.h"
+#include "adaptor/step/mujoco_mechanism.h"
 
 namespace volcontact::adaptor {
 namespace {
@@ -77,7 +78,9 @@ void solve_implicit(const SceneContact& contact, const mjModel* m, mjData* d,
   const auto parts = m->opt.integrator == mjINT_RK4                    ? ImplicitParts::kHeld
                      : contact.options().implicit == Implicit::kAlways ? ImplicitParts::kAll
                                                                        : ImplicitParts::kStiff;
-  implicit.solve(m, d, parts, scratch.known.data());
+  scratch.constraints.read(m, d);
+  const MujocoMechanism mechanism(m, d, contact.trees());
+  implicit.solve(mechanism, scratch.constraints, parts, scratch.known.data());
   for (const int pair : scratch.order) total_up(scratch.reports[static_cast<std::size_t>(pair)]);
   for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
     if (!implicit.is_pair_solved(k)) continue;

@@ -6,7 +6,7 @@
 
 #include "adaptor/geoms/overlap_bounds.h"
 #include "adaptor/mujoco/mjgeoms.h"
-#include "adaptor/mujoco/sizes.h"
+#include "volcontact/base/sizes.h"
 
 namespace volcontact::adaptor {
 namespace {

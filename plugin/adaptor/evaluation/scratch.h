@@ -11,9 +11,10 @@
 #include "adaptor/evaluation/thread_choice.h"
 #include "adaptor/geoms/cull.h"
 #include "adaptor/memory/site_pool.h"
-#include "adaptor/memory/work_limit.h"
-#include "adaptor/step/implicit_step.h"
+#include "adaptor/step/native_constraints.h"
 #include "volcontact/model/contact_model.h"
+#include "volcontact/step/implicit_step.h"
+#include "volcontact/step/work_limit.h"
 
 namespace volcontact::adaptor {
 
@@ -33,6 +34,7 @@ struct EvaluationScratch {
   ThreadChoices choices;
   BodyForces forces;
   ImplicitStep implicit;
+  NativeConstraints constraints;     ///< that it takes in
   double dissipated = 0.0;           ///< by the contacts up to the evaluation before [J]
   std::vector<PairEnergy> energies;  ///< of the pairs in `near`
   std::vector<double> user_qfrc, user_xfrc, known, row;

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "adaptor/mujoco/sizes.h"
 #include "volcontact/base/disjoint_sets.h"
+#include "volcontact/base/sizes.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact::adaptor {

@@ -3,6 +3,7 @@
 
 #include "adaptor/evaluation/scratch.h"
 #include "adaptor/scene/scene_contact.h"
+#include "volcontact/step/explicit_bounds.h"
 
 namespace volcontact::adaptor {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "adaptor/mujoco/sizes.h"
+#include "volcontact/base/sizes.h"
 
 namespace volcontact::adaptor {
 namespace {

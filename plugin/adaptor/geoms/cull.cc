@@ -6,7 +6,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "adaptor/mujoco/sizes.h"
+#include "volcontact/base/sizes.h"
 
 namespace volcontact::adaptor {
 namespace {

@@ -10,8 +10,8 @@
 #include <tuple>
 #include <utility>
 
-#include "adaptor/mujoco/sizes.h"
 #include "volcontact/base/disjoint_sets.h"
+#include "volcontact/base/sizes.h"
 
 namespace volcontact::adaptor {
 namespace {

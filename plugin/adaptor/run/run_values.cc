@@ -2,9 +2,9 @@
 // The values of a running scene, by what they are and the number of the thing in the model.
 #include <algorithm>
 
-#include "adaptor/mujoco/sizes.h"
 #include "adaptor/run/scene_run.h"
 #include "volcontact/base/check.h"
+#include "volcontact/base/sizes.h"
 
 namespace volcontact::adaptor {
 namespace {

@@ -6,11 +6,11 @@
 #include <stdexcept>
 
 #include "adaptor/mujoco/mujoco_compat.h"
-#include "adaptor/mujoco/sizes.h"
 #include "adaptor/passive_callback.h"
 #include "adaptor/run/mujoco_messages.h"
 #include "adaptor/run/run_state.h"
 #include "volcontact/base/check.h"
+#include "volcontact/base/sizes.h"
 
 namespace volcontact::adaptor {
 namespace {

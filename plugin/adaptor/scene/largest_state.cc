@@ -5,8 +5,8 @@
 #include "adaptor/memory/mocap_row.h"
 #include "adaptor/memory/site_pool.h"
 #include "adaptor/memory/userdata_layout.h"
-#include "adaptor/memory/work_limit.h"
 #include "volcontact/model/site_memory.h"
+#include "volcontact/step/work_limit.h"
 
 namespace volcontact::adaptor {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "adaptor/mujoco/mjgeoms.h"
-#include "adaptor/step/implicit_step.h"
+#include "volcontact/step/explicit_bounds.h"
 
 namespace volcontact::adaptor {
 std::array<double, 3> sides_of(const Shape& solid) {

@@ -14,12 +14,13 @@
 #include "adaptor/memory/applied_ledger.h"
 #include "adaptor/memory/energy_account.h"
 #include "adaptor/memory/mocap_row.h"
-#include "adaptor/memory/work_limit.h"
 #include "adaptor/mujoco/mjgeoms.h"
 #include "adaptor/scene/largest_state.h"
 #include "adaptor/scene/pair_kinds.h"
 #include "adaptor/scene/pair_rates.h"
+#include "adaptor/step/mujoco_mechanism.h"
 #include "volcontact/base/check.h"
+#include "volcontact/step/work_limit.h"
 
 namespace volcontact::adaptor {
 namespace {
@@ -88,6 +89,7 @@ SceneContact::SceneContact(const mjModel* m, const std::vector<GivenKey>& given,
       solids_(solids_of(m, keys_, rules_, meshes_)),
       flush_(m, keys_, solids_, rules_),
       laws_(m, keys_),
+      trees_(trees_of(m)),
       cull_(rules_, solids_) {
   warn_about_model(m);
   if (!no_contact_.empty()) {

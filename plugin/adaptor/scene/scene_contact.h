@@ -18,6 +18,7 @@
 #include "adaptor/scene/pair_contact.h"
 #include "adaptor/scene/pair_rates.h"
 #include "adaptor/scene/pair_store.h"
+#include "volcontact/step/mechanism.h"
 
 namespace volcontact::adaptor {
 
@@ -58,6 +59,7 @@ class SceneContact {
   /// The solids that continue each other.
   const FlushGroups& flush() const { return flush_; }
   const LawClasses& laws() const { return laws_; }
+  const MechanismTrees& trees() const { return trees_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
   /// Those of the warnings that say the simulation will not be what its author expects.
   const std::vector<std::string>& alerts() const { return alerts_; }
@@ -103,6 +105,7 @@ class SceneContact {
   std::vector<Shape> solids_;    // by geom; of geoms without a pair a placeholder
   FlushGroups flush_;
   LawClasses laws_;
+  MechanismTrees trees_;
   std::vector<GeomFacts> facts_;  // by geom
   double gravity_ = 0.0;
   bool keeps_by_choice_ = false;

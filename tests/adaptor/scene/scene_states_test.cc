@@ -5,11 +5,11 @@
 #include <cmath>
 #include <sstream>
 
-#include "adaptor/memory/work_limit.h"
 #include "adaptor/scene/largest_state.h"
 #include "adaptor/scene/scene_contact.h"
 #include "adaptor/support/count_allocations.h"
 #include "adaptor/support/models.h"
+#include "volcontact/step/work_limit.h"
 
 namespace volcontact::adaptor::scene_states_test {
 namespace {

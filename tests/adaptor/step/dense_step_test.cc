@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "adaptor/passive_callback.h"
-#include "adaptor/step/implicit_step.h"
 #include "adaptor/support/models.h"
 #include "adaptor/support/servo_scene.h"
+#include "volcontact/step/implicit_step.h"
 
 namespace volcontact::adaptor::dense_step_test {
 namespace {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/step/implicit_step.h"
+#include "volcontact/step/implicit_step.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "adaptor/passive_callback.h"
+#include "adaptor/step/mujoco_mechanism.h"
 #include "adaptor/support/count_allocations.h"
 #include "adaptor/support/models.h"
 #include "adaptor/support/servo_scene.h"
@@ -58,12 +59,13 @@ TEST_P(BothForms, ForForcesAndForVelocitiesAgree) {
       {4, 2, {0.05, 0.0, 0.3}, basis_with_z(Vec3::UnitZ())}};
   const std::vector<double> known(static_cast<std::size_t>(m->nv), 1.0);
   ContactIslands islands;
-  islands.build(m.get(), places);
+  const MechanismTrees trees = trees_of(m.get());
+  islands.build(trees, places);
   ASSERT_EQ(islands.count(), 1);
   ContactSpace space;
-  const Damping damping = make_damping(m.get(), d.get());
-  space.build(m.get(), d.get(), damping, places, islands, 0, known.data());
-  space.constrain({});
+  const MujocoMechanism mechanism(m.get(), d.get(), trees);
+  space.build(mechanism, places, islands, 0, known.data());
+  space.constrain(NoConstraints());
   ContactEquations equations;
   test::Random random(3);
   for (int first = 0; first < 18; first += 3) {

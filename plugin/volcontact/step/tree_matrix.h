@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace volcontact::adaptor {
+namespace volcontact {
 
 /// The degrees of freedom of kinematic trees, each before the one that carries it.
 class DofTrees {
@@ -151,4 +151,4 @@ class TreeMatrix {
   std::vector<double> lower_, upper_;
 };
 
-}  // namespace volcontact::adaptor
+}  // namespace volcontact

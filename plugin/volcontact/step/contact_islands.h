@@ -5,10 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "adaptor/mujoco/mujoco_compat.h"
-#include "volcontact/base/types.h"
+#include "volcontact/step/mechanism.h"
 
-namespace volcontact::adaptor {
+namespace volcontact {
 
 /// Where two bodies meet: six coordinates of the relative motion of a against b, along n, about
 /// t_1, about t_2, along t_1, along t_2, about n.
@@ -21,14 +20,6 @@ struct ContactPlace {
   Twist driven = {};
 };
 
-/// A kinematic tree: its degrees of freedom, which stand together.
-struct DofRange {
-  int begin = 0;
-  int end = 0;
-
-  int size() const { return end - begin; }
-};
-
 /// The contact places of a scene by islands: what moves in one depends on no contact of another
 /// within a step. Two places are of one island when a moving tree has both, or a chain of such
 /// places is between them; what does not move joins nothing. Memory is reused from call to call.
@@ -36,7 +27,7 @@ class ContactIslands {
  public:
   /// `joined`: pairs of degrees of freedom that something else joins. An island may have trees of
   /// that alone and no place.
-  void build(const mjModel* m, std::span<const ContactPlace> places,
+  void build(const MechanismTrees& trees, std::span<const ContactPlace> places,
              std::span<const std::pair<int, int>> joined = {});
 
   int count() const { return static_cast<int>(islands_.size()); }
@@ -49,7 +40,7 @@ class ContactIslands {
   /// move.
   std::pair<int, int> trees_of(int place) const;
   /// The island of a degree of freedom; negative when nothing joins or touches its tree.
-  int island_of(const mjModel* m, int dof) const;
+  int island_of(int dof) const { return island_of_[size(trees_->tree_of_dof[size(dof)])]; }
 
  private:
   struct Island {
@@ -58,16 +49,12 @@ class ContactIslands {
     int trees_begin = 0;
     int trees_end = 0;
   };
-  int tree_of(const mjModel* m, int body) const;
-  void find_trees(const mjModel* m);
-  void link(const mjModel* m, std::span<const ContactPlace> places,
-            std::span<const std::pair<int, int>> joined);
+  void link(std::span<const ContactPlace> places, std::span<const std::pair<int, int>> joined);
   void visit_from(int tree);
   void add_island(int tree);
   void sort_places();
 
-  std::vector<DofRange> trees_;
-  std::vector<int> tree_of_root_;           // by root body
+  const MechanismTrees* trees_ = nullptr;
   std::vector<std::pair<int, int>> ends_;   // of each place, its two trees or negative
   std::vector<std::pair<int, int>> pairs_;  // of trees that are linked
   std::vector<int> link_begin_, links_;     // neighbours of each tree
@@ -79,4 +66,4 @@ class ContactIslands {
   std::vector<Island> islands_;
 };
 
-}  // namespace volcontact::adaptor
+}  // namespace volcontact

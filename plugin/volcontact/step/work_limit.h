@@ -7,11 +7,7 @@
 
 #include "volcontact/model/contact_report.h"
 
-namespace volcontact::adaptor {
-
-/// An explicit step holds a spring up to h^2 k/m = 4, and keeps its energy where this is small:
-/// `auto` makes implicit what lies above this bound.
-inline constexpr double kStiffNumber = 0.05;
+namespace volcontact {
 
 /// What a pair of geoms holds of the energy of the bodies, from evaluation to evaluation while they
 /// touch: docs/theory.md, "No energy from nothing". Kept in seven numbers.
@@ -254,4 +250,4 @@ inline double explicit_share(const WorkLimit& limit, double force, double partin
   return std::max(fast, std::min({slow, share_for(limit.stored + limit.slow), 1.0}));
 }
 
-}  // namespace volcontact::adaptor
+}  // namespace volcontact

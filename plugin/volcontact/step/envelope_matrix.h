@@ -9,7 +9,7 @@
 
 #include "volcontact/base/types.h"
 
-namespace volcontact::adaptor {
+namespace volcontact {
 
 /// The lower triangle of a symmetric matrix, of each row what lies between its first entry that is
 /// not zero and the diagonal. A Cholesky factor fills no more, so bodies that do not touch cost
@@ -154,4 +154,4 @@ class EnvelopeMatrix {
   std::vector<double> upper_;  // column by column, as the rows in `numbers_`; empty when symmetric
 };
 
-}  // namespace volcontact::adaptor
+}  // namespace volcontact

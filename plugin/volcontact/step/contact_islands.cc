@@ -1,49 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/step/contact_islands.h"
+#include "volcontact/step/contact_islands.h"
 
 #include <algorithm>
 
-#include "adaptor/mujoco/sizes.h"
-
-namespace volcontact::adaptor {
+namespace volcontact {
 namespace {
 
-constexpr int kNone = -1;
+constexpr int kNone = MechanismTrees::kNone;
 
 }  // namespace
 
-int ContactIslands::tree_of(const mjModel* m, int body) const {
-  if (m->body_weldid[body] == 0) return kNone;
-  return tree_of_root_[size(m->body_rootid[body])];
-}
-
-void ContactIslands::find_trees(const mjModel* m) {
-  trees_.clear();
-  tree_of_root_.assign(size(static_cast<int>(m->nbody)), kNone);
-  for (int dof = 0; dof < m->nv; ++dof) {
-    int& tree = tree_of_root_[size(m->body_rootid[m->dof_bodyid[dof]])];
-    if (tree == kNone) {
-      tree = static_cast<int>(trees_.size());
-      trees_.push_back({dof, dof});
-    }
-    trees_[size(tree)].end = dof + 1;
-  }
-}
-
 // The neighbours of each tree, one after the other; itself for a place that it has alone.
-void ContactIslands::link(const mjModel* m, std::span<const ContactPlace> places,
+void ContactIslands::link(std::span<const ContactPlace> places,
                           std::span<const std::pair<int, int>> joined) {
+  const auto tree_of = [this](int body) { return trees_->tree_of_body[size(body)]; };
   ends_.clear();
   pairs_.clear();
   for (const ContactPlace& place : places) {
-    const auto& [a, b] = ends_.emplace_back(tree_of(m, place.body_a), tree_of(m, place.body_b));
+    const auto& [a, b] = ends_.emplace_back(tree_of(place.body_a), tree_of(place.body_b));
     if (a != kNone || b != kNone) pairs_.emplace_back(a == kNone ? b : a, b == kNone ? a : b);
   }
   for (const auto& [a, b] : joined) {
-    const int tree_a = tree_of(m, m->dof_bodyid[a]), tree_b = tree_of(m, m->dof_bodyid[b]);
+    const int tree_a = trees_->tree_of_dof[size(a)], tree_b = trees_->tree_of_dof[size(b)];
     if (tree_a != tree_b) pairs_.emplace_back(tree_a, tree_b);
   }
-  link_begin_.assign(trees_.size() + 2, 0);
+  link_begin_.assign(trees_->trees.size() + 2, 0);
   for (const auto& [a, b] : pairs_) {
     ++link_begin_[size(a) + 2];
     ++link_begin_[size(b) + 2];
@@ -83,7 +64,7 @@ void ContactIslands::add_island(int tree) {
     const std::size_t member = size(queue_[i]);
     island_of_[member] = island;
     rank_[member] = static_cast<int>(ordered_trees_.size()) - begin;
-    ordered_trees_.push_back(trees_[member]);
+    ordered_trees_.push_back(trees_->trees[member]);
   }
   islands_.push_back({0, 0, begin, static_cast<int>(ordered_trees_.size())});
 }
@@ -110,16 +91,17 @@ void ContactIslands::sort_places() {
   }
 }
 
-void ContactIslands::build(const mjModel* m, std::span<const ContactPlace> places,
+void ContactIslands::build(const MechanismTrees& trees, std::span<const ContactPlace> places,
                            std::span<const std::pair<int, int>> joined) {
-  find_trees(m);
-  link(m, places, joined);
+  trees_ = &trees;
+  link(places, joined);
   islands_.clear();
   ordered_trees_.clear();
-  seen_.assign(trees_.size(), 0);
-  island_of_.assign(trees_.size(), kNone);
-  rank_.assign(trees_.size(), 0);
-  for (int tree = 0; tree < static_cast<int>(trees_.size()); ++tree) {
+  const std::size_t count = trees.trees.size();
+  seen_.assign(count, 0);
+  island_of_.assign(count, kNone);
+  rank_.assign(count, 0);
+  for (int tree = 0; tree < static_cast<int>(count); ++tree) {
     const bool alone = link_begin_[size(tree)] == link_begin_[size(tree) + 1];
     if (!alone && !seen_[size(tree)]) add_island(tree);
   }
@@ -141,9 +123,4 @@ std::pair<int, int> ContactIslands::trees_of(int place) const {
   return {a == kNone ? kNone : rank_[size(a)], b == kNone ? kNone : rank_[size(b)]};
 }
 
-int ContactIslands::island_of(const mjModel* m, int dof) const {
-  const int tree = tree_of(m, m->dof_bodyid[dof]);
-  return tree == kNone ? kNone : island_of_[size(tree)];
-}
-
-}  // namespace volcontact::adaptor
+}  // namespace volcontact

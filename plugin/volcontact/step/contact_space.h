@@ -5,16 +5,16 @@
 #include <span>
 #include <vector>
 
-#include "adaptor/step/contact_islands.h"
-#include "adaptor/step/step_matrix.h"
+#include "volcontact/step/contact_islands.h"
+#include "volcontact/step/step_matrix.h"
 
-namespace volcontact::adaptor {
+namespace volcontact {
 
 inline constexpr int kRows = 6;  ///< of a contact place: along and about its three axes
 
-/// What one step of MuJoCo makes of forces at the contact places of an island: u' = u_free + h
+/// What one step makes of forces at the contact places of an island: u' = u_free + h
 /// Lambda f, with u = J v + w, Lambda = J H^-1 J' and u_free = u + h J H^-1 t; w is the motion of
-/// mocap bodies. H is the matrix of the step: step_matrix.h. What does not change with MuJoCo's
+/// mocap bodies. H is the matrix of the step: step_matrix.h. What does not change with native
 /// constraints is made once. Memory is reused from step to step.
 class ContactSpace {
  public:
@@ -27,12 +27,12 @@ class ContactSpace {
     int dof;  ///< its number in `matrix`
   };
 
-  /// `known`: t, all generalized forces but those at the places and of constraints, nv numbers.
-  /// Uses the mass matrix and the positions that are current in `d`, and what make_damping() left.
-  void build(const mjModel* m, mjData* d, Damping damping, std::span<const ContactPlace> places,
+  /// `known`: t, all generalized forces but those at the places and of constraints, one number a
+  /// degree of freedom.
+  void build(const Mechanism& mechanism, std::span<const ContactPlace> places,
              const ContactIslands& islands, int island, const double* known);
-  /// Takes MuJoCo's constraints as they are now in place of those before.
-  void constrain(const NativeConstraints& constraints);
+  /// Takes the native constraints as they are now in place of those before.
+  void constrain(const LinearConstraints& constraints);
 
   int places() const { return static_cast<int>(move_begin_.size()) - 1; }
   int rows() const { return places() * kRows; }
@@ -62,8 +62,8 @@ class ContactSpace {
   /// u' under the forces f: by the degrees of freedom, and by Lambda after build_delassus().
   void move(const std::vector<double>& f, std::vector<double>& u);
   void move_by_delassus(const double* f, double* u) const;
-  /// The acceleration that MuJoCo's solver finds under the forces f, into those of the nv numbers
-  /// that are of the island.
+  /// The acceleration that the solver of native constraints finds under the forces f, into those of
+  /// all degrees of freedom that are of the island.
   void accelerate(const std::vector<double>& f, std::vector<double>& a);
   /// Adds J' f to numbers by degree of freedom, and J x to those by row.
   void add_load(const double* f, double* load) const;
@@ -85,10 +85,8 @@ class ContactSpace {
     const std::size_t i = static_cast<std::size_t>(place);
     return {carried_.data() + carried_begin_[i], carried_begin_[i + 1] - carried_begin_[i]};
   }
-  void add_place(const mjModel* m, const mjData* d, const ContactPlace& place,
-                 std::pair<int, int> trees);
-  void add_body(const mjModel* m, const mjData* d, const ContactPlace& place, int body,
-                double sign);
+  void add_place(const Mechanism& mechanism, const ContactPlace& place, std::pair<int, int> trees);
+  void add_body(const Mechanism& mechanism, const ContactPlace& place, int body, double sign);
   void add_driven(const ContactPlace& place);
   void widen_envelope(int place);
   void choose_form();
@@ -124,10 +122,4 @@ class ContactSpace {
   double step_ = 0.0;
 };
 
-/// All that acts on the degrees of freedom beside the contacts and MuJoCo's constraints, nv
-/// numbers: passive forces so far, bias, actuators at the present state, and what the user applied,
-/// given as `user_qfrc` (nv) and `user_xfrc` (6 nbody).
-void known_forces(const mjModel* m, mjData* d, const double* user_qfrc, const double* user_xfrc,
-                  std::vector<double>& out);
-
-}  // namespace volcontact::adaptor
+}  // namespace volcontact

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/step/block_matrix.h"
+#include "volcontact/step/block_matrix.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact::adaptor::block_matrix_test {
+namespace volcontact::block_matrix_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -60,4 +60,4 @@ TEST(BlockMatrix, SolvesForNothing) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor::block_matrix_test
+}  // namespace volcontact::block_matrix_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/step/envelope_matrix.h"
+#include "volcontact/step/envelope_matrix.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact::adaptor::envelope_matrix_test {
+namespace volcontact::envelope_matrix_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -94,4 +94,4 @@ TEST(EnvelopeMatrix, AddsANarrowerOne) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor::envelope_matrix_test
+}  // namespace volcontact::envelope_matrix_test

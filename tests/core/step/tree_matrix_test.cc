@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/step/tree_matrix.h"
+#include "volcontact/step/tree_matrix.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "core/support/random.h"
 
-namespace volcontact::adaptor::tree_matrix_test {
+namespace volcontact::tree_matrix_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -96,4 +96,4 @@ INSTANTIATE_TEST_SUITE_P(Both, TreeMatrices, ::testing::Bool(), [](const auto& r
 });
 
 }  // namespace
-}  // namespace volcontact::adaptor::tree_matrix_test
+}  // namespace volcontact::tree_matrix_test

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/memory/work_limit.h"
+#include "volcontact/step/work_limit.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace volcontact::adaptor::work_limit_test {
+namespace volcontact::work_limit_test {
 namespace {
 
 PairEnergy::Now now(double elastic, double force = 0.0, double approach = 0.0) {
@@ -176,4 +176,4 @@ TEST(ExplicitShare, WhatWasFoundComesOutSlowly) {
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor::work_limit_test
+}  // namespace volcontact::work_limit_test

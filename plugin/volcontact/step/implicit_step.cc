@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/step/implicit_step.h"
+#include "volcontact/step/implicit_step.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "adaptor/mujoco/sizes.h"
+#include "volcontact/base/sizes.h"
 #include "volcontact/base/symmetric_eigen.h"
+#include "volcontact/step/explicit_bounds.h"
 
-namespace volcontact::adaptor {
+namespace volcontact {
 namespace {
 
 using ConstVector = Eigen::Map<const Eigen::VectorXd>;
@@ -389,24 +390,24 @@ void ImplicitStep::share_deficit() {
   });
 }
 
-// Solves again until MuJoCo's own constraints bear what was taken for granted.
-void ImplicitStep::solve_with_constraints(const mjModel* m, mjData* d, ImplicitParts parts,
+// Solves again until the native constraints bear what was taken for granted.
+void ImplicitStep::solve_with_constraints(const Mechanism& mechanism,
+                                          LinearConstraints& constraints, ImplicitParts parts,
                                           int island, const double* known) {
   constexpr int kRounds = 12;
-  const double step = m->opt.timestep;
-  const double resting = step * Eigen::Map<const Vec3>(m->opt.gravity).norm();
+  const double step = mechanism.step, resting = mechanism.fall;
   const bool is_stiff = std::any_of(island_.begin(), island_.end(),
                                     [this](int i) { return sites_[size(i)].is_stiff; });
-  constraints_.select(m, d, islands_, island);
+  constraints.select(islands_, island);
   for_each_pair([is_stiff](WorkLimit& limit) {
     limit.share = 1.0;
     limit.is_solved = is_stiff;
   });
   // Where forces are held, positions move with the mean of the velocities before and after.
-  if (is_stiff) set_drift(m, d, parts == ImplicitParts::kHeld ? step : 0.5 * step);
-  space_.build(m, d, damping_, places_, islands_, island, known);
+  if (is_stiff) set_drift(mechanism, parts == ImplicitParts::kHeld ? step : 0.5 * step);
+  space_.build(mechanism, places_, islands_, island, known);
   for (int round = 0; round < kRounds; ++round) {
-    space_.constrain(constraints_);
+    space_.constrain(constraints);
     force_.resize(size(space_.rows()));
     velocity_.resize(size(space_.rows()));
     if (is_stiff) {
@@ -414,9 +415,9 @@ void ImplicitStep::solve_with_constraints(const mjModel* m, mjData* d, ImplicitP
     } else {
       take_explicit();
     }
-    if (constraints_.empty()) break;
+    if (constraints.empty()) break;
     space_.accelerate(force_, acceleration_);
-    if (constraints_.improve(m, d, acceleration_)) break;
+    if (constraints.improve(acceleration_)) break;
   }
   if (is_stiff) {
     write_results();
@@ -425,14 +426,13 @@ void ImplicitStep::solve_with_constraints(const mjModel* m, mjData* d, ImplicitP
   }
 }
 
-void ImplicitStep::solve(const mjModel* m, mjData* d, ImplicitParts parts, const double* known) {
-  constraints_.read(m, d);
-  damping_ = make_damping(m, d);
-  acceleration_.assign(size(static_cast<int>(m->nv)), 0.0);
-  islands_.build(m, places_, constraints_.joined());
+void ImplicitStep::solve(const Mechanism& mechanism, LinearConstraints& constraints,
+                         ImplicitParts parts, const double* known) {
+  acceleration_.assign(size(mechanism.trees->dofs()), 0.0);
+  islands_.build(*mechanism.trees, places_, constraints.joined());
   for (int island = 0; island < islands_.count(); ++island) {
     island_ = islands_.places(island);
-    if (!island_.empty()) solve_with_constraints(m, d, parts, island, known);
+    if (!island_.empty()) solve_with_constraints(mechanism, constraints, parts, island, known);
   }
 }
 
@@ -463,4 +463,4 @@ Eigen::Matrix<double, 6, 6> ImplicitStep::slope(std::size_t i) const {
   return out;
 }
 
-}  // namespace volcontact::adaptor
+}  // namespace volcontact

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/step/contact_equations.h"
+#include "volcontact/step/contact_equations.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "adaptor/mujoco/sizes.h"
+#include "volcontact/base/sizes.h"
 
-namespace volcontact::adaptor {
+namespace volcontact {
 namespace {
 
 using Vector = Eigen::Map<Eigen::VectorXd>;
@@ -147,4 +147,4 @@ void ContactEquations::solve_for_dofs(ContactSpace& space, double step, std::vec
   for (int place = 0; place < rows / kRows; ++place) bear(place);
 }
 
-}  // namespace volcontact::adaptor
+}  // namespace volcontact

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace volcontact::adaptor {
+namespace volcontact {
 
 /// A square matrix of full blocks of K x K numbers, and its Cholesky factor, or L and U without
 /// exchange of rows where it is not symmetric: for matrices whose symmetric part is positive
@@ -122,4 +122,4 @@ class BlockMatrix {
   std::vector<Vector> inverse_;  // of U's diagonal
 };
 
-}  // namespace volcontact::adaptor
+}  // namespace volcontact

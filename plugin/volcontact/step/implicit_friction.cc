@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "adaptor/mujoco/sizes.h"
-#include "adaptor/step/implicit_step.h"
-#include "adaptor/step/turning.h"
+#include "volcontact/base/sizes.h"
+#include "volcontact/step/implicit_step.h"
 
-namespace volcontact::adaptor {
+namespace volcontact {
 namespace {
 
 // The speed s at which friction of the damping c(s) leaves what would move at `free`:
@@ -48,13 +47,13 @@ Vec3 ImplicitStep::slip_of(const Site& site, const std::vector<double>& u, std::
 }
 
 // For friction that holds by what it remembers of the way.
-void ImplicitStep::set_drift(const mjModel* m, const mjData* d, double time) {
+void ImplicitStep::set_drift(const Mechanism& mechanism, double time) {
   for (const int i : island_) {
     Site& site = sites_[size(i)];
     if (!site.laws.has_friction() || !site.laws.friction_keeps()) continue;
     const ContactPlace& place = places_[size(i)];
-    const Vec3 turning = turning_acceleration(m, d, place.body_a, place.point) -
-                         turning_acceleration(m, d, place.body_b, place.point);
+    const Vec3 turning = turning_acceleration(mechanism, place.body_a, place.point) -
+                         turning_acceleration(mechanism, place.body_b, place.point);
     const Mat3& axes = site.tangent.axes;
     site.drift = time * Vec3(axes.col(0).dot(turning), axes.col(1).dot(turning), 0.0);
   }
@@ -187,4 +186,4 @@ void ImplicitStep::damp_friction(double step) {
   }
 }
 
-}  // namespace volcontact::adaptor
+}  // namespace volcontact

@@ -1,35 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/step/contact_space.h"
+#include "volcontact/step/contact_space.h"
 
 #include <algorithm>
 
-#include "adaptor/mujoco/mjgeoms.h"
-#include "adaptor/mujoco/sizes.h"
+#include "volcontact/base/sizes.h"
 
-namespace volcontact::adaptor {
+namespace volcontact {
 
 // Adds the motion that each degree of freedom beyond the world gives the body at the place.
-void ContactSpace::add_body(const mjModel* m, const mjData* d, const ContactPlace& place, int body,
+void ContactSpace::add_body(const Mechanism& mechanism, const ContactPlace& place, int body,
                             double sign) {
-  while (body > 0 && m->body_dofnum[body] == 0) body = m->body_parentid[body];
-  const Vec3 offset = place.point - vec3_at(d->subtree_com, m->body_rootid[body]);
+  const MechanismTrees& trees = *mechanism.trees;
+  const Vec3 offset = place.point - mechanism.origin(trees.tree_of_body[size(body)]);
   const Mat3 to_site = sign * place.axes.transpose();
-  int dof = m->body_dofadr[body] + m->body_dofnum[body] - 1;
-  for (; dof >= 0; dof = m->dof_parentid[dof]) {
-    const Vec3 angular = vec3_at(d->cdof, 2 * dof);
+  for (int dof = trees.last_dof[size(body)]; dof >= 0; dof = trees.carrier[size(dof)]) {
+    const Vec3 angular = Mechanism::angular(mechanism.motions, dof);
     const Vec3 turn = to_site * angular;
-    const Vec3 way = to_site * (vec3_at(d->cdof, 2 * dof + 1) + angular.cross(offset));
+    const Vec3 way = to_site * (Mechanism::linear(mechanism.motions, dof) + angular.cross(offset));
     const double column[kRows] = {way[2], turn[0], turn[1], way[0], way[1], turn[2]};
     double* to = &dense_[size(kRows * matrix_.number(dof))];
     for (int i = 0; i < kRows; ++i) to[i] += column[i];
   }
 }
 
-void ContactSpace::add_place(const mjModel* m, const mjData* d, const ContactPlace& place,
+void ContactSpace::add_place(const Mechanism& mechanism, const ContactPlace& place,
                              std::pair<int, int> trees) {
   const auto [tree_a, tree_b] = trees;
-  if (tree_a >= 0) add_body(m, d, place, place.body_a, 1.0);
-  if (tree_b >= 0) add_body(m, d, place, place.body_b, -1.0);
+  if (tree_a >= 0) add_body(mechanism, place, place.body_a, 1.0);
+  if (tree_b >= 0) add_body(mechanism, place, place.body_b, -1.0);
   const auto take = [&](int tree) {
     for (int dof = matrix_.tree(tree).begin; dof < matrix_.tree(tree).end; ++dof) {
       Eigen::Map<Block> column(&dense_[size(kRows * dof)]);
@@ -273,11 +271,10 @@ void ContactSpace::accelerate(const std::vector<double>& f, std::vector<double>&
   for (int i = 0; i < dofs(); ++i) a[size(matrix_.dofs()[size(i)])] = generalized_[size(i)];
 }
 
-void ContactSpace::build(const mjModel* m, mjData* d, Damping damping,
-                         std::span<const ContactPlace> places, const ContactIslands& islands,
-                         int island, const double* known) {
-  step_ = m->opt.timestep;
-  matrix_.build(m, d, damping, islands.trees(island));
+void ContactSpace::build(const Mechanism& mechanism, std::span<const ContactPlace> places,
+                         const ContactIslands& islands, int island, const double* known) {
+  step_ = mechanism.step;
+  matrix_.build(mechanism, islands.trees(island));
   const std::size_t count = matrix_.dofs().size();
   moves_.clear();
   move_begin_.assign(1, 0);
@@ -289,11 +286,11 @@ void ContactSpace::build(const mjModel* m, mjData* d, Damping damping,
   is_in_tree_.assign(count, 0);
   for (std::size_t i = 0; i < count; ++i) {
     free_known_[i] = known[matrix_.dofs()[i]];
-    generalized_[i] = d->qvel[matrix_.dofs()[i]];
+    generalized_[i] = mechanism.speeds[matrix_.dofs()[i]];
   }
   velocity_.clear();
   for (const int place : islands.places(island)) {
-    add_place(m, d, places[size(place)], islands.trees_of(place));
+    add_place(mechanism, places[size(place)], islands.trees_of(place));
     add_driven(places[size(place)]);
   }
   add_motion(generalized_.data(), velocity_.data());
@@ -301,7 +298,7 @@ void ContactSpace::build(const mjModel* m, mjData* d, Damping damping,
   has_free_delassus_ = false;
 }
 
-void ContactSpace::constrain(const NativeConstraints& constraints) {
+void ContactSpace::constrain(const LinearConstraints& constraints) {
   matrix_.constrain(constraints);
   constrain_places();
   envelope_.assign(matrix_.envelope().begin(), matrix_.envelope().end());
@@ -315,23 +312,4 @@ void ContactSpace::constrain(const NativeConstraints& constraints) {
   add_motion(generalized_.data(), free_.data());
 }
 
-void known_forces(const mjModel* m, mjData* d, const double* user_qfrc, const double* user_xfrc,
-                  std::vector<double>& out) {
-  const int nv = static_cast<int>(m->nv);
-  out.resize(size(nv));
-  mj_rne(m, d, 0, out.data());
-  const bool actuated = m->nu > 0;
-  if (actuated) mj_fwdActuation(m, d);
-  for (int i = 0; i < nv; ++i) {
-    double& force = out[size(i)];
-    force = d->qfrc_passive[i] - force + user_qfrc[i];
-    if (actuated) force += d->qfrc_actuator[i];
-  }
-  for (int body = 1; body < m->nbody; ++body) {
-    const double* load = user_xfrc + 6 * body;
-    if (std::all_of(load, load + 6, [](double x) { return x == 0.0; })) continue;
-    mj_applyFT(m, d, load, load + 3, d->xipos + 3 * body, body, out.data());
-  }
-}
-
-}  // namespace volcontact::adaptor
+}  // namespace volcontact

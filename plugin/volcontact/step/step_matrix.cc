@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/step/step_matrix.h"
+#include "volcontact/step/step_matrix.h"
 
 #include <algorithm>
 
-namespace volcontact::adaptor {
+namespace volcontact {
 namespace {
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
@@ -12,11 +12,11 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // Numbers for the degrees of freedom of an island, and the envelope of their masses: each has
 // inertia in common with those it carries and with those that carry it.
-void StepMatrix::number_dofs(const mjModel* m, std::span<const DofRange> trees) {
+void StepMatrix::number_dofs(const MechanismTrees& mechanism, std::span<const DofRange> trees) {
   trees_.clear();
   tree_of_.clear();
   dofs_.clear();
-  numbers_.resize(index(static_cast<int>(m->nv)));
+  numbers_.resize(mechanism.carrier.size());
   limits_.resize(numbers_.size());
   for (const DofRange& tree : trees) {
     const int begin = static_cast<int>(dofs_.size());
@@ -28,7 +28,7 @@ void StepMatrix::number_dofs(const mjModel* m, std::span<const DofRange> trees) 
     trees_.push_back({begin, static_cast<int>(dofs_.size())});
     for (int dof = tree.begin; dof < tree.end; ++dof) limits_[index(dof)] = dof;
     for (int dof = tree.end - 1; dof >= tree.begin; --dof) {
-      const int parent = m->dof_parentid[dof];
+      const int parent = mechanism.carrier[index(dof)];
       if (parent < 0) continue;
       limits_[index(parent)] = std::max(limits_[index(parent)], limits_[index(dof)]);
     }
@@ -37,46 +37,28 @@ void StepMatrix::number_dofs(const mjModel* m, std::span<const DofRange> trees) 
   parents_.resize(dofs_.size());
   for (std::size_t i = 0; i < dofs_.size(); ++i) {
     free_envelope_[i] = number(limits_[index(dofs_[i])]);
-    const int parent = m->dof_parentid[dofs_[i]];
+    const int parent = mechanism.carrier[index(dofs_[i])];
     parents_[i] = parent < 0 ? -1 : number(parent);
   }
   carriers_.set(parents_);
   marked_.assign(dofs_.size(), 0);
 }
 
-void StepMatrix::make_mass(const mjModel* m, const mjData* d) {
+void StepMatrix::make_mass(const Mechanism& mechanism) {
+  entries_.clear();
+  mechanism.mass(dofs_, entries_);
   mass_.reset(carriers_, true);
-  for (std::size_t i = 0; i < dofs_.size(); ++i) {
-    for_row_of_mass(m, d, dofs_[i], [&](int other, double mass) {
-      mass_(static_cast<int>(i), number(other)) = mass;
-    });
+  for (const DofEntry& entry : entries_) {
+    mass_(number(entry.row), number(entry.column)) = entry.value;
   }
 }
 
-// Mh = M + N. Returns whether there is any N.
-bool StepMatrix::add_extra(const mjModel* m, const mjData* d, Damping damping) {
+// Mh = M + N, of the entries of N. Returns whether there is any.
+bool StepMatrix::add_extra() {
   free_.reset(carriers_, false);
-  const double h = m->opt.timestep;
-  const auto at = [&](int row, int column) -> double& {
-    const int i = number(row), k = number(column);
-    return i <= k ? free_(i, k) : free_.mirrored(k, i);
-  };
-  for (const int dof : dofs_) {
-    for_row_of_damping(m, d, damping, dof, [&](int other, double b) {
-      at(dof, other) = h * b;
-      if (damping == Damping::kAllSymmetric) at(other, dof) = h * b;
-    });
-  }
-  for (const DofRange& tree : trees_) {
-    double matrix[36];
-    const int last = dofs_[index(tree.begin)], joint = m->dof_jntid[last];
-    if (!matrix_of_free_body(m, d, damping, joint, matrix)) continue;
-    const int first = m->jnt_dofadr[joint];
-    for (int i = 0; i < 36; ++i) {
-      const int one = number(first + i / 6), other = number(first + i % 6);
-      at(first + i / 6, first + i % 6) =
-          matrix[i] - mass_(std::min(one, other), std::max(one, other));
-    }
+  for (const DofEntry& entry : entries_) {
+    const int i = number(entry.row), k = number(entry.column);
+    (i <= k ? free_(i, k) : free_.mirrored(k, i)) = entry.value;
   }
   bool has_extra = false;
   bool is_symmetric = true;
@@ -95,19 +77,20 @@ bool StepMatrix::add_extra(const mjModel* m, const mjData* d, Damping damping) {
   return has_extra;
 }
 
-void StepMatrix::build(const mjModel* m, const mjData* d, Damping damping,
-                       std::span<const DofRange> trees) {
-  number_dofs(m, trees);
-  make_mass(m, d);
+void StepMatrix::build(const Mechanism& mechanism, std::span<const DofRange> trees) {
+  number_dofs(*mechanism.trees, trees);
+  make_mass(mechanism);
+  entries_.clear();
+  mechanism.damping(dofs_, entries_);
   bool has_extra = false;
-  if (damping == Damping::kNone) {
+  if (entries_.empty()) {
     free_ = mass_;
   } else {
-    has_extra = add_extra(m, d, damping);
+    has_extra = add_extra();
   }
   free_factor_ = free_;
   free_factor_.factor();
-  converts_ = has_extra && !solves_with_step_matrix(m);
+  converts_ = has_extra && !mechanism.constraints_see_damping();
   makes_mass_factor_ = converts_;
   column_count_ = 0;
   load_.assign(dofs_.size(), 0.0);
@@ -130,12 +113,12 @@ void StepMatrix::close(std::vector<int>& numbers) {
 }
 
 // In the order of their degrees of freedom, so that those of one tree are near each other.
-void StepMatrix::sort_columns(const NativeConstraints& constraints) {
+void StepMatrix::sort_columns(const LinearConstraints& constraints) {
   column_count_ = index(constraints.columns());
   order_.clear();
   for (int c = 0; c < constraints.columns(); ++c) {
     int least = size();
-    for (const NativeConstraints::Entry& entry : constraints.column(c)) {
+    for (const LinearConstraints::Entry& entry : constraints.column(c)) {
       least = std::min(least, number(entry.dof));
     }
     order_.emplace_back(least, c);
@@ -144,21 +127,21 @@ void StepMatrix::sort_columns(const NativeConstraints& constraints) {
   if (columns_.size() < column_count_) columns_.resize(column_count_);
 }
 
-void StepMatrix::take_columns(const NativeConstraints& constraints) {
+void StepMatrix::take_columns(const LinearConstraints& constraints) {
   sort_columns(constraints);
   dense_.assign(dofs_.size(), 0.0);
   for (std::size_t c = 0; c < column_count_; ++c) {
     Column& column = columns_[c];
     const auto entries = constraints.column(order_[c].second);
     column.support.clear();
-    for (const NativeConstraints::Entry& entry : entries) {
+    for (const LinearConstraints::Entry& entry : entries) {
       const int i = number(entry.dof);
       if (!marked_[index(i)]) column.support.push_back(i);
       marked_[index(i)] = 1;
     }
     close(column.support);
     const auto put = [&] {
-      for (const NativeConstraints::Entry& entry : entries) {
+      for (const LinearConstraints::Entry& entry : entries) {
         dense_[index(number(entry.dof))] += entry.value;
       }
     };
@@ -243,9 +226,9 @@ void StepMatrix::factor_mass() {
   mass_factor_.factor();
 }
 
-void StepMatrix::constrain(const NativeConstraints& constraints) {
+void StepMatrix::constrain(const LinearConstraints& constraints) {
   load_.assign(dofs_.size(), 0.0);
-  for (const NativeConstraints::Entry& entry : constraints.load()) {
+  for (const LinearConstraints::Entry& entry : constraints.load()) {
     load_[index(number(entry.dof))] += entry.value;
   }
   if (constraints.columns() > 0) factor_mass();
@@ -321,4 +304,4 @@ void StepMatrix::accelerate(std::vector<double>& x) {
   constraint_factor().solve(x.data());
 }
 
-}  // namespace volcontact::adaptor
+}  // namespace volcontact

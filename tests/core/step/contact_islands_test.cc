@@ -1,31 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adaptor/step/contact_islands.h"
+#include "volcontact/step/contact_islands.h"
 
 #include <gtest/gtest.h>
 
-#include <string>
 #include <vector>
 
-#include "adaptor/support/models.h"
+#include "core/support/free_bodies.h"
 
-namespace volcontact::adaptor::contact_islands_test {
+namespace volcontact::contact_islands_test {
 namespace {
-
-using testing::ModelPointer;
 
 ContactPlace place(int a, int b) { return {a, b, Vec3::Zero(), Mat3::Identity()}; }
 
-// Bodies 1 ... count, each with a free joint; the last one carries a hinged body, count + 1.
-ModelPointer free_bodies(int count) {
-  std::string bodies;
-  for (int i = 0; i < count; ++i) {
-    bodies += "<body><freejoint/><geom size=\".1\"/>";
-    if (i == count - 1) bodies += "<body><joint/><geom size=\".1\"/></body>";
-    bodies += "</body>";
-  }
-  return testing::compile(
-      "<mujoco><worldbody><geom name=\"floor\" type=\"plane\" size=\"1 1 1\"/>" + bodies +
-      "</worldbody></mujoco>");
+// Bodies 1 ... count that fly alone; on the last one hangs body count + 1 by one more degree of
+// freedom.
+MechanismTrees free_bodies(int count) {
+  test::FreeBodies bodies;
+  for (int i = 0; i < count; ++i) bodies.add(1.0, Mat3::Identity());
+  MechanismTrees trees = *bodies.trees;
+  trees.carrier.push_back(trees.trees.back().end - 1);
+  trees.tree_of_dof.push_back(count - 1);
+  trees.last_dof.push_back(trees.trees.back().end++);
+  trees.tree_of_body.push_back(count - 1);
+  return trees;
 }
 
 std::vector<int> places_of(const ContactIslands& islands, int island) {
@@ -34,10 +31,10 @@ std::vector<int> places_of(const ContactIslands& islands, int island) {
 }
 
 TEST(ContactIslands, WhatDoesNotMoveJoinsNothing) {
-  const ModelPointer m = free_bodies(4);
+  const MechanismTrees trees = free_bodies(4);
   const std::vector<ContactPlace> places = {place(1, 0), place(3, 0), place(2, 1), place(0, 5)};
   ContactIslands islands;
-  islands.build(m.get(), places);
+  islands.build(trees, places);
   ASSERT_EQ(islands.count(), 3);
   EXPECT_EQ(places_of(islands, 0), (std::vector<int>{0, 2}));
   EXPECT_EQ(places_of(islands, 1), (std::vector<int>{1}));
@@ -53,7 +50,7 @@ TEST(ContactIslands, WhatDoesNotMoveJoinsNothing) {
 }
 
 TEST(ContactIslands, StackIsOrderedAlongItself) {
-  const ModelPointer m = free_bodies(6);
+  const MechanismTrees trees = free_bodies(6);
   std::vector<ContactPlace> places;
   const int stack[] = {3, 6, 1, 5, 2, 4};  // on top of each other
   places.push_back(place(stack[3], stack[2]));
@@ -63,7 +60,7 @@ TEST(ContactIslands, StackIsOrderedAlongItself) {
   places.push_back(place(stack[1], stack[2]));
   places.push_back(place(0, stack[0]));
   ContactIslands islands;
-  islands.build(m.get(), places);
+  islands.build(trees, places);
   ASSERT_EQ(islands.count(), 1);
   EXPECT_EQ(islands.trees(0).size(), 6u);
   for (int i = 0; i < 5; ++i) {
@@ -74,32 +71,32 @@ TEST(ContactIslands, StackIsOrderedAlongItself) {
 
 // Body i has degrees of freedom from 6 (i - 1) on.
 TEST(ContactIslands, ConstraintsJoinTrees) {
-  const ModelPointer m = free_bodies(5);
+  const MechanismTrees trees = free_bodies(5);
   const std::vector<ContactPlace> places = {place(1, 0), place(2, 0)};
   const std::vector<std::pair<int, int>> joined = {{0, 12}, {13, 8}, {18, 24}, {24, 30}};
   ContactIslands islands;
-  islands.build(m.get(), places, joined);
+  islands.build(trees, places, joined);
   ASSERT_EQ(islands.count(), 2);  // the second one without a place
   EXPECT_EQ(places_of(islands, 0), (std::vector<int>{0, 1}));
   EXPECT_EQ(islands.trees(0).size(), 3u);
   EXPECT_TRUE(islands.places(1).empty());
-  EXPECT_EQ(islands.island_of(m.get(), 8), 0);
-  EXPECT_EQ(islands.island_of(m.get(), 30), 1);
-  islands.build(m.get(), places);
-  EXPECT_LT(islands.island_of(m.get(), 12), 0);
+  EXPECT_EQ(islands.island_of(8), 0);
+  EXPECT_EQ(islands.island_of(30), 1);
+  islands.build(trees, places);
+  EXPECT_LT(islands.island_of(12), 0);
 }
 
 TEST(ContactIslands, IsBuiltAnewEachTime) {
-  const ModelPointer m = free_bodies(3);
+  const MechanismTrees trees = free_bodies(3);
   const std::vector<ContactPlace> one = {place(1, 2)}, other = {place(2, 3), place(1, 0)};
   ContactIslands islands;
-  islands.build(m.get(), one);
+  islands.build(trees, one);
   EXPECT_EQ(islands.count(), 1);
-  islands.build(m.get(), other);
+  islands.build(trees, other);
   EXPECT_EQ(islands.count(), 2);
-  islands.build(m.get(), {});
+  islands.build(trees, {});
   EXPECT_EQ(islands.count(), 0);
 }
 
 }  // namespace
-}  // namespace volcontact::adaptor::contact_islands_test
+}  // namespace volcontact::contact_islands_test

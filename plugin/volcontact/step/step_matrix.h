@@ -5,14 +5,15 @@
 #include <utility>
 #include <vector>
 
-#include "adaptor/step/envelope_matrix.h"
-#include "adaptor/step/native_constraints.h"
-#include "adaptor/step/tree_matrix.h"
+#include "volcontact/step/envelope_matrix.h"
+#include "volcontact/step/linear_constraints.h"
+#include "volcontact/step/mechanism.h"
+#include "volcontact/step/tree_matrix.h"
 
-namespace volcontact::adaptor {
+namespace volcontact {
 
 /// The matrix H of one step of an island, H dv = h t: what the integrator divides by, Mh = M + N,
-/// and what MuJoCo's constraints add, linear around a guess, G P' with P' = G' M^-1 Mh. N is what
+/// and what native constraints add, linear around a guess, G P' with P' = G' M^-1 Mh. N is what
 /// the integrator takes implicitly of the forces by velocities. Mh is factored along the trees,
 /// once a step; what the constraints add has the few columns of G, so that
 /// H^-1 = Mh^-1 - Mh^-1 G (1 + P' Mh^-1 G)^-1 P' Mh^-1. Memory is reused from step to step.
@@ -21,14 +22,13 @@ namespace volcontact::adaptor {
 /// the limbs of a tree are apart in the matrices.
 class StepMatrix {
  public:
-  /// Uses the mass matrix that is current in `d`, and what make_damping() left there. Without
-  /// constraints.
-  void build(const mjModel* m, const mjData* d, Damping damping, std::span<const DofRange> trees);
+  /// Without constraints.
+  void build(const Mechanism& mechanism, std::span<const DofRange> trees);
   /// Takes the constraints as they are now in place of those before.
-  void constrain(const NativeConstraints& constraints);
+  void constrain(const LinearConstraints& constraints);
 
   int size() const { return static_cast<int>(dofs_.size()); }
-  /// The degrees of freedom of the model, by the numbers here, and the other way.
+  /// The degrees of freedom of the mechanism, by the numbers here, and the other way.
   std::span<const int> dofs() const { return dofs_; }
   int number(int dof) const { return numbers_[static_cast<std::size_t>(dof)]; }
   /// The trees, by the numbers here.
@@ -46,8 +46,8 @@ class StepMatrix {
   /// What the constraints add to the forces t, by the numbers here.
   std::span<const double> load() const { return load_; }
 
-  /// H^-1 x, by the numbers here, in place; and the acceleration that MuJoCo's solver finds under
-  /// the forces x.
+  /// H^-1 x, by the numbers here, in place; and the acceleration that the solver of
+  /// constraints finds under the forces x.
   void solve(std::vector<double>& x);
   void accelerate(std::vector<double>& x);
 
@@ -71,12 +71,12 @@ class StepMatrix {
   void close(std::vector<int>& numbers);
 
  private:
-  void number_dofs(const mjModel* m, std::span<const DofRange> trees);
-  void make_mass(const mjModel* m, const mjData* d);
-  bool add_extra(const mjModel* m, const mjData* d, Damping damping);
+  void number_dofs(const MechanismTrees& mechanism, std::span<const DofRange> trees);
+  void make_mass(const Mechanism& mechanism);
+  bool add_extra();
   void factor_mass();
-  void sort_columns(const NativeConstraints& constraints);
-  void take_columns(const NativeConstraints& constraints);
+  void sort_columns(const LinearConstraints& constraints);
+  void take_columns(const LinearConstraints& constraints);
   void widen_envelope();
   void couple();
   void release(std::vector<double>& x);
@@ -86,6 +86,7 @@ class StepMatrix {
   DofTrees carriers_;
   std::vector<int> limits_;  // the last degree of freedom of each subtree
   std::vector<int> free_envelope_, envelope_;
+  std::vector<DofEntry> entries_;  // of the mechanism
   TreeMatrix mass_, mass_factor_;  // M
   TreeMatrix free_, free_factor_;  // Mh
   bool makes_mass_factor_ = false;
@@ -100,4 +101,4 @@ class StepMatrix {
   std::vector<char> marked_;
 };
 
-}  // namespace volcontact::adaptor
+}  // namespace volcontact

@@ -5,11 +5,11 @@
 #include <array>
 #include <vector>
 
-#include "adaptor/memory/work_limit.h"
-#include "adaptor/step/contact_equations.h"
 #include "volcontact/model/site_laws.h"
+#include "volcontact/step/contact_equations.h"
+#include "volcontact/step/work_limit.h"
 
-namespace volcontact::adaptor {
+namespace volcontact {
 
 /// What a step makes implicit.
 enum class ImplicitParts : int {
@@ -17,30 +17,6 @@ enum class ImplicitParts : int {
   kAll = 1,
   kHeld = 2,  ///< all, of forces that are held through the stages of a Runge-Kutta step
 };
-
-/// An explicit step holds a damper up to h c/m = 2, and reverses the motion from 1 on: `auto` makes
-/// implicit what lies above this bound.
-inline constexpr double kStiffDamper = 0.5;
-
-/// What a step holds of explicit forces, with room to spare: h^2 k/m of a spring, h c/m of a
-/// damper.
-struct ExplicitBounds {
-  double spring, damper;
-  /// Whether friction that is too stiff makes no pair implicit. Runge-Kutta goes on to be of fourth
-  /// order where the slip reverses in an impact that it resolves, and may chatter at rest.
-  bool friction_is_explicit;
-
-  static constexpr ExplicitBounds of(bool is_rk4) {
-    return is_rk4 ? ExplicitBounds{0.5, 1.4, true}
-                  : ExplicitBounds{kStiffNumber, kStiffDamper, false};
-  }
-  /// Of the later stages of Runge-Kutta, for what the first of them held.
-  static constexpr ExplicitBounds of_stage() { return {1.0, 2.0, true}; }
-};
-
-/// Pairs whose patch, were it as large as the smaller solid, stays below this are always left to
-/// the explicit force.
-inline constexpr double kPossibleNumber = 0.5;
 
 /// Power that goes into the elastic energy of the volumes of a report that keeps its inputs [W].
 inline double stored_power(const ContactReport& report) {
@@ -79,7 +55,9 @@ class ImplicitStep {
 
   /// Solves, with the known forces of contact_space.h, and puts the results into the reports: the
   /// forces, and as `taken` the power that the contact takes from the motion over the step.
-  void solve(const mjModel* m, mjData* d, ImplicitParts parts, const double* known);
+  /// `constraints`: what the solver of the native constraints will do in the step.
+  void solve(const Mechanism& mechanism, LinearConstraints& constraints, ImplicitParts parts,
+             const double* known);
 
   // For tests: the linear model of site i, f = e - C u', as last solved, and the solution.
   ContactSpace::Block constant(std::size_t site) const;
@@ -137,8 +115,8 @@ class ImplicitStep {
   void share_deficit();
   template <typename Use>
   void for_each_pair(Use use);
-  void solve_with_constraints(const mjModel* m, mjData* d, ImplicitParts parts, int island,
-                              const double* known);
+  void solve_with_constraints(const Mechanism& mechanism, LinearConstraints& constraints,
+                              ImplicitParts parts, int island, const double* known);
   void take_explicit();
   void write_explicit();
   void make_points(ImplicitParts parts, double step, double resting);
@@ -147,7 +125,7 @@ class ImplicitStep {
   double normal_force(std::size_t i) const { return std::max(0.0, force_[6 * i]); }
   void solve_active(bool with_friction, double step);
   void solve_once(bool with_friction, double step);
-  void set_drift(const mjModel* m, const mjData* d, double time);
+  void set_drift(const Mechanism& mechanism, double time);
   void set_friction(double step);
   void set_damper(Site& site, double normal_force, const Vec3& along, double spin,
                   double speed) const;
@@ -175,8 +153,6 @@ class ImplicitStep {
   std::vector<WorkLimit> limits_;  // by pair
   std::vector<ContactPlace> places_;
   ContactIslands islands_;
-  NativeConstraints constraints_;
-  Damping damping_ = Damping::kNone;
   std::vector<double> acceleration_;
   std::span<const int> island_;  // the sites of the one at hand; what follows is of these
   ContactSpace space_;
@@ -185,4 +161,4 @@ class ImplicitStep {
   std::vector<double> before_;            // f of the pass before
 };
 
-}  // namespace volcontact::adaptor
+}  // namespace volcontact

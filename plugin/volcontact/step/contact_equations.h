@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "adaptor/step/block_matrix.h"
-#include "adaptor/step/contact_space.h"
+#include "volcontact/step/block_matrix.h"
+#include "volcontact/step/contact_space.h"
 
-namespace volcontact::adaptor {
+namespace volcontact {
 
 /// The equations of a linearly implicit step: f = e - C u' at contact places, u' = u_free + h
 /// Lambda f, with C = L L' positive semidefinite, of blocks of three coordinates of a place.
@@ -49,4 +49,4 @@ struct ContactEquations {
   std::vector<double> right_, response_;
 };
 
-}  // namespace volcontact::adaptor
+}  // namespace volcontact

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "adaptor/step/mujoco_mechanism.h"
+
+#include <algorithm>
+
+namespace volcontact::adaptor {
+
+MechanismTrees trees_of(const mjModel* m) {
+  constexpr int kNone = MechanismTrees::kNone;
+  MechanismTrees out;
+  std::vector<int> tree_of_root(size(static_cast<int>(m->nbody)), kNone);
+  for (int dof = 0; dof < m->nv; ++dof) {
+    const int root = m->body_rootid[m->dof_bodyid[dof]];
+    int& tree = tree_of_root[size(root)];
+    if (tree == kNone) {
+      tree = static_cast<int>(out.trees.size());
+      out.trees.push_back({dof, dof});
+      out.root.push_back(root);
+    }
+    out.trees[size(tree)].end = dof + 1;
+    out.tree_of_dof.push_back(tree);
+    out.carrier.push_back(m->dof_parentid[dof]);
+  }
+  for (int body = 0; body < m->nbody; ++body) {
+    const bool moves = m->body_weldid[body] != 0;
+    out.tree_of_body.push_back(moves ? tree_of_root[size(m->body_rootid[body])] : kNone);
+    int carried_by = body;
+    while (carried_by > 0 && m->body_dofnum[carried_by] == 0) {
+      carried_by = m->body_parentid[carried_by];
+    }
+    const int count = m->body_dofnum[carried_by];
+    out.last_dof.push_back(count > 0 ? m->body_dofadr[carried_by] + count - 1 : kNone);
+  }
+  return out;
+}
+
+MujocoMechanism::MujocoMechanism(const mjModel* m, mjData* d, const MechanismTrees& of_model)
+    : m_(m), d_(d), damping_(make_damping(m, d)) {
+  trees = &of_model;
+  step = m->opt.timestep;
+  fall = step * Eigen::Map<const Vec3>(m->opt.gravity).norm();
+  speeds = d->qvel;
+  motions = d->cdof;
+  motion_rates = d->cdof_dot;
+  origins = d->subtree_com;
+  twists = d->cvel;
+}
+
+void MujocoMechanism::mass(std::span<const int> dofs, std::vector<DofEntry>& out) const {
+  for (const int dof : dofs) {
+    for_row_of_mass(m_, d_, dof,
+                    [&](int other, double mass) { out.push_back({dof, other, mass}); });
+  }
+}
+
+void MujocoMechanism::damping(std::span<const int> dofs, std::vector<DofEntry>& out) const {
+  for (const int dof : dofs) {
+    for_row_of_damping(m_, d_, damping_, dof, [&](int other, double b) {
+      out.push_back({dof, other, step * b});
+      if (damping_ == Damping::kAllSymmetric) out.push_back({other, dof, step * b});
+    });
+  }
+  if (damping_ != Damping::kAllSymmetric) return;
+  for (const int dof : dofs) {
+    const DofRange& tree = trees->trees[size(trees->tree_of_dof[size(dof)])];
+    if (tree.begin == dof && tree.size() == 6) fly(dof, out);
+  }
+}
+
+// In place of the damping of a body that flies alone, where the integrator has a matrix for it.
+void MujocoMechanism::fly(int dof, std::vector<DofEntry>& out) const {
+  double matrix[36], mass[36] = {};
+  if (!matrix_of_free_body(m_, d_, damping_, m_->dof_jntid[dof], matrix)) return;
+  for (int i = 0; i < 6; ++i) {
+    for_row_of_mass(m_, d_, dof + i, [&](int other, double value) {
+      mass[6 * i + other - dof] = mass[6 * (other - dof) + i] = value;
+    });
+  }
+  for (int i = 0; i < 36; ++i) {
+    out.push_back({dof + i / 6, dof + i % 6, matrix[i] - mass[i]});
+  }
+}
+
+void known_forces(const mjModel* m, mjData* d, const double* user_qfrc, const double* user_xfrc,
+                  std::vector<double>& out) {
+  const int nv = static_cast<int>(m->nv);
+  out.resize(size(nv));
+  mj_rne(m, d, 0, out.data());
+  const bool actuated = m->nu > 0;
+  if (actuated) mj_fwdActuation(m, d);
+  for (int i = 0; i < nv; ++i) {
+    double& force = out[size(i)];
+    force = d->qfrc_passive[i] - force + user_qfrc[i];
+    if (actuated) force += d->qfrc_actuator[i];
+  }
+  for (int body = 1; body < m->nbody; ++body) {
+    const double* load = user_xfrc + 6 * body;
+    if (std::all_of(load, load + 6, [](double x) { return x == 0.0; })) continue;
+    mj_applyFT(m, d, load, load + 3, d->xipos + 3 * body, body, out.data());
+  }
+}
+
+}  // namespace volcontact::adaptor

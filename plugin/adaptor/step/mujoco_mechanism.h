@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "adaptor/mujoco/mujoco_compat.h"
+#include "volcontact/step/mechanism.h"
+
+namespace volcontact::adaptor {
+
+/// How the bodies of a model hang on its degrees of freedom.
+MechanismTrees trees_of(const mjModel* m);
+
+/// The bodies of a model at the positions and velocities that are current in its data.
+class MujocoMechanism final : public Mechanism {
+ public:
+  /// Overwrites mjData.qDeriv, as the integrator will. `of_model`: its trees, which stay.
+  MujocoMechanism(const mjModel* m, mjData* d, const MechanismTrees& of_model);
+
+  void mass(std::span<const int> dofs, std::vector<DofEntry>& out) const override;
+  void damping(std::span<const int> dofs, std::vector<DofEntry>& out) const override;
+  bool constraints_see_damping() const override { return solves_with_step_matrix(m_); }
+
+ private:
+  void fly(int dof, std::vector<DofEntry>& out) const;
+
+  const mjModel* m_;
+  const mjData* d_;
+  Damping damping_;
+};
+
+/// All that acts on the degrees of freedom beside the contacts and MuJoCo's constraints, nv
+/// numbers: passive forces so far, bias, actuators at the present state, and what the user applied,
+/// given as `user_qfrc` (nv) and `user_xfrc` (6 nbody).
+void known_forces(const mjModel* m, mjData* d, const double* user_qfrc, const double* user_xfrc,
+                  std::vector<double>& out);
+
+}  // namespace volcontact::adaptor
