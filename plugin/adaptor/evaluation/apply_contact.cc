@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "adaptor/evaluation/evaluate_pairs.h"
+#include "adaptor/evaluation/foreseen_work.h"
 #include "adaptor/evaluation/held_forces.h"
 #include "adaptor/evaluation/pair_energies.h"
 #include "adaptor/evaluation/report_sums.h"
@@ -17,7 +18,6 @@
 #include "adaptor/memory/energy_account.h"
 #include "adaptor/memory/moved_clock.h"
 #include "adaptor/mujoco/mjgeoms.h"
-#include "adaptor/scene/pair_rates.h"
 #include "adaptor/step/look_ahead.h"
 #include "adaptor/step/mujoco_mechanism.h"
 
@@ -39,16 +39,11 @@ void solve_implicit(const SceneContact& contact, const mjModel* m, mjData* d,
                     EvaluationScratch& scratch) {
   ImplicitStep& implicit = scratch.implicit;
   implicit.clear();
-  const double fall = fall_of(m);
   std::size_t site = 0;
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const PairContact& pair = scratch.pair(k);
     ContactReport& report = scratch.reports[k];
-    const double along = inverse_mass(m, pair.geoms).along;
-    const PairEnergy::Now now(report);
-    implicit.begin_pair(WorkLimit::of(scratch.energies[k], scratch.dissipated,
-                                      contact.options().exit_speed, now.moving(along))
-                            .for_bodies(along, fall));
+    implicit.begin_pair(limit_of(contact, m, k, scratch));
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
       const bool is_stiff = scratch.stiff[site++] != 0;
       if (report.sites[i].normal.isZero(0.0)) continue;
@@ -62,17 +57,7 @@ void solve_implicit(const SceneContact& contact, const mjModel* m, mjData* d,
     }
   }
   if (implicit.empty()) return;
-  const UserdataBlock our = contact.block(m, d);
-  const auto share = [&](Target target, int count, const double* array, std::vector<double>& out) {
-    out.resize(static_cast<std::size_t>(count));
-    for (int i = 0; i < count; ++i) {
-      out[static_cast<std::size_t>(i)] =
-          contact.options().target == target ? user_share(our, i, array) : array[i];
-    }
-  };
-  share(Target::kApplied, static_cast<int>(m->nv), d->qfrc_applied, scratch.user_qfrc);
-  share(Target::kXfrc, 6 * static_cast<int>(m->nbody), d->xfrc_applied, scratch.user_xfrc);
-  known_forces(m, d, scratch.user_qfrc.data(), scratch.user_xfrc.data(), scratch.known);
+  know_forces(contact, m, d, scratch);
   // What is held through the stages of Runge-Kutta must be implicit in all directions: forces that
   // stay as they were at the begin of a step make its oscillations grow.
   const auto parts = m->opt.integrator == mjINT_RK4                    ? ImplicitParts::kHeld
@@ -125,7 +110,9 @@ void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
     }
     scratch.dissipated = least_dissipated(account.begin().energy(), account.since_begin(), elastic);
   }
-  if (is_rk4 && find_unpaid_pairs(contact, m, scratch)) now.implicit = true;
+  const bool overdraws =
+      is_rk4 ? find_unpaid_pairs(contact, m, scratch) : foresee_work(contact, m, d, scratch);
+  now.implicit = now.implicit || overdraws;
   if (now.implicit) solve_implicit(contact, m, d, scratch);
   const bool limited = !is_rk4 && limit_explicit(contact, m, scratch);
   if (now.implicit || limited) keep_solved(contact, our, scratch);
@@ -243,14 +230,10 @@ void fill_slot(const SceneContact& contact, const mjModel* m, mjData* d, const U
   evaluate_pairs(contact, m, d, {committed, account.elapsed(), contact.is_implicit()}, scratch);
   hold_together(contact, m, d, scratch);
   EnergyAccount now;
+  scratch.knows = false;
   scratch.held.assign(scratch.cull.near.size(), 0);
   if (!goes_on) our.set_solved(0);
   if (contact.is_implicit()) choose_forces(contact, m, d, our, account, now, scratch);
-  bool kept = keep_sites(contact, committed, our.slot(0).states(), scratch);
-  if (contact.is_implicit()) {
-    kept = keep_energies(contact, committed, our.slot(0).states(), scratch) && kept;
-  }
-
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const ContactReport& report = scratch.reports[k];
     if (!now.implicit) now.stored += stored_power(report);
@@ -269,12 +252,19 @@ void fill_slot(const SceneContact& contact, const mjModel* m, mjData* d, const U
   const SleepingEnergy asleep = energy_asleep(contact, committed, scratch);
   now.elastic += asleep.elastic + asleep.bristle;
   now.slide_energy += asleep.bristle;
+  const double later = account.continues() ? power_of(our.slot(1).forces(), d->qvel, m->nv) : 0.0;
+  bool kept = keep_sites(contact, committed, our.slot(0).states(), scratch);
+  if (contact.is_implicit()) {
+    const double paid = pay_for(account.made(now, later, driven), scratch);
+    now.elastic -= paid;
+    now.unpaid += paid;
+    kept = keep_energies(contact, committed, our.slot(0).states(), scratch) && kept;
+  }
   write_forces(contact, m, d, goes_on, scratch);
   if (!kept) our.forgotten() += 1.0;
   now.force_power = power_of(our.slot(0).forces(), d->qvel, m->nv);
   keep_motion(m, d, our);
-  account.write(now, account.continues() ? power_of(our.slot(1).forces(), d->qvel, m->nv) : 0.0,
-                driven);
+  account.write(now, later, driven);
 }
 
 }  // namespace

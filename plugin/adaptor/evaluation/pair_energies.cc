@@ -20,11 +20,9 @@ ExplicitShare share_of(const SceneContact& contact, const mjModel* m, std::size_
                        const PairEnergy::Now& now, const EvaluationScratch& scratch) {
   const double h = m->opt.timestep;
   const double fall = fall_of(m);
-  const PairContact& pair = scratch.pair(k);
-  const double along = inverse_mass(m, pair.geoms).along;
-  WorkLimit limit = WorkLimit::of(scratch.energies[k], scratch.dissipated,
-                                  contact.options().exit_speed, now.moving(along));
-  const double slow = std::exchange(limit.for_bodies(along, fall).slow, 0.0);
+  const double along = inverse_mass(m, scratch.pair(k).geoms).along;
+  WorkLimit limit = limit_of(contact, m, k, scratch);
+  const double slow = std::exchange(limit.slow, 0.0);
   const auto share_now = [&] {
     return explicit_share(limit, now.force, -now.approach(), along, fall, h);
   };
@@ -41,6 +39,15 @@ double fall_of(const mjModel* m) {
   return m->opt.timestep * Eigen::Map<const Vec3>(m->opt.gravity).norm();
 }
 
+WorkLimit limit_of(const SceneContact& contact, const mjModel* m, std::size_t k,
+                   const EvaluationScratch& scratch) {
+  const double along = inverse_mass(m, scratch.pair(k).geoms).along;
+  const PairEnergy::Now now(scratch.reports[k]);
+  return WorkLimit::of(scratch.energies[k], scratch.dissipated, contact.options().exit_speed,
+                       now.moving(along))
+      .for_bodies(along, fall_of(m));
+}
+
 double read_energies(const SceneContact& contact, const double* committed, double elapsed,
                      bool is_rk4, EvaluationScratch& scratch) {
   const std::size_t count = scratch.cull.near.size();
@@ -54,22 +61,24 @@ double read_energies(const SceneContact& contact, const double* committed, doubl
     if (!report.touching()) continue;
     PairEnergy& energy = scratch.energies[k];
     const PairEnergy::Now now(report);
+    bool is_new = true;
     if (committed) {
       const SitePool<const double> pool(committed + contact.sites().size(), contact.energies());
       JoinedPair* joined = scratch.joined.at(k);
       const SiteMemory rows =
           joined ? joined->memory(pool, elapsed) : pool.rows_of(scratch.cull.near[k], elapsed);
-      if (rows.count > 0) energy = PairEnergy::from(rows.rows);
+      is_new = rows.count == 0;
+      if (!is_new) energy = PairEnergy::from(rows.rows);
       for (int i = 1; i < rows.count; ++i) {
         energy += PairEnergy::from(rows.rows + std::ptrdiff_t{i} * rows.stride);
       }
     }
     if (!committed) {
       energy.found = now.elastic;
-    } else if (is_rk4 && energy.explains(elapsed, now) &&
+    } else if (is_rk4 && (is_new || !energy.was_solved()) && energy.explains(elapsed, now) &&
                std::find(stiff, stiff + std::ssize(report.sites), 1) ==
                    stiff + std::ssize(report.sites)) {
-      energy.follow(now);
+      energy.follow(elapsed, now);
     } else {
       energy.take_in(elapsed, now, is_rk4);
     }
@@ -93,11 +102,10 @@ bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m, Evaluation
     if (energy.found == 0.0 && unpaid <= kRounding * now.elastic) continue;
     const auto [share, released_at_most, slowly] = share_of(contact, m, k, now, scratch);
     if (share == 1.0) {
-      if (!slowly) continue;
       energy.rubbed = now.bristle;
       energy.force = now.force;
       energy.power = now.power;
-      energy.slow = released_at_most;
+      if (slowly) energy.slow = released_at_most;
       continue;
     }
     std::fill(stiff, stiff + std::ssize(report.sites), 1);
@@ -125,6 +133,15 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m, EvaluationScr
     energy.rubbed = std::min(energy.rubbed, report.bristle_energy.sum());
   }
   return limited;
+}
+
+double pay_for(double made, EvaluationScratch& scratch) {
+  double payable = 0.0;
+  for (const PairEnergy& energy : scratch.energies) payable += energy.payable();
+  if (!(made > PairEnergy::kOverdraft * payable && payable > 0.0)) return 0.0;
+  const double share = std::min(1.0, made / payable);
+  for (PairEnergy& energy : scratch.energies) energy.pay(share);
+  return share * payable;
 }
 
 bool keep_energies(const SceneContact& contact, const double* committed, double* states,

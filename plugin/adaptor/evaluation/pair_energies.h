@@ -16,6 +16,10 @@ double fall_of(const mjModel* m);
 double read_energies(const SceneContact& contact, const double* committed, double elapsed,
                      bool is_rk4, EvaluationScratch& scratch);
 
+/// What the contacts of the pair at place k of `near` may do on the bodies in the coming step.
+WorkLimit limit_of(const SceneContact& contact, const mjModel* m, std::size_t k,
+                   const EvaluationScratch& scratch);
+
 /// Runge-Kutta's stages are exact enough, but for what no motion put in: pairs that would give it
 /// back count as stiff. Returns whether there are some.
 bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m, EvaluationScratch& scratch);
@@ -23,6 +27,11 @@ bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m, Evaluation
 /// The same bound for pairs whose forces are explicit. Returns whether some are less than their
 /// laws say.
 bool limit_explicit(const SceneContact& contact, const mjModel* m, EvaluationScratch& scratch);
+
+/// Takes off what the pairs hold as much as the contacts have `made` in the step that ends here, as
+/// far as they hold it, and returns what that is [J]: what a solved step could not foresee, and
+/// what an explicit one errs by, is paid for.
+double pay_for(double made, EvaluationScratch& scratch);
 
 /// Writes the rows behind those of the sites; false when there was no room for all.
 bool keep_energies(const SceneContact& contact, const double* committed, double* states,

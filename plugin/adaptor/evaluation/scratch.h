@@ -28,6 +28,8 @@ struct EvaluationScratch {
   std::vector<ContactReport> reports;  ///< of the pairs in `near`, finite numbers only
   std::vector<char> invalid;           ///< whether a report was left out, having no numbers
   std::vector<char> stiff;             ///< of all sites, whether an explicit step cannot hold it
+  std::vector<char> foreseen;  ///< of the pairs in `near`, whether the work of the step is foreseen
+  bool knows = false;          ///< whether `known` is of this evaluation
   std::vector<char> held;  ///< of the pairs in `near`, whether other forces than its laws say act
   std::vector<int> order;  ///< of `near`, as worked off: the long pairs first
   std::vector<ContactModel::Workspace> workspaces;  ///< one per OpenMP thread

@@ -95,6 +95,17 @@ class AccountKeeper {
   Slot begin() const { return block_.slot(completes_ ? 2 : 1); }
   double since_begin() const { return completes_ ? 2.0 * elapsed_ : elapsed_; }
 
+  /// What the contacts have made in the step that ends here: their work, and what they hold more
+  /// than before, beyond what was driven and released [J]. 0 within a step, and where it cannot be
+  /// told. `now` knows what is held and released; the others as in write().
+  double made(const EnergyAccount& now, double later, double driven) const {
+    if (!continues() || is_within_step_ || (completes_ && !has_last_)) return 0.0;
+    const EnergyAccount before = begin().energy();
+    const double work = completes_ ? work_of_stages(before, last_.last_power)
+                                   : elapsed_ * std::midpoint(before.force_power, later);
+    return work + (now.elastic - before.elastic) - driven - (now.released - before.released);
+  }
+
   /// Writes the account of this evaluation: a whole Runge-Kutta step by its own rule, which is
   /// Simpson's (work with the powers of its four stages), all else by the trapezoidal rule.
   /// `later`: power of the forces of the evaluation before at the velocities of this one [W]. They
@@ -110,7 +121,7 @@ class AccountKeeper {
     if (!continues()) {
       now.dissipated = {};
     } else if (completes_) {
-      const EnergyAccount start = block_.slot(2).energy(), middle = block_.slot(1).energy();
+      const EnergyAccount start = begin().energy(), middle = block_.slot(1).energy();
       if (start.implicit) {
         now = accounted_whole(start, 2.0 * elapsed_, now);
       } else {
@@ -119,8 +130,7 @@ class AccountKeeper {
         now = accounted(start, between(ends, middle.taken, 2.0 / 3.0), 2.0 * elapsed_, now);
       }
       now.last_power = has_last_ ? last_.last_power : now.force_power;
-      const double mean = (start.force_power + 4.0 * middle.force_power + now.last_power) / 6.0;
-      add_work(start, 2.0 * elapsed_ * mean, driven, now);
+      add_work(start, work_of_stages(start, now.last_power), driven, now);
     } else {
       const EnergyAccount before = block_.slot(1).energy();
       now = before.implicit || now.implicit
@@ -132,6 +142,11 @@ class AccountKeeper {
   }
 
  private:
+  double work_of_stages(const EnergyAccount& start, double last_power) const {
+    const double middle = block_.slot(1).energy().force_power;
+    return 2.0 * elapsed_ * (start.force_power + 4.0 * middle + last_power) / 6.0;
+  }
+
   UserdataBlock block_;
   double elapsed_ = 0.0;
   bool completes_ = false;  // this evaluation ends a Runge-Kutta step

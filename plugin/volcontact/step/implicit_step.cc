@@ -177,12 +177,13 @@ void ImplicitStep::solve_once(bool with_friction, double step) {
 void ImplicitStep::solve_active(bool with_friction, double step) {
   constexpr int kRounds = 12;
   for (std::size_t i = 0; i < island_.size(); ++i) {
-    for (Point& point : site(i).points) point.pushes = true;
+    for (Point& point : site(i).points) point.pushes = limits_[site(i).pair].acts;
   }
   for (int round = 0; round < kRounds; ++round) {
     solve_once(with_friction, step);
     bool changed = false;
     for (std::size_t i = 0; i < island_.size(); ++i) {
+      if (!limits_[site(i).pair].acts) continue;
       const Vec3 motion = Eigen::Map<const Vec3>(&velocity_[i * size(kRows)]);
       for (int k = 0; k < site(i).point_count; ++k) {
         Point& point = site(i).points[size(k)];
@@ -347,7 +348,8 @@ void ImplicitStep::add_up_work(double step, double resting) {
 
 // Elastic forces that would do more work on the bodies than these put in act with a share of
 // theirs. With none the contacts damp, whatever the poses: docs/theory.md, "No energy from
-// nothing".
+// nothing". What damps at the end of a step in which other forces turned the motion round does work
+// all the same, and waits for the next.
 void ImplicitStep::limit_work(double step, double resting) {
   constexpr int kSearches = 8;
   enum { kSearch, kLowest, kNone, kAllNone } last = kSearch;
@@ -372,6 +374,17 @@ void ImplicitStep::limit_work(double step, double resting) {
     solve_contacts(FrictionBound::kDamped, step);
   }
   add_up_work(step, resting);
+  for (bool waits = true; waits;) {
+    waits = false;
+    for_each_pair([&waits](WorkLimit& limit) {
+      if (!limit.acts || limit.is_kept_nearly()) return;
+      limit.acts = false;
+      waits = true;
+    });
+    if (!waits) break;
+    solve_contacts(FrictionBound::kDamped, step);
+    add_up_work(step, resting);
+  }
   share_deficit();
 }
 
@@ -401,6 +414,7 @@ void ImplicitStep::solve_with_constraints(const Mechanism& mechanism,
   constraints.select(islands_, island);
   for_each_pair([is_stiff](WorkLimit& limit) {
     limit.share = 1.0;
+    limit.acts = true;
     limit.is_solved = is_stiff;
   });
   // Where forces are held, positions move with the mean of the velocities before and after.

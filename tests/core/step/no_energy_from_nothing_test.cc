@@ -146,7 +146,7 @@ TEST_P(NoEnergyFromNothing, HoldsInEveryStep) {
     EXPECT_LE(made, overdraft + rounding) << "run " << run << " of " << before << " J";
   }
   EXPECT_GT(touching, kRuns / 2);
-  EXPECT_GT(limited, kRuns / 20);
+  EXPECT_GT(limited, kRuns / 50);
   RecordProperty("worst", std::to_string(worst));
 }
 

@@ -51,6 +51,44 @@ TEST(PairEnergy, SlowExitDrawsOnWhatWasFound) {
   EXPECT_EQ(energy.found, 0.0);
 }
 
+// Each pays a share of what it holds, what was found included, and never more than that.
+TEST(PairEnergy, PaysFromWhatItHolds) {
+  PairEnergy energy;
+  energy.stored = 3.0;
+  energy.found = 1.0;
+  EXPECT_EQ(energy.payable(), 4.0);
+  energy.pay(0.25);
+  EXPECT_NEAR(energy.stored, 2.25, 1e-15);
+  EXPECT_NEAR(energy.found, 0.75, 1e-15);
+  energy.pay(1.0);
+  EXPECT_EQ(energy.payable(), 0.0);
+  energy.stored = -0.5;
+  energy.pay(1.0);
+  EXPECT_EQ(energy.stored, -0.5);  // a debt pays nothing
+}
+
+// What force and approach can have put in is beyond doubt.
+TEST(PairEnergy, OnlyWhatMotionDoesNotExplainIsDoubtful) {
+  PairEnergy energy;
+  energy.force = 100.0;
+  energy.power = 100.0 * 0.5;
+  energy.follow(1e-3, now(0.05, 100.0, 0.5));
+  EXPECT_EQ(energy.stored, 0.05);
+  EXPECT_EQ(energy.payable(), 0.0);
+  energy.follow(1e-3, now(0.25, 100.0, 0.5));
+  EXPECT_NEAR(energy.payable(), 0.25 - 0.05 - 1.5 * 0.05, 1e-15);
+}
+
+TEST(WorkLimit, IsNearlyKeptWhereWorkHangsOnRounding) {
+  WorkLimit limit;
+  limit.stored = 1e-9;
+  limit.normal_work = 1e-6;
+  EXPECT_FALSE(limit.is_kept());
+  EXPECT_FALSE(limit.is_kept_nearly());
+  limit.from_free = -0.05;
+  EXPECT_TRUE(limit.is_kept_nearly());
+}
+
 // An explicit step may give back more than there was by what it errs by; it is owed.
 TEST(PairEnergy, ExplicitStepOwesWhatItGaveTooMuch) {
   PairEnergy energy;

@@ -97,6 +97,18 @@ def test_the_audit_sees_what_contact_made(part):
     assert gains[0] < 1e-2 < 0.1 < gains[1]
 
 
+# A servo turns the slip round in one step (531, 151, 1003, 1048); limbs are spun up inside of each
+# other (415, 808, 976); touches of bodies that turn (737); Runge-Kutta goes on by its law where a
+# pair was solved (62, 163, 858, 904, 1008).
+@pytest.mark.parametrize("seed", [62, 151, 415, 531, 737, 808, 858, 904, 976, 1003, 1008, 1048])
+def test_scenes_that_made_energy_make_none(part, seed):
+    scenes = part("generated_scenes")
+    row = scenes.examine({"seed": seed})
+    assert scenes.is_sound(row), row["gain"]
+    assert "refused" not in row
+    assert row["speed"] > 0.0
+
+
 def test_rows_are_kept_and_not_made_twice(part, tmp_path):
     campaign, box = part("campaign"), part("box_on_plane")
     rows = campaign.run(box, tmp_path, 600, 1)
