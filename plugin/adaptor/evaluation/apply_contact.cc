@@ -200,6 +200,29 @@ void write_forces(const SceneContact& contact, const mjModel* m, mjData* d, bool
   std::copy(acting.begin(), acting.end(), our.slot(0).forces());
 }
 
+// The generalized forces of friction alone, which tell an explicit step what these took.
+void write_friction(const SceneContact& contact, const mjModel* m, mjData* d,
+                    EvaluationScratch& scratch) {
+  BodyForces& forces = scratch.forces;
+  forces.reset(m);
+  for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
+    if (!scratch.pair(k).model.laws().friction) continue;
+    const std::vector<SiteReport>& sites = scratch.reports[k].sites;
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+      const SiteReport& site = sites[i];
+      const GeomPair& geoms = scratch.geoms_of_site(contact, k, i);
+      const Vec3& c = site.metrics.centroid;
+      const Vec3 force = site.force_on_A - site.normal_force * site.normal;
+      const Vec3 torque = site.torque_on_A.dot(site.normal) * site.normal;
+      forces.add(m, d, m->geom_bodyid[geoms.a], c, force, torque);
+      forces.add(m, d, m->geom_bodyid[geoms.b], c, -force, -torque);
+    }
+  }
+  std::vector<double>& numbers = forces.generalized(m, d);
+  drop_non_finite(numbers);
+  std::copy(numbers.begin(), numbers.end(), contact.block(m, d).slot(0).friction());
+}
+
 // How the mocap bodies move, into the slot of this evaluation. Returns the work that they did on
 // the contacts since the last [J].
 double follow_mocaps(const mjModel* m, const mjData* d, const UserdataBlock& our,
@@ -252,7 +275,11 @@ void fill_slot(const SceneContact& contact, const mjModel* m, mjData* d, const U
   const SleepingEnergy asleep = energy_asleep(contact, committed, scratch);
   now.elastic += asleep.elastic + asleep.bristle;
   now.slide_energy += asleep.bristle;
-  const double later = account.continues() ? power_of(our.slot(1).forces(), d->qvel, m->nv) : 0.0;
+  double later = 0.0, friction_later = 0.0;  // power of the last forces at the present velocities
+  if (account.continues()) {
+    later = power_of(our.slot(1).forces(), d->qvel, m->nv);
+    friction_later = power_of(our.slot(1).friction(), d->qvel, m->nv);
+  }
   bool kept = keep_sites(contact, committed, our.slot(0).states(), scratch);
   if (contact.is_implicit()) {
     const double paid = pay_for(account.made(now, later, driven), scratch);
@@ -260,11 +287,17 @@ void fill_slot(const SceneContact& contact, const mjModel* m, mjData* d, const U
     now.unpaid += paid;
     kept = keep_energies(contact, committed, our.slot(0).states(), scratch) && kept;
   }
+  if (now.implicit || m->opt.integrator == mjINT_RK4) {
+    std::fill_n(our.slot(0).friction(), m->nv, 0.0);
+  } else {
+    write_friction(contact, m, d, scratch);
+  }
   write_forces(contact, m, d, goes_on, scratch);
   if (!kept) our.forgotten() += 1.0;
   now.force_power = power_of(our.slot(0).forces(), d->qvel, m->nv);
+  now.friction_power = power_of(our.slot(0).friction(), d->qvel, m->nv);
   keep_motion(m, d, our);
-  account.write(now, later, driven);
+  account.write(now, later, friction_later, driven);
 }
 
 }  // namespace

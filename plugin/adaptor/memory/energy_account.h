@@ -11,6 +11,12 @@
 
 namespace volcontact::adaptor {
 
+/// (1 - weight) a + weight b
+inline ByChannel between(const ByChannel& a, const ByChannel& b, double weight) {
+  const auto mix = [weight](double x, double y) { return (1.0 - weight) * x + weight * y; };
+  return {mix(a.normal, b.normal), mix(a.roll, b.roll), mix(a.slide, b.slide), mix(a.spin, b.spin)};
+}
+
 /// The account at the evaluation `now` (whose `dissipated` is not looked at), when the power
 /// `mean_taken` acted for `elapsed` seconds since `before`. What bristles stored meanwhile is not
 /// dissipated; what they gave back, or lost with their site, is.
@@ -38,6 +44,20 @@ inline EnergyAccount accounted_whole(const EnergyAccount& before, double elapsed
   return out;
 }
 
+/// The mean power that an explicit step has taken, between those at its ends. Friction is what its
+/// forces at the begin really did: `friction_later` is their power at the velocities of the end
+/// [W].
+inline ByChannel mean_taken(const EnergyAccount& before, const EnergyAccount& now,
+                            double friction_later) {
+  ByChannel mean = between(before.taken, now.taken, 0.5);
+  const double begin = before.taken.slide + before.taken.spin;
+  const double friction = begin - 0.5 * (friction_later - before.friction_power);
+  const double slides = mean.slide + mean.spin != 0.0 ? mean.slide / (mean.slide + mean.spin) : 1.0;
+  mean.slide = slides * friction;
+  mean.spin = (1.0 - slides) * friction;
+  return mean;
+}
+
 /// What is dissipated since the start at least, `elapsed` seconds after `before`, when `elastic` is
 /// stored now [J].
 inline double least_dissipated(const EnergyAccount& before, double elapsed, double elastic) {
@@ -54,12 +74,6 @@ inline void add_work(const EnergyAccount& before, double work, double driven, En
   const double made = work + (now.elastic - before.elastic) - driven;
   now.numerical = before.numerical - made - spent;
   now.made = made - (now.released - before.released);
-}
-
-/// (1 - weight) a + weight b
-inline ByChannel between(const ByChannel& a, const ByChannel& b, double weight) {
-  const auto mix = [weight](double x, double y) { return (1.0 - weight) * x + weight * y; };
-  return {mix(a.normal, b.normal), mix(a.roll, b.roll), mix(a.slide, b.slide), mix(a.spin, b.spin)};
 }
 
 /// Opens the slot of an evaluation and says how the account goes on from its predecessors.
@@ -111,8 +125,9 @@ class AccountKeeper {
   /// `later`: power of the forces of the evaluation before at the velocities of this one [W]. They
   /// act over all of a step, so the mean of it and of their power then is the change of kinetic
   /// energy that they make.
-  /// `driven`: the work of mocap bodies since then [J].
-  void write(EnergyAccount now, double later, double driven) const {
+  /// `friction_later`: the same of friction alone. `driven`: the work of mocap bodies since then
+  /// [J].
+  void write(EnergyAccount now, double later, double friction_later, double driven) const {
     const Slot slot = block_.slot(0);
     if (slot.stage() == Stage::kSecondMiddle) {
       now.taken = between(first_middle_.taken, now.taken, 0.5);
@@ -133,10 +148,15 @@ class AccountKeeper {
       add_work(start, work_of_stages(start, now.last_power), driven, now);
     } else {
       const EnergyAccount before = block_.slot(1).energy();
-      now = before.implicit || now.implicit
-                ? accounted_whole(before, elapsed_, now)
-                : accounted(before, between(before.taken, now.taken, 0.5), elapsed_, now);
+      const bool whole = before.implicit || now.implicit;
+      const ByChannel mean = mean_taken(before, now, friction_later);
+      now = whole ? accounted_whole(before, elapsed_, now) : accounted(before, mean, elapsed_, now);
       add_work(before, elapsed_ * std::midpoint(before.force_power, later), driven, now);
+      // The law's damping over a step is what its forces took in it, not what it says at the ends.
+      if (!whole && mean.normal > 0.0) {
+        now.dissipated.normal += now.numerical - before.numerical;
+        now.numerical = before.numerical;
+      }
     }
     slot.set_energy(now);
   }

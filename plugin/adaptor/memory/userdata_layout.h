@@ -21,17 +21,17 @@ namespace volcontact::adaptor {
 
 /// Sizes of the block, in numbers.
 struct UserdataLayout {
-  static constexpr int kVersion = 8;
+  static constexpr int kVersion = 9;
   static constexpr int kHeader = 9;
   /// A Runge-Kutta step and the one before it, which a step that is redone needs.
   static constexpr int kSlots = 5;
   /// Time, step, stage, elastic energy, dissipated x4, power x4, taken x4, bristle energy x2,
   /// power into the elastic energy, whether the step is implicit, work, numerical, power of the
   /// forces x2, elastic energy that nobody paid, work of mocap bodies, energy made in the step,
-  /// energy released, so far and by the step that follows.
-  /// Behind it the generalized forces, the mocap bodies, the law states and the energies of the
-  /// pairs.
-  static constexpr int kSlotHead = 29;
+  /// energy released, so far and by the step that follows, power of friction.
+  /// Behind it the generalized forces, those of friction alone, the mocap bodies, the law states
+  /// and the energies of the pairs.
+  static constexpr int kSlotHead = 30;
   /// A HeldSite.
   static constexpr int kSolvedRow = 11;
 
@@ -42,7 +42,7 @@ struct UserdataLayout {
   int motion = 0;       ///< nq + nv: positions and velocities of the newest evaluation
   int mocaps = 0;       ///< numbers of the mocap bodies in a slot: mocap_motion.h
 
-  int slot_size() const { return kSlotHead + dofs + mocaps + states; }
+  int slot_size() const { return kSlotHead + 2 * dofs + mocaps + states; }
   int ledger_size() const { return 2 * channels; }
   int solved_size() const { return solved_rows > 0 ? 1 + dofs + kSolvedRow * solved_rows : 0; }
   int size() const {
@@ -93,6 +93,7 @@ struct EnergyAccount {
   double released = 0.0;   ///< to bodies that part slowly, of what had been dissipated, since the
                            ///< start [J]
   double releasing = 0.0;  ///< in the step that follows [J]
+  double friction_power = 0.0;  ///< of the friction that was written, at the evaluation [W]
 };
 
 /// What an evaluation was for the integrator.
@@ -110,7 +111,8 @@ class Slot {
   double& time() const { return p_[0]; }
   double& step() const { return p_[1]; }
   double* forces() const { return p_ + UserdataLayout::kSlotHead; }
-  double* mocaps() const { return forces() + dofs_; }
+  double* friction() const { return forces() + dofs_; }
+  double* mocaps() const { return friction() + dofs_; }
   double* states() const { return mocaps() + mocaps_; }
 
   Stage stage() const { return static_cast<Stage>(static_cast<int>(p_[2])); }
@@ -119,7 +121,7 @@ class Slot {
   EnergyAccount energy() const {
     return {p_[3],  channels(4),   channels(8), channels(12), p_[16], p_[17],
             p_[18], p_[19] != 0.0, p_[20],      p_[21],       p_[22], p_[23],
-            p_[24], p_[25],        p_[26],      p_[27],       p_[28]};
+            p_[24], p_[25],        p_[26],      p_[27],       p_[28], p_[29]};
   }
   void set_energy(const EnergyAccount& e) const {
     p_[3] = e.elastic;
@@ -139,6 +141,7 @@ class Slot {
     p_[26] = e.made;
     p_[27] = e.released;
     p_[28] = e.releasing;
+    p_[29] = e.friction_power;
   }
 
  private:

@@ -25,8 +25,9 @@ class Simulation {
     EnergyAccount now;
     now.taken.slide = power(time) + wrong;
     now.slide_energy = stored(time);
-    now.force_power = -power(time) - wrong;
-    account.write(now, -power(time), 0.0);
+    now.force_power = now.friction_power = -power(time) - wrong;
+    // The forces of a step do not change in it: at its end their power is that of their slip then.
+    account.write(now, -power(time), -power(time), 0.0);
     return block().slot(0).energy().dissipated.slide;
   }
   EnergyAccount account() { return block().slot(0).energy(); }

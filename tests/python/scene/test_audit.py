@@ -2,6 +2,7 @@
 """The audit: in which step contact made energy, how much and where."""
 
 import json
+from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -10,6 +11,8 @@ import pytest
 import volcontact as vc
 from volcontact.cli import main
 from volcontact.simulation import simulate
+
+MODELS = Path(__file__).resolve().parents[3] / "mjcf_models"
 
 # Explicit steps far beyond what they hold: the box leaves with more than it came with.
 SCENE = """
@@ -91,3 +94,17 @@ def test_run_prints_it_where_it_is_asked_for(implicit, says, tmp_path, capsys, m
     assert main([*command, "--json"]) == 0
     audit = json.loads(capsys.readouterr().out)["volumetric"]["audit"]
     assert (audit["made"] > 1.0) == (implicit == "off")
+
+
+def test_books_of_the_demo_close_at_its_step():
+    model = vc.load(str(MODELS / "battery_box" / "scene.xml"))
+    data = mujoco.MjData(model)
+    with vc.attach(model) as contact:
+        for _ in range(1000):
+            mujoco.mj_step(model, data)
+        energy = contact.energy(data)
+    assert model.opt.timestep == 1e-3
+    assert energy.work < -500.0
+    assert abs(energy.numerical) < 1e-3 * abs(energy.work)  # 2 % were asked; 20 % it was
+    spent = energy.dissipated
+    assert energy.work + energy.elastic + spent + energy.numerical == pytest.approx(0.0, abs=1e-9)
