@@ -79,6 +79,10 @@ struct PairEnergy {
     // less by the work of half a step.
     const double ahead = force > 0.0 ? 0.5 * elapsed * std::max(0.0, -now.power) : 0.0;
     const double work = 0.5 * elapsed * (power + force * now.approach());
+    // What sliding put in and bristles do not hold is dissipated: it pays what is owed.
+    if (was_solved() && stored < 0.0) {
+      stored = std::min(0.0, stored + std::max(0.0, rubbed - now.bristle));
+    }
     bristle = was_solved() ? std::min(rubbed, now.bristle) : now.bristle;
     put(may_have_waited && work > 0.0 ? work / 6.0 : work, kMostOwed * most);
     force = power = slow = 0.0;
