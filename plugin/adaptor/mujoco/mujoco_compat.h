@@ -13,11 +13,13 @@
 
 // Functions that MuJoCo's library has but its headers do not; null where it has them no more. The
 // derivative of actuator and passive forces, and of the bias if wished, by velocities goes into
-// mjData.qDeriv; of a body that flies alone the matrix that `implicitfast` divides by.
+// mjData.qDeriv; of a body that flies alone the matrix that `implicitfast` divides by; the bias of
+// tendons that have inertia, added to that of the bodies.
 extern "C" {
 [[gnu::weak]] void mjd_smooth_vel(const mjModel* m, mjData* d, int with_bias);
 [[gnu::weak]] int mjd_freeMhat(const mjModel* m, const mjData* d, int joint, mjtNum step,
                                mjtNum out[36]);
+[[gnu::weak]] void mj_tendonBias(const mjModel* m, mjData* d, mjtNum* qfrc);
 #if mjVERSION_HEADER >= 4000000
 [[gnu::weak]] void mj_updateSleep(const mjModel* m, mjData* d);
 #endif

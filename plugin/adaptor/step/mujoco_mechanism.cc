@@ -86,6 +86,7 @@ void known_forces(const mjModel* m, mjData* d, const double* user_qfrc, const do
   const int nv = static_cast<int>(m->nv);
   out.resize(size(nv));
   mj_rne(m, d, 0, out.data());
+  if (m->ntendon > 0 && mj_tendonBias) mj_tendonBias(m, d, out.data());
   const bool actuated = m->nu > 0;
   if (actuated) mj_fwdActuation(m, d);
   for (int i = 0; i < nv; ++i) {

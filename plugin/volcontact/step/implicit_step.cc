@@ -20,9 +20,9 @@ double implicit_share(double stiffness_number) {
   return std::clamp((stiffness_number - kSoftNumber) / (kStiffNumber - kSoftNumber), 0.0, 1.0);
 }
 
-// Numerical damping, as a multiple of h K, of a point that comes out of the overlap at `speed` where
-// free motion changes speeds by `fall` in a step: what is as slow as a few of these settles. With
-// less a box rocks from edge to edge for ever.
+// Numerical damping, as a multiple of h K, of a point that comes out of the overlap at `speed`
+// where free motion changes speeds by `fall` in a step: what is as slow as a few of these settles.
+// With less a box rocks from edge to edge for ever.
 double settling(double speed, double fall) {
   constexpr double kMost = 2.0, kSettles = 5.0, kBounces = 10.0;
   if (!(fall > 0.0)) return 0.0;

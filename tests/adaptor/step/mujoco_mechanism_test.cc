@@ -123,5 +123,28 @@ TEST(MujocoMechanism, TurningAccelerationIsThatOfThePoint) {
   EXPECT_LT((found - expected).norm(), 1e-7 * expected.norm());
 }
 
+// All that MuJoCo calls smooth, from actuators and springs to a tendon that has inertia.
+TEST(MujocoMechanism, KnownForcesAreAllSmoothOnes) {
+  const std::string armature = mjVERSION_HEADER >= 340 ? "armature=\".4\"" : "";
+  const ModelPointer m = testing::compile(
+      R"(<mujoco><worldbody>
+    <site name="high" pos="0 0 2"/>
+    <body pos="0 0 1"><joint name="shoulder" axis="0 1 0" stiffness="3" damping=".2"/>
+      <geom type="capsule" fromto="0 0 0 .4 0 0" size=".04"/>
+      <body pos=".4 0 0"><joint axis="0 1 0"/><geom type="capsule" fromto="0 0 0 .3 0 0" size=".03"/>
+        <site name="tip" pos=".3 0 0"/></body></body></worldbody>
+    <tendon><spatial name="rope" )" +
+      armature + R"( stiffness="5"><site site="high"/><site site="tip"/></spatial></tendon>
+    <actuator><motor joint="shoulder"/></actuator></mujoco>)");
+  const DataPointer d = moving(m);
+  d->ctrl[0] = 0.7;
+  d->qfrc_applied[1] = -0.3;
+  d->xfrc_applied[12] = 2.0;
+  mj_forward(m.get(), d.get());
+  std::vector<double> known;
+  known_forces(m.get(), d.get(), d->qfrc_applied, d->xfrc_applied, known);
+  for (int i = 0; i < m->nv; ++i) EXPECT_NEAR(known[size(i)], d->qfrc_smooth[i], 1e-13) << i;
+}
+
 }  // namespace
 }  // namespace volcontact::adaptor::mujoco_mechanism_test

@@ -116,7 +116,6 @@ TEST(StiffContact, ThrownBoxesRockNoLonger) {
   }
 }
 
-
 TEST(StiffContact, RestsAtWeightOverStiffness) {
   for (const double factor : {1.0, 1e2, 1e4}) {
     const ModelPointer m = box(factor, 0.5);
