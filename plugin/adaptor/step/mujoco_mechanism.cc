@@ -16,6 +16,7 @@ MechanismTrees trees_of(const mjModel* m) {
       tree = static_cast<int>(out.trees.size());
       out.trees.push_back({dof, dof});
       out.root.push_back(root);
+      out.mass.push_back(m->body_subtreemass[root]);
     }
     out.trees[size(tree)].end = dof + 1;
     out.tree_of_dof.push_back(tree);

@@ -60,13 +60,15 @@ void ContactIslands::add_island(int tree) {
   visit_from(far);
   const int island = count();
   const int begin = static_cast<int>(ordered_trees_.size());
+  double mass = 0.0;
   for (std::size_t i = queue_.size(); i-- > 0;) {
     const std::size_t member = size(queue_[i]);
     island_of_[member] = island;
     rank_[member] = static_cast<int>(ordered_trees_.size()) - begin;
     ordered_trees_.push_back(trees_->trees[member]);
+    mass += trees_->mass[member];
   }
-  islands_.push_back({0, 0, begin, static_cast<int>(ordered_trees_.size())});
+  islands_.push_back({0, 0, begin, static_cast<int>(ordered_trees_.size()), mass});
 }
 
 void ContactIslands::sort_places() {

@@ -36,6 +36,8 @@ class ContactIslands {
   /// The trees of an island, so ordered that those which touch are near each other: by the method
   /// of Cuthill and McKee.
   std::span<const DofRange> trees(int island) const;
+  /// Of all its trees [kg].
+  double mass(int island) const { return islands_[size(island)].mass; }
   /// Where the trees of a place are in that list: of body a, of body b; negative when it does not
   /// move.
   std::pair<int, int> trees_of(int place) const;
@@ -48,6 +50,7 @@ class ContactIslands {
     int places_end = 0;
     int trees_begin = 0;
     int trees_end = 0;
+    double mass = 0.0;
   };
   void link(std::span<const ContactPlace> places, std::span<const std::pair<int, int>> joined);
   void visit_from(int tree);

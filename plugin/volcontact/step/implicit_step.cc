@@ -334,7 +334,8 @@ void ImplicitStep::add_up_work(double step, double resting) {
     limit.normal_work += impulse.head<3>().dot(mean.head<3>());
     limit.friction_work += impulse.tail<3>().dot(mean.tail<3>());
     limit.from_free += impulse.head<3>().dot(mean_of_free.head<3>());
-    limit.slack += 0.5 * impulse[0] * resting +
+    // What gravity does meanwhile: no more than to the weight that may rest on the pair.
+    limit.slack += 0.5 * std::min(impulse[0], resting * mass_) * resting +
                    kRounding * impulse.cwiseAbs().dot(begin.cwiseAbs() + end.cwiseAbs());
     if (impulse[0] > 0.0) limit.exit = std::max(limit.exit, end[0]);
     from_free += impulse.dot(mean_of_free);
@@ -389,9 +390,10 @@ void ImplicitStep::limit_work(double step, double resting) {
   share_deficit();
 }
 
-// Where pairs did more than they hold, friction or other pairs of the island have paid for it:
-// these have put in the less.
+// Where pairs did more than they hold, their friction or other pairs of the island have paid for
+// it: these have put in the less.
 void ImplicitStep::share_deficit() {
+  for_each_pair([](WorkLimit& limit) { limit.pay_with_friction(); });
   double deficit = 0.0, put_in = 0.0;
   for_each_pair([&](const WorkLimit& limit) {
     deficit += std::max(0.0, limit.work() - limit.allowed());
@@ -412,6 +414,7 @@ void ImplicitStep::solve_with_constraints(const Mechanism& mechanism,
   const double step = mechanism.step, resting = mechanism.fall;
   const bool is_stiff = std::any_of(island_.begin(), island_.end(),
                                     [this](int i) { return sites_[size(i)].is_stiff; });
+  mass_ = islands_.mass(island);
   constraints.select(islands_, island);
   for_each_pair([is_stiff](WorkLimit& limit) {
     limit.share = 1.0;

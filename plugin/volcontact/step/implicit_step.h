@@ -154,6 +154,7 @@ class ImplicitStep {
   std::vector<ContactPlace> places_;
   ContactIslands islands_;
   std::vector<double> acceleration_;
+  double mass_ = 0.0;            // of the island at hand [kg]
   std::span<const int> island_;  // the sites of the one at hand; what follows is of these
   ContactSpace space_;
   ContactEquations equations_;

@@ -22,6 +22,7 @@ struct MechanismTrees {
   static constexpr int kNone = -1;
 
   std::vector<DofRange> trees;
+  std::vector<double> mass;       ///< of each tree [kg]
   std::vector<int> root;          ///< of each tree, the body that carries the others
   std::vector<int> carrier;       ///< of each degree of freedom the next that carries it, or kNone
   std::vector<int> tree_of_dof;   ///< of each degree of freedom

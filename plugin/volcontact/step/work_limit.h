@@ -222,8 +222,15 @@ struct WorkLimit {
   /// The same but for little of what it takes from the motion without contact: at rest against a
   /// servo both ends of a step are slow, and the work hangs on rounding.
   bool is_kept_nearly() const noexcept {
-    constexpr double kLittle = 0.1;
+    constexpr double kLittle = 0.01;
     return is_kept() || work() - allowed() <= kLittle * std::abs(from_free);
+  }
+
+  /// What the normal forces did beyond what is allowed comes off what friction took.
+  void pay_with_friction() noexcept {
+    const double paid = std::clamp(work() - allowed(), 0.0, std::max(0.0, -friction_work));
+    normal_work -= paid;
+    friction_work += paid;
   }
 
   void start() noexcept {

@@ -12,7 +12,7 @@ namespace volcontact::test {
 /// three along and three about the axes of the world, at its centre of mass.
 class FreeBodies final : public Mechanism {
  public:
-  FreeBodies() : tree_of_{{}, {}, {}, {}, {MechanismTrees::kNone}, {MechanismTrees::kNone}} {
+  FreeBodies() : tree_of_{{}, {}, {}, {}, {}, {MechanismTrees::kNone}, {MechanismTrees::kNone}} {
     origins_.assign(3, 0.0);
     twists_.assign(6, 0.0);
   }
@@ -24,6 +24,7 @@ class FreeBodies final : public Mechanism {
           const Twist& twist = {}) {
     const int body = static_cast<int>(tree_of_.tree_of_body.size()), first = 6 * (body - 1);
     tree_of_.trees.push_back({first, first + 6});
+    tree_of_.mass.push_back(mass);
     tree_of_.root.push_back(body);
     tree_of_.tree_of_body.push_back(body - 1);
     tree_of_.last_dof.push_back(first + 5);
