@@ -33,6 +33,11 @@ ExplicitShare share_of(const SceneContact& contact, const mjModel* m, std::size_
   return {share, exit <= contact.options().exit_speed ? slow : 0.0, slowly};
 }
 
+// What turns may put into the contact of a pair in a step beside its power, of what it holds.
+double put_in_by_turns(const PairContact& pair) {
+  return pair.model.laws().formulation == Formulation::kPotential ? 0.05 : 0.0;
+}
+
 }  // namespace
 
 double fall_of(const mjModel* m) {
@@ -75,7 +80,8 @@ double read_energies(const SceneContact& contact, const double* committed, doubl
     }
     if (!committed) {
       energy.found = now.elastic;
-    } else if (is_rk4 && (is_new || !energy.was_solved()) && energy.explains(elapsed, now) &&
+    } else if (is_rk4 && (is_new || !energy.was_solved()) &&
+               energy.explains(elapsed, now, put_in_by_turns(scratch.pair(k))) &&
                std::find(stiff, stiff + std::ssize(report.sites), 1) ==
                    stiff + std::ssize(report.sites)) {
       energy.follow(elapsed, now);
@@ -98,13 +104,11 @@ bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m, Evaluation
     if (!report.touching()) continue;
     PairEnergy& energy = scratch.energies[k];
     const PairEnergy::Now now(report);
+    energy.act(now);
     const double unpaid = now.elastic - energy.stored - energy.found;
     if (energy.found == 0.0 && unpaid <= kRounding * now.elastic) continue;
     const auto [share, released_at_most, slowly] = share_of(contact, m, k, now, scratch);
     if (share == 1.0) {
-      energy.rubbed = now.bristle;
-      energy.force = now.force;
-      energy.power = now.power;
       if (slowly) energy.slow = released_at_most;
       continue;
     }

@@ -20,17 +20,20 @@ double implicit_share(double stiffness_number) {
   return std::clamp((stiffness_number - kSoftNumber) / (kStiffNumber - kSoftNumber), 0.0, 1.0);
 }
 
-// Numerical damping, as a multiple of h K, of a point that comes out of the overlap at `speed`
-// where free motion changes speeds by `fall` in a step: what is as slow as a few of these settles.
-// With less a box rocks from edge to edge for ever.
+// How much a point settles that comes out of the overlap at `speed`, where free motion changes
+// speeds by `fall` in a step: what is as slow as a few of these.
 double settling(double speed, double fall) {
-  constexpr double kMost = 2.0, kSettles = 5.0, kBounces = 10.0;
+  constexpr double kSettles = 5.0, kBounces = 10.0;
   if (!(fall > 0.0)) return 0.0;
-  return kMost * std::clamp((kBounces - speed / fall) / (kBounces - kSettles), 0.0, 1.0);
+  return std::clamp((kBounces - speed / fall) / (kBounces - kSettles), 0.0, 1.0);
 }
 
-// The same where the force is held while positions move with the mean of the velocities before and
-// after the step: without it a stiff contact overshoots, and lifts off again and again.
+// Numerical damping of what settles, as a multiple of h K: with less a box rocks from edge to edge
+// for ever.
+constexpr double kSettling = 2.0;
+
+// The same of all where the force is held while positions move with the mean of the velocities
+// before and after the step: without it a stiff contact overshoots, and lifts off again and again.
 double holding(double stiffness_number) {
   constexpr double kMost = 2.0, kHalf = 10.0;
   return kMost * stiffness_number / (stiffness_number + kHalf);
@@ -119,8 +122,10 @@ void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& fa
     const double depth = k > 0.0 ? point.constant * count / k : 0.0;
     const double fall = std::max(std::abs(point.motion.dot(falling)), resting);
     point.full = point.constant;
-    double extra = settling(depth / step, fall);
-    if (parts == ImplicitParts::kHeld) extra = std::max(extra, holding(number * mobility(0, 0)));
+    const double settles = settling(depth / step, fall);
+    const double extra = parts == ImplicitParts::kHeld
+                             ? std::max(settles, holding(number * mobility(0, 0)))
+                             : kSettling * settles;
     point.slope = step * share * (1.0 + extra) * k / count + damping * weight;
   }
   // Damping of turns about the axes along which there is one point only.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "volcontact/model/contact_report.h"
 
@@ -90,12 +91,15 @@ struct PairEnergy {
     if (!now.is_within) keep_within(now.elastic + ahead);
   }
 
-  /// Whether motion can have put in what the law holds `now`, in a step of `elapsed` seconds.
-  bool explains(double elapsed, const Now& now) const noexcept {
+  /// Whether motion can have put in what the law holds `now`, in a step of `elapsed` seconds. A
+  /// potential takes in work by turns, too, which power does not know: `by_turns`, at most, of what
+  /// it holds.
+  bool explains(double elapsed, const Now& now, double by_turns = 0.0) const noexcept {
     const double before = force > 0.0 ? power / force : 0.0;
     const double power_at_most =
         std::max(force, now.force) * std::max({0.0, before, now.approach()});
-    return now.elastic <= stored + found + kOverdraft * std::max(most, now.elastic) +
+    const double overdraft = kOverdraft + by_turns;
+    return now.elastic <= stored + found + overdraft * std::max(most, now.elastic) +
                               kRoom * elapsed * power_at_most;
   }
 
@@ -107,8 +111,14 @@ struct PairEnergy {
     found = std::min(found, now.elastic);
     stored = now.elastic - found;
     most = std::max(most, stored);
-    rubbed = bristle = now.bristle;
-    force = now.force;
+    bristle = now.bristle;
+    act(now);
+  }
+
+  /// What follows is a step by the law. Its force is never 0, even where that of the law is.
+  void act(const Now& now) noexcept {
+    rubbed = now.bristle;
+    force = std::max(now.force, std::numeric_limits<double>::min());
     power = now.power;
   }
 
