@@ -16,6 +16,7 @@ constexpr double kLeanAcross = 1e-12;        // how far a plane across an axis m
 constexpr double kComposedRestError = 1e-6;  // of V; as measured
 constexpr double kSameSeam = 1e-9;   // of the size of a body: a bore through it ends in its faces
 constexpr double kDeviations = 4.0;  // from its middle a region reaches no farther
+constexpr double kPlacesOnWall[] = {0.5, 0.1, 0.9, 0.3, 0.7};  // of its length
 constexpr double kAlongAxis = 0.5;   // share of the area vector: a face is pressed, not the wall
 
 bool holds(const Aabb& bounds, const Vec3& p) {
@@ -55,14 +56,20 @@ class ComposedColumns {
       if (!done) return false;
     }
     join_sites();
-    VolumeMetrics& total = out_.total;
-    if (total.volume_error > options_.tolerance * total.volume && total.touching()) {
-      total.status = Status::kApproximate;
-    }
-    return is_finite(total);
+    for (VolumeMetrics& site : out_.sites) settle_status(site);
+    settle_status(out_.total);
+    return is_finite(out_.total);
   }
 
  private:
+  // A part of little volume may be known to less than the tolerance of its own, and a sum no better
+  // than its parts.
+  void settle_status(VolumeMetrics& m) const {
+    const bool precise = m.volume_error <= options_.tolerance * m.volume || !m.touching();
+    if (!precise) m.status = Status::kApproximate;
+    if (precise && m.status == Status::kApproximate) m.status = Status::kOk;
+  }
+
   template <typename Body>
   bool add_piece(const Body& body, const CarvedPiece& piece, int number) {
     const Pose X_ABody = X_AB_ * piece.X_SB;
@@ -156,9 +163,9 @@ class ComposedColumns {
       if (k == 0 && holds_other_faces(body, X_SQ.inverse() * piece.X_SB, X_AQ)) return false;
       bool split = false;
       RadialSum all;
+      const std::uint64_t bit = std::uint64_t{1} << k;
       for (const RadialPatch& patch : s_.radial.patches) {
         if (patch.at_wall && patch.at_other) return false;
-        const std::uint64_t bit = std::uint64_t{1} << k;
         if (patch.at_wall) walls |= bit;
         if (!patch.at_wall && patch.at_other) left |= bit;
         if (!patch.at_wall && (patch.at_other || k > 0)) continue;
@@ -178,6 +185,12 @@ class ComposedColumns {
         if (!patch.at_wall && (patch.at_other || k > 0)) continue;
         add_site(patch.sum, X_AQ, number);
       }
+    }
+    // Lines run from the wall of one bore: another one that A holds without a patch of its own is
+    // no end of theirs, and would be counted as if it were filled.
+    const std::uint64_t ends = walls != 0 ? walls : 1;
+    for (std::size_t k = 0; k < s_.bores.size() && s_.bores.size() > 1; ++k) {
+      if ((ends >> k & 1u) == 0 && holds_wall(body, piece, k)) return false;
     }
     // What one bore leaves to another must have been found there: bores that run into each other
     // may both see the patch behind the other one's wall.
@@ -221,6 +234,28 @@ class ComposedColumns {
       if (in_a(planes[i].normal)) return true;
     }
     return !s_.solid.rounds.empty() && in_a(Vec3::UnitX());
+  }
+
+  // Whether A holds the wall of bore k half way through the body; of bores about one axis, where it
+  // is a wall.
+  bool holds_wall(const ConvexView& body, const CarvedPiece& piece, std::size_t k) {
+    const Pose X_SQ{basis_with_z(s_.bores[k].axis), s_.bores[k].center};
+    if (!set_solid(body, piece, k, X_SQ)) return false;
+    const Pose X_QBody = X_SQ.inverse() * piece.X_SB, X_AQ = X_AB_ * X_SQ;
+    const Vec3 up = Vec3::UnitZ();
+    const std::optional<BorePlug> plug =
+        bore_plug(s_.solid, -body.support_height(X_QBody, -up), body.support_height(X_QBody, up));
+    if (!plug) return false;
+    for (const double part : kPlacesOnWall) {
+      const double z = (1.0 - part) * plug->low + part * plug->high;
+      const Vec3 p(s_.solid.wall.radius + s_.solid.wall.slope * z, 0.0, z);
+      const bool is_wall = std::none_of(
+          s_.solid.others.begin(), s_.solid.others.end(),
+          [&](const Bore& other) { return other.from_axis(p).norm() <= other.radius_at(p); });
+      const Vec3 p_A = X_AQ * p;
+      if (is_wall) return holds(a_.bounds, p_A) && winding_around(a_, p_A, columns_.cells) != 0;
+    }
+    return false;
   }
 
   void add_site(RadialSum sum, const Pose& X_AQ, int number) {
