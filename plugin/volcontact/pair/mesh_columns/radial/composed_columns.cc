@@ -13,6 +13,7 @@ namespace volcontact {
 namespace {
 
 constexpr double kLeanAcross = 1e-12;        // how far a plane across an axis may lean
+constexpr double kRadialError = 8.0;         // of the doubt of a sum along radii; as measured
 constexpr double kComposedRestError = 1e-6;  // of V; as measured
 constexpr double kSameSeam = 1e-9;   // of the size of a body: a bore through it ends in its faces
 constexpr double kDeviations = 4.0;  // from its middle a region reaches no farther
@@ -273,7 +274,7 @@ class ComposedColumns {
       m.depth = m.volume / area;
       m.depth_moment = 0.5 * m.volume * m.depth;
     }
-    m.volume_error = sum.doubt + kComposedRestError * m.volume;
+    m.volume_error = kRadialError * sum.doubt + kComposedRestError * m.volume;
     s_.sites.push_back({transformed(m, X_AQ), number});
   }
 
