@@ -8,11 +8,11 @@ namespace volcontact {
 namespace {
 
 constexpr int kMaxSteps = 64;
-constexpr double kTouch = 1e-15;     // relative distance below which the solids touch
+constexpr double kTouch = 1e-15;      // relative distance below which the solids touch
 constexpr double kLeanOnFace = 1e-7;  // of a normal, to look for the edge of its face
 constexpr int kLayerHalvings = 12;    // of the depth that is looked for
 constexpr double kLayerRoom = 2.0;    // below a face, by how deep the layer can be
-constexpr double kNearEnough = 0.1;  // of a ball's depth in a solid, to which it is known
+constexpr double kNearEnough = 0.1;   // of a ball's depth in a solid, to which it is known
 
 // A point of the difference A - B, and the point of A it comes from.
 struct Corner {
@@ -165,8 +165,8 @@ BallGap ball_gap(const ConvexView& solid, const Pose& X_AS, const Vec3& center, 
 
 namespace {
 
-// `support(direction)` is the corner of the difference in a direction. Where the solids have a point
-// in common it is the sum of the corners' `a` with these weights.
+// `support(direction)` is the corner of the difference in a direction. Where the solids have a
+// point in common it is the sum of the corners' `a` with these weights.
 template <typename Support>
 bool find_common_point(const Support& support, const Vec3& first, Vec3& point) {
   Corner corners[4];
@@ -208,7 +208,8 @@ bool find_common_point(const ConvexView& a, const ConvexView& b, const Pose& X_A
     return Corner{of_a - b.support(X_AB, -direction), of_a};
   };
   return find_common_point(
-      support, X_AB.translation.squaredNorm() > 0.0 ? X_AB.translation : Vec3(Vec3::UnitZ()), point);
+      support, X_AB.translation.squaredNorm() > 0.0 ? X_AB.translation : Vec3(Vec3::UnitZ()),
+      point);
 }
 
 bool find_common_point_in_layer(const ConvexView& a, const ConvexView& b, const Pose& X_AB,

@@ -12,7 +12,7 @@
 
 namespace volcontact {
 
-inline constexpr double kSamePlane = 1e-9;  ///< of normals, and of offsets per size of a patch
+inline constexpr double kSamePlane = 1e-9;     ///< of normals, and of offsets per size of a patch
 inline constexpr double kSeamRounding = 1e-5;  ///< of S where that of the parts cancels, per area
 
 inline double patch_slack(const LinesRegion::PlanePatch& patch) {

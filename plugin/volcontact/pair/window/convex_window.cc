@@ -268,8 +268,8 @@ class WindowSearch {
     return false;
   }
 
-  // Between two faces that look at each other and are nearly in one plane. Along them a common point
-  // is far easier to find than across: lengths across count by how thin the layer is.
+  // Between two faces that look at each other and are nearly in one plane. Along them a common
+  // point is far easier to find than across: lengths across count by how thin the layer is.
   bool start_in_layer(Vec3& start) const {
     for (const PlaneFace& one : faces_.active.planes) {
       if (one.owner != Owner::kA) continue;
@@ -277,8 +277,8 @@ class WindowSearch {
         if (two.owner != Owner::kB || (one.normal + two.normal).norm() > kFlush) continue;
         const Solid2& b = solid(Owner::kB);
         const double depth = one.offset + b.view.support_height(b.X, -one.normal);
-        const double size = std::cbrt(
-            std::min(solids_[0].view.own_metrics().volume, b.view.own_metrics().volume));
+        const double size =
+            std::cbrt(std::min(solids_[0].view.own_metrics().volume, b.view.own_metrics().volume));
         if (!(depth > 0.0 && depth < kFlush * size)) continue;
         const FlushFaces faces{one.normal, one.offset, two.normal, depth, size};
         if (!find_common_point_in_layer(solids_[0].view, b.view, b.X, faces, start)) continue;
@@ -311,15 +311,14 @@ class WindowSearch {
   bool move_to_middle(const Vec3& d, Vec3& x) const {
     const RayInterval in_a = solids_[0].view.ray(solids_[0].X, x, d),
                       in_b = solids_[1].view.ray(solids_[1].X, x, d);
-    const double enter = std::max(in_a.enter, in_b.enter),
-                 leave = std::min(in_a.leave, in_b.leave);
+    const double enter = std::max(in_a.enter, in_b.enter), leave = std::min(in_a.leave, in_b.leave);
     if (!(enter < leave)) return false;
     x += 0.5 * (enter + leave) * d;
     return true;
   }
 
-  // The direction that leaves every near face, but for two, at the largest angle. The size of the solids counts,
-  // too: a face may pass through the origin of both.
+  // The direction that leaves every near face, but for two, at the largest angle. The size of the
+  // solids counts, too: a face may pass through the origin of both.
   Vec3 way_from_faces(const Vec3& x, const PlaneFace* but_one, const PlaneFace* but_two) const {
     const double size = std::cbrt(
         std::min(solids_[0].view.own_metrics().volume, solids_[1].view.own_metrics().volume));
@@ -378,7 +377,8 @@ class WindowSearch {
       double m[9];
       for (int i = 0; i < 9; ++i) m[i] = spread(i / 3, i % 3);
       VOLCONTACT_SIMD_CALL(path_, chords, view_, m, step == 0, s);
-      // In a very thin overlap what an ellipsoid was made of may be gone by rounding in the next one.
+      // In a very thin overlap what an ellipsoid was made of may be gone by rounding in the next
+      // one.
       if (!(s.total > 0.0)) break;
       // A ball of radius r has the chord ends r: from them 3/4 r and 3/5 r^2 are the moments of the
       // solid between the center and the ends.

@@ -12,8 +12,8 @@ namespace {
 
 using test::evaluated;
 
-// The end of a drum, at z = kEnd, and a face of a box or of a drum, nearly in one plane: how far the
-// second reaches behind the first is linear, and V a sum over squares of the common footprint.
+// The end of a drum, at z = kEnd, and a face of a box or of a drum, nearly in one plane: how far
+// the second reaches behind the first is linear, and V a sum over squares of the common footprint.
 constexpr double kRadius = 0.3, kEnd = 0.2, kWide = 0.25, kLong = 0.4, kThick = 0.05;
 
 struct Case {
@@ -62,7 +62,8 @@ TEST(ThinLayer, FacesNearlyInOnePlaneAreNotMissed) {
     const Shape b = c.box ? Shape(Box({.half_sizes = {kWide, kLong, kThick}}))
                           : Shape(Cylinder({.radius = kLong, .half_length = kThick}));
     const double expected = c.volume();
-    // To 2 per cent: not to be missed is what is looked for. Faces of which one reaches past the other by less than 1e-12 of their place are one.
+    // To 2 per cent: not to be missed is what is looked for. Faces of which one reaches past the
+    // other by less than 1e-12 of their place are one.
     const double slack = 2e-2 * expected + 1e-12 * kRadius * kRadius;
     const double ab = evaluated(a, b, c.X).total.volume,
                  ba = evaluated(b, a, c.X.inverse()).total.volume;

@@ -6,6 +6,7 @@
 
 #include "volcontact/pair/mesh_columns/contained.h"
 #include "volcontact/pair/mesh_columns/in_round/points_within.h"
+#include "volcontact/pair/mesh_columns/layer_depth.h"
 
 namespace volcontact {
 namespace {
@@ -406,15 +407,6 @@ class RoundColumns {
     m.volume_error = patch.volume_error;
     out_.sites.push_back(transformed(m, Pose{Mat3::Identity(), origin_}));
     out_.total = out_.total + out_.sites.back();
-  }
-
-  // A layer as thick everywhere has the variance thickness^2 / 12 across.
-  static void set_depth_of_layer(VolumeMetrics& m) {
-    const Mat3 variance = m.second_moment() / m.volume;
-    const Vec3 n = m.normal();
-    const double across = n.isZero(0.0) ? variance.trace() / 3.0 : n.dot(variance * n);
-    m.depth = std::sqrt(12.0 * std::max(0.0, across));
-    m.depth_moment = 0.5 * m.volume * m.depth;
   }
 
   const SurfaceView& a_;

@@ -7,6 +7,7 @@
 
 #include "volcontact/base/disjoint_sets.h"
 #include "volcontact/pair/mesh_columns/contained.h"
+#include "volcontact/pair/mesh_columns/layer_depth.h"
 #include "volcontact/pair/mesh_columns/radial/bore_plug.h"
 
 namespace volcontact {
@@ -18,7 +19,7 @@ constexpr double kComposedRestError = 1e-6;  // of V; as measured
 constexpr double kSameSeam = 1e-9;   // of the size of a body: a bore through it ends in its faces
 constexpr double kDeviations = 4.0;  // from its middle a region reaches no farther
 constexpr double kPlacesOnWall[] = {0.5, 0.1, 0.9, 0.3, 0.7};  // of its length
-constexpr double kAlongAxis = 0.5;   // share of the area vector: a face is pressed, not the wall
+constexpr double kAlongAxis = 0.5;  // share of the area vector: a face is pressed, not the wall
 
 bool holds(const Aabb& bounds, const Vec3& p) {
   return (p.array() >= bounds.min.array()).all() && (p.array() <= bounds.max.array()).all();
@@ -171,7 +172,7 @@ class ComposedColumns {
         if (!patch.at_wall && patch.at_other) left |= bit;
         if (!patch.at_wall && (patch.at_other || k > 0)) continue;
         const Vec3& area = patch.sum.moments.area_vector;
-        presses_wall &= std::abs(area.z()) <= kAlongAxis * area.norm();
+        presses_wall &= !is_across(area);
         split |= !(patch.sum.moments.volume > 0.0);
         all.moments += patch.sum.moments;
         all.depth_moment += patch.sum.depth_moment;
@@ -259,6 +260,12 @@ class ComposedColumns {
     return false;
   }
 
+  // Whether a face across the axis is what pushes, and not the wall, which may be a cone.
+  bool is_across(const Vec3& area) const {
+    const double slope = std::abs(s_.solid.wall.slope), wall = slope / std::hypot(1.0, slope);
+    return std::abs(area.z()) > std::max(kAlongAxis, 0.5 * (1.0 + wall)) * area.norm();
+  }
+
   void add_site(RadialSum sum, const Pose& X_AQ, int number) {
     if (!(sum.moments.volume > 0.0)) return;
     // The faces across the axis close what the wall leaves open.
@@ -266,12 +273,13 @@ class ComposedColumns {
         std::max(std::max(0.0, sum.moments.counter_area) + std::abs(sum.moments.area_vector.z()),
                  sum.moments.area_vector.norm());
     VolumeMetrics m = sum.moments.metrics();
-    m.depth_moment = sum.depth_moment;
-    m.depth = sum.depth;
-    const double area = m.area_vector.norm();
-    if (std::abs(m.area_vector.z()) > kAlongAxis * area) {
+    // From the wall of a cone columns along the normal are shorter than those across the axis.
+    const double slant = std::hypot(1.0, s_.solid.wall.slope);
+    m.depth_moment = sum.depth_moment / slant;
+    m.depth = sum.depth / slant;
+    if (is_across(m.area_vector)) {
       // Of a layer as thick everywhere.
-      m.depth = m.volume / area;
+      m.depth = m.volume / m.area_vector.norm();
       m.depth_moment = 0.5 * m.volume * m.depth;
     }
     m.volume_error = kRadialError * sum.doubt + kComposedRestError * m.volume;
@@ -299,6 +307,7 @@ class ComposedColumns {
     }
     // What was taken off is an estimate; no surface is smaller than its area vector.
     rest.counter_area = std::max(counter_area, rest.area_vector.norm());
+    set_depth_of_layer(rest);  // what was taken off tells nothing of the longest column left
     if (!(rest.volume > 0.0)) return rest.volume_error < options_.tolerance * s_.whole.total.volume;
     s_.sites.push_back({rest, number});
     return true;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNothing = 1e-7;        // of the radius: a film that thin is one in any case
 constexpr double kLeastLean = 1e-15;     // less is parallel
-constexpr double kTinyLean = 5e-8;      // taken to be parallel by the sections
+constexpr double kTinyLean = 5e-8;       // taken to be parallel by the sections
 constexpr double kSmallLean = 1e-6;      // of which heights are mostly rounding
 constexpr double kTinyLeanFilm = 100.0;  // depth of a film by what the face leans, at most
 constexpr double kSmallLeanFilm = 10.0;  // the same of the larger lean
@@ -53,8 +53,8 @@ class WallFilm {
     u_ = basis.col(0);
     v_ = basis.col(1);
     origin_ = bore_.center;
-    const double size =
-        bore_.center.norm() + middle.norm() + bodies.X_AB.translation.norm() + radius(height(middle));
+    const double size = bore_.center.norm() + middle.norm() + bodies.X_AB.translation.norm() +
+                        radius(height(middle));
     rounding_ = kRounding * size;
   }
 
@@ -210,7 +210,8 @@ class WallFilm {
     double most = 0.0;
     for (std::size_t i = from; i < to; ++i) most = std::max(most, depth_[i % n]);
     for (std::size_t i = from; i < to; ++i) {
-      const double here = depth_[i % n], before = depth_[(i + n - 1) % n], after = depth_[(i + 1) % n];
+      const double here = depth_[i % n], before = depth_[(i + n - 1) % n],
+                   after = depth_[(i + 1) % n];
       if (here > before || here > after || here > kDip * most) continue;
       double low = angle(i) - 2.0 * kPi / kTurn, high = angle(i) + 2.0 * kPi / kTurn;
       for (int step = 0; step < kDipSteps; ++step) {
@@ -290,7 +291,8 @@ class WallFilm {
     }
     return sum;
   }
-  FilmSum integrate(const Arc& arc, double x_from, double x_to, const FilmSum& whole, int halvings) {
+  FilmSum integrate(const Arc& arc, double x_from, double x_to, const FilmSum& whole,
+                    int halvings) {
     const double middle = 0.5 * (x_from + x_to);
     FilmSum one = part_of(arc, x_from, middle), two = part_of(arc, middle, x_to), sum = one;
     sum.add(two);
@@ -336,8 +338,7 @@ class WallFilm {
     VolumeMetrics m = moments.metrics();
     m.depth_moment = sum.depth_moment;
     m.depth = sum.depth;
-    m.volume_error =
-        error_ + rounding_ * m.area + (kTarget + sum.depth / width) * m.volume;
+    m.volume_error = error_ + rounding_ * m.area + (kTarget + sum.depth / width) * m.volume;
     if (m.volume_error > tolerance_ * m.volume) m.status = Status::kApproximate;
     regions.add().metrics = m;
     return true;

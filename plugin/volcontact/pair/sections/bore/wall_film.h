@@ -29,8 +29,8 @@ bool is_wall_film(const FaceSet& faces, const Bore& bore, double depth, double l
 ///
 ///   V = int int (r + d/2) d dh dtheta
 ///
-/// False where the overlap is none: an edge, say, that reaches out of the wall as far as it is wide.
-/// docs/theory.md, "Bores".
+/// False where the overlap is none: an edge, say, that reaches out of the wall as far as it is
+/// wide. docs/theory.md, "Bores".
 bool add_wall_film(const BoredBodies& bodies, const Vec3& middle,
                    const std::vector<BoreOutline::Place>& places,
                    const InterferenceOptions& options, LinesRegions& regions);

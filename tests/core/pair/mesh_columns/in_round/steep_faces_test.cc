@@ -30,8 +30,8 @@ double below_a_face(double x_half, double y_half, double deepest, double radius)
   return sum * dx * dy;
 }
 
-// Few triangles of one shape, over which a rule and a rougher one err by the same: the middle of the
-// ball lies on a face of the box, and columns end where the ball is steep.
+// Few triangles of one shape, over which a rule and a rougher one err by the same: the middle of
+// the ball lies on a face of the box, and columns end where the ball is steep.
 TEST(SteepFaces, ABallInTheMiddleOfAFace) {
   const Vec3 half(.3, .2, .15);
   for (const int n : {1, 2, 3}) {
@@ -41,8 +41,8 @@ TEST(SteepFaces, ABallInTheMiddleOfAFace) {
       const double expected = below_a_face(.3, .2, .3, radius);
       const Pose X{Mat3::Identity(), Vec3(0, 0, .15)};
       for (const bool mesh_first : {true, false}) {
-        const VolumeMetrics m = mesh_first ? evaluated(box, ball, X).total
-                                           : evaluated(ball, box, X.inverse()).total;
+        const VolumeMetrics m =
+            mesh_first ? evaluated(box, ball, X).total : evaluated(ball, box, X.inverse()).total;
         EXPECT_NEAR(m.volume, expected, m.volume_error + 1e-5 * expected) << n << " " << radius;
         EXPECT_NEAR(m.volume, expected, 2e-4 * expected) << n << " " << radius;
       }

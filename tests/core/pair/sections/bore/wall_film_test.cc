@@ -18,7 +18,8 @@ constexpr double kBore = 0.1, kHalfPeg = 0.15, kTop = 0.2, kMiddle = 0.1;
 Csg bored_block() { return solids::box(.3, .3, kTop) - solids::tube(kBore, .4); }
 
 // A peg about an axis that leans by `lean` against that of the bore and passes it at the distance
-// `shift` in the middle of the peg, which reaches out of the block: over the wall at (theta, z) lies
+// `shift` in the middle of the peg, which reaches out of the block: over the wall at (theta, z)
+// lies
 //   d = s cos - gap - (s sin)^2 / (2 R),   s = shift + lean (z - middle).
 // V and the height of its middle by sums over 4,000 x 800 places.
 struct Film {
@@ -83,8 +84,8 @@ TEST(WallFilm, TheGradientOfTheVolume) {
     EXPECT_NEAR(-m.area_vector[i], slope, 2e-3 * m.area);
   }
   // About the middle of the peg.
-  const double slope = (volume(shift, lean + 10.0 * step) - volume(shift, lean - 10.0 * step)) /
-                       (20.0 * step);
+  const double slope =
+      (volume(shift, lean + 10.0 * step) - volume(shift, lean - 10.0 * step)) / (20.0 * step);
   const Vec3 about = m.area_moment - shift.cross(m.area_vector);
   EXPECT_NEAR(-about.y(), slope, 2e-3 * m.area * kHalfPeg);
 }
