@@ -30,7 +30,7 @@ bool in_peg(const Vec3& x) { return std::hypot(x.x(), x.y()) < kPeg && std::abs(
 
 // The longest column along n of what lies in both, found by points on lines `from` a middle.
 double longest_column(const Pose& X, const Vec3& middle, const Vec3& n) {
-  constexpr int kLines = 30, kPoints = 250;
+  constexpr int kLines = 60, kPoints = 400;
   constexpr double kReach = 0.004;
   const Mat3 basis = basis_with_z(n);
   const Pose X_PW = X.inverse();
