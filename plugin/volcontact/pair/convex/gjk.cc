@@ -8,8 +8,11 @@ namespace volcontact {
 namespace {
 
 constexpr int kMaxSteps = 64;
-constexpr double kTouch = 1e-15;     // relative distance below which the solids touch
-constexpr double kNearEnough = 0.1;  // of a ball's depth in a solid, to which it is known
+constexpr double kTouch = 1e-15;      // relative distance below which the solids touch
+constexpr double kLeanOnFace = 1e-7;  // of a normal, to look for the edge of its face
+constexpr int kLayerHalvings = 12;    // of the depth that is looked for
+constexpr double kLayerRoom = 2.0;    // below a face, by how deep the layer can be
+constexpr double kNearEnough = 0.1;   // of a ball's depth in a solid, to which it is known
 
 // A point of the difference A - B, and the point of A it comes from.
 struct Corner {
@@ -160,17 +163,16 @@ BallGap ball_gap(const ConvexView& solid, const Pose& X_AS, const Vec3& center, 
   return gap;
 }
 
-bool find_common_point(const ConvexView& a, const ConvexView& b, const Pose& X_AB, Vec3& point) {
-  const Pose X_AA;
+namespace {
+
+// `support(direction)` is the corner of the difference in a direction. Where the solids have a
+// point in common it is the sum of the corners' `a` with these weights.
+template <typename Support>
+bool find_common_point(const Support& support, const Vec3& first, Vec3& point) {
   Corner corners[4];
   double weights[4] = {1.0, 0.0, 0.0, 0.0};
-  int count = 0;
-  const auto add_corner = [&](const Vec3& direction) {
-    Corner& c = corners[count++];
-    c.a = a.support(X_AA, direction);
-    c.w = c.a - b.support(X_AB, -direction);
-  };
-  add_corner(X_AB.translation.squaredNorm() > 0.0 ? X_AB.translation : Vec3(Vec3::UnitZ()));
+  int count = 1;
+  corners[0] = support(first);
   Vec3 v = corners[0].w;  // the place of the simplex nearest the origin
   double size = v.norm();
   const auto common_point = [&] {
@@ -180,7 +182,7 @@ bool find_common_point(const ConvexView& a, const ConvexView& b, const Pose& X_A
   };
   for (int step = 0; step < kMaxSteps; ++step) {
     if (!(v.norm() > kTouch * size)) return common_point();
-    add_corner(-v);
+    corners[count++] = support(-v);
     const Vec3& w = corners[count - 1].w;
     size = std::max(size, w.norm());
     if (v.dot(w) > 0.0) return false;  // the plane through the origin normal to v lies between them
@@ -196,6 +198,60 @@ bool find_common_point(const ConvexView& a, const ConvexView& b, const Pose& X_A
     v = nearest.place;
   }
   return common_point();
+}
+
+}  // namespace
+
+bool find_common_point(const ConvexView& a, const ConvexView& b, const Pose& X_AB, Vec3& point) {
+  const auto support = [&](const Vec3& direction) {
+    const Vec3 of_a = a.support(Pose{}, direction);
+    return Corner{of_a - b.support(X_AB, -direction), of_a};
+  };
+  return find_common_point(
+      support, X_AB.translation.squaredNorm() > 0.0 ? X_AB.translation : Vec3(Vec3::UnitZ()),
+      point);
+}
+
+bool find_common_point_in_layer(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
+                                const FlushFaces& faces, Vec3& point) {
+  // The faces with as much below them as the layer is thick, which is all that can be met.
+  const Vec3& n = faces.normal_a;
+  const Vec3 lean_b = faces.normal_b - n * n.dot(faces.normal_b);
+  const double scale = faces.size / faces.depth;
+  double apart = 0.0;  // how far B is moved out, for a point that does not only touch
+  const auto stretched = [&](const Vec3& x) -> Vec3 {
+    const double over = n.dot(x) - faces.offset_a;
+    return x - n * n.dot(x) + scale * over * n;
+  };
+  const auto support = [&](const Vec3& direction) {
+    const double along = n.dot(direction);
+    const Vec3 across = direction - along * n;
+    // Stretched, B's face leans by about 1.
+    const Vec3 across_b = across + along * scale * lean_b;
+    Vec3 of_a = a.support(Pose{}, n + kLeanOnFace * across.stableNormalized()),
+         of_b = b.support(X_AB, faces.normal_b - kLeanOnFace * across_b.stableNormalized());
+    if (along < 0.0) of_a -= kLayerRoom * faces.depth * n;
+    if (along < 0.0) of_b += kLayerRoom * faces.depth * n;
+    return Corner{stretched(of_a) - stretched(of_b) - apart * scale * n, of_a};
+  };
+  apart = faces.depth;
+  for (int halving = 0; halving < kLayerHalvings; ++halving) {
+    apart *= 0.5;
+    if (!find_common_point(support, n, point)) continue;
+    // Some way off the edges of the faces: the mean of points that were found from other sides.
+    const Mat3 basis = basis_with_z(n);
+    Vec3 sum = point;
+    int count = 1;
+    for (const Vec3& first : {Vec3(basis.col(0)), Vec3(basis.col(1))}) {
+      Vec3 another;
+      if (!find_common_point(support, first, another)) continue;
+      sum += another;
+      ++count;
+    }
+    point = sum / count;
+    return true;
+  }
+  return false;
 }
 
 }  // namespace volcontact

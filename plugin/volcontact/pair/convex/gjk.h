@@ -13,6 +13,20 @@ namespace volcontact {
 /// 4(2), 1988.
 bool find_common_point(const ConvexView& a, const ConvexView& b, const Pose& X_AB, Vec3& point);
 
+/// Plane faces of two solids that look at each other and are nearly in one plane.
+struct FlushFaces {
+  Vec3 normal_a;  ///< of unit length, in A's frame
+  double offset_a;
+  Vec3 normal_b;  ///< nearly opposite
+  double depth;   ///< how far B reaches behind A's face, at most [m]
+  double size;    ///< of the solids, about [m]
+};
+
+/// The same for two solids that overlap in a thin layer between two such faces, if at all: lengths
+/// across the layer count by how thin it is.
+bool find_common_point_in_layer(const ConvexView& a, const ConvexView& b, const Pose& X_AB,
+                                const FlushFaces& faces, Vec3& point);
+
 /// What keeps a ball and a convex solid apart, or a place of the solid in the ball.
 struct BallGap {
   bool apart;

@@ -12,7 +12,8 @@
 
 namespace volcontact {
 
-inline constexpr double kSamePlane = 1e-9;  ///< of normals, and of offsets per size of a patch
+inline constexpr double kSamePlane = 1e-9;     ///< of normals, and of offsets per size of a patch
+inline constexpr double kSeamRounding = 1e-5;  ///< of S where that of the parts cancels, per area
 
 inline double patch_slack(const LinesRegion::PlanePatch& patch) {
   return kSamePlane * (std::sqrt(patch.area) + patch.centroid.norm());
@@ -61,6 +62,7 @@ class RegionJoin {
         if (root_of(site_of_, i) == site) sum = sum + regions_[i].metrics;
       }
       settle_status(sum);
+      bound_area_vector(sum);
       out_.total = out_.sites.empty() ? sum : out_.total + sum;
       out_.sites.push_back(sum);
     }
@@ -87,6 +89,15 @@ class RegionJoin {
     if (m.status == Status::kContained && m.area > 0.0 && m.counter_area > 0.0) {
       m.status = Status::kOk;
     }
+  }
+
+  // No area vector is longer than an area. Where seams leave next to nothing of a surface, those of
+  // the regions cancel but for rounding.
+  static void bound_area_vector(VolumeMetrics& m) {
+    const double length = m.area_vector.norm(), least = std::min(m.area, m.counter_area);
+    if (!(length > least && length < kSeamRounding * std::max(m.area, m.counter_area))) return;
+    m.area_vector *= least / length;
+    m.area_moment *= least / length;
   }
 
   LinesRegions& regions_;

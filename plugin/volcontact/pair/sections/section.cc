@@ -15,7 +15,7 @@ using namespace section_limits;
 constexpr double kSteep = 1e-9;  // a plane whose normal is this normal to the columns is a wall
 constexpr double kOnSilhouette = 1e-6;  // a root this small is zero, per the largest one
 constexpr double kBeforeWall = 1e-10;   // of rho: there the tube along the columns is wide open
-constexpr double kWallTilt = 1e-7;      // a tube tilted less against the columns is a wall [rad]
+constexpr double kWallTilt = 3e-8;      // a tube tilted less against the columns is a wall [rad]
 constexpr double kSameApex = 1e-10;     // a cone whose apex is this near to the center is a wall
 
 }  // namespace

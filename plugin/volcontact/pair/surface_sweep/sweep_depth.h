@@ -36,20 +36,26 @@ class SweepDepth {
     }
     const double side = up <= down ? 1.0 : -1.0;
     double volume = 0.0, moment = 0.0, longest = 0.0;
+    Vec3 deepest = Vec3::Zero();  // in the middle of the longest column
     for (const SweepPlace& place : surface_.places) {
       const double area = side * n_.dot(place.n);
       if (!(area > 0.0) || !of_region_(place.strip)) continue;
       const double length = column(place.x, -side * n_);
       volume += length * area;
       moment += 0.5 * length * length * area;
-      longest = std::max(longest, length);
+      if (length > longest) {
+        longest = length;
+        deepest = place.x - 0.5 * side * length * n_;
+      }
       reach(place.x);
       reach(place.x - side * length * n_);
     }
     look_at_balls(families, family_of);
     // What is neither convex nor on a plane may reach around what it lies on.
-    metrics.depth =
-        convex_ || metrics.flatness() >= kPlanePatch ? std::max(0.0, high_ - low_) : longest;
+    const bool by_extent = convex_ || metrics.flatness() >= kPlanePatch;
+    metrics.depth = by_extent       ? std::max(0.0, high_ - low_)
+                    : longest > 0.0 ? climb(deepest, longest, metrics)
+                                    : 0.0;
     metrics.depth_moment = volume > 0.0 ? moment * metrics.volume / volume : 0.0;
   }
 
@@ -72,6 +78,46 @@ class SweepDepth {
       if (span.low.t <= near && span.high.t > near) return span.high.t;
     }
     return 0.0;
+  }
+
+  // Columns start at a few places alone, and the longest may be at none of them: from the longest
+  // of these to the sides, in smaller and smaller steps.
+  double climb(Vec3 x, double longest, const VolumeMetrics& metrics) {
+    const Mat3 basis = basis_with_z(n_);
+    double step = kFirstStep * std::sqrt(metrics.area_vector.norm());
+    const auto look = [&](const Vec3& at) {
+      double from = 0.0, length = 0.0;
+      if (!column_near(at, longest, from, length) || !(length > longest)) return false;
+      longest = length;
+      x = at + (from + 0.5 * length) * n_;
+      return true;
+    };
+    look(metrics.centroid);
+    for (int round = 0; round < kClimbs; ++round) {
+      bool longer = false;
+      for (const Vec3& way : {Vec3(basis.col(0)), Vec3(basis.col(1))}) {
+        longer |= look(x + step * way) || look(x - step * way);
+      }
+      if (!longer) step *= 0.5;
+    }
+    return longest;
+  }
+
+  // The column of the overlap along the normal that holds x, or comes near to it.
+  bool column_near(const Vec3& x, double near, double& from, double& length) {
+    FaceCurve line;
+    line.p = x;
+    line.u = n_;
+    line.v = Vec3::Zero();
+    find_spans(solids_, line, -1, s_, spans_);
+    for (int i = 0; i < spans_.count; ++i) {
+      const SweepSpans::Span& span = spans_.span[i];
+      if (!(span.low.t <= near && span.high.t >= -near)) continue;
+      from = span.low.t;
+      length = span.high.t - span.low.t;
+      return true;
+    }
+    return false;
   }
 
   // The farthest places of balls, which no curve need come by.
@@ -108,6 +154,8 @@ class SweepDepth {
   const Vec3 n_;
   const bool convex_;                                // both solids
   static constexpr double kPlanePatch = 1.0 - 1e-9;  // flatness of a patch on a plane
+  static constexpr double kFirstStep = 0.25;         // of the width of a region
+  static constexpr int kClimbs = 10;
   SweepSpans spans_;
   double high_ = -kInfinity, low_ = kInfinity;
 };

@@ -72,6 +72,7 @@ constexpr int kMaxRoundings = 12;    // how often the frame is made anew
 constexpr double kRounding = 1e-12;  // of a common point, per its distance from both frames
 constexpr int kMaxTurns = 5;         // in search of a place behind both planes of an edge
 constexpr int kMaxMoves = 8;         // from a common point on the faces into the overlap
+constexpr double kFlush = 1e-6;      // faces that lean less, and overlap less, make a thin layer
 constexpr double kRound = 3.5;       // longest by shortest way out of a well-rounded overlap
 constexpr double kThinnest = 1e-14;  // squared relative length below which one rounding cannot see
 
@@ -198,8 +199,9 @@ class WindowSearch {
       if (count_planes(owner) == 2 && start_at_edge(owner, start)) return true;
     }
     if (solids_[0].view.bounded() && solids_[1].view.bounded()) {
-      return find_common_point(solids_[0].view, solids_[1].view, solids_[1].X, start) &&
-             move_inside(start);
+      return (find_common_point(solids_[0].view, solids_[1].view, solids_[1].X, start) &&
+              move_inside(start)) ||
+             start_in_layer(start);
     }
     for (const Solid2& s : solids_) {
       start = s.view.middle(s.X);
@@ -266,31 +268,64 @@ class WindowSearch {
     return false;
   }
 
+  // Between two faces that look at each other and are nearly in one plane. Along them a common
+  // point is far easier to find than across: lengths across count by how thin the layer is.
+  bool start_in_layer(Vec3& start) const {
+    for (const PlaneFace& one : faces_.active.planes) {
+      if (one.owner != Owner::kA) continue;
+      for (const PlaneFace& two : faces_.active.planes) {
+        if (two.owner != Owner::kB || (one.normal + two.normal).norm() > kFlush) continue;
+        const Solid2& b = solid(Owner::kB);
+        const double depth = one.offset + b.view.support_height(b.X, -one.normal);
+        const double size =
+            std::cbrt(std::min(solids_[0].view.own_metrics().volume, b.view.own_metrics().volume));
+        if (!(depth > 0.0 && depth < kFlush * size)) continue;
+        const FlushFaces faces{one.normal, one.offset, two.normal, depth, size};
+        if (!find_common_point_in_layer(solids_[0].view, b.view, b.X, faces, start)) continue;
+        move_to_middle(one.normal, start);
+        // Off the edges, along the layer.
+        for (int step = 0; step < kMaxMoves && !inside(start); ++step) {
+          const Vec3 way = way_from_faces(start, &one, &two);
+          if (!move_to_middle(way - way.dot(one.normal) * one.normal, start)) break;
+          move_to_middle(one.normal, start);
+        }
+        if (inside(start)) return true;
+      }
+    }
+    return false;
+  }
+
   // A common point may lie on faces, at worst in a sharp corner of the overlap: from there go away
   // from all faces that are near, half way to the other side, until none is.
   bool move_inside(Vec3& x) const {
     for (int step = 0; step < kMaxMoves; ++step) {
       if (inside(x)) return true;
-      const Vec3 d = way_from_faces(x);
+      const Vec3 d = way_from_faces(x, nullptr, nullptr);
       if (!(d.norm() > 0.0)) return false;
-      const RayInterval in_a = solids_[0].view.ray(solids_[0].X, x, d),
-                        in_b = solids_[1].view.ray(solids_[1].X, x, d);
-      const double enter = std::max(in_a.enter, in_b.enter),
-                   leave = std::min(in_a.leave, in_b.leave);
-      if (!(enter < leave)) return false;
-      x += 0.5 * (enter + leave) * d;
+      if (!move_to_middle(d, x)) return false;
     }
     return inside(x);
   }
 
-  // The direction that leaves every near face at the largest angle. The size of the solids counts,
-  // too: a face may pass through the origin of both.
-  Vec3 way_from_faces(const Vec3& x) const {
+  // To the middle of the overlap on the line x + t d; false where it has none.
+  bool move_to_middle(const Vec3& d, Vec3& x) const {
+    const RayInterval in_a = solids_[0].view.ray(solids_[0].X, x, d),
+                      in_b = solids_[1].view.ray(solids_[1].X, x, d);
+    const double enter = std::max(in_a.enter, in_b.enter), leave = std::min(in_a.leave, in_b.leave);
+    if (!(enter < leave)) return false;
+    x += 0.5 * (enter + leave) * d;
+    return true;
+  }
+
+  // The direction that leaves every near face, but for two, at the largest angle. The size of the
+  // solids counts, too: a face may pass through the origin of both.
+  Vec3 way_from_faces(const Vec3& x, const PlaneFace* but_one, const PlaneFace* but_two) const {
     const double size = std::cbrt(
         std::min(solids_[0].view.own_metrics().volume, solids_[1].view.own_metrics().volume));
     const double distance = kRounding * (x.norm() + solids_[1].X.translation.norm() + size);
     faces_.near.clear();
     for (const PlaneFace& plane : faces_.active.planes) {
+      if (&plane == but_one || &plane == but_two) continue;
       if (plane.normal.dot(x) - plane.offset > -distance) faces_.near.push_back(plane.normal);
     }
     for (const RoundFace& round : faces_.active.rounds) {
@@ -342,7 +377,9 @@ class WindowSearch {
       double m[9];
       for (int i = 0; i < 9; ++i) m[i] = spread(i / 3, i % 3);
       VOLCONTACT_SIMD_CALL(path_, chords, view_, m, step == 0, s);
-      if (!(s.total > 0.0)) return;
+      // In a very thin overlap what an ellipsoid was made of may be gone by rounding in the next
+      // one.
+      if (!(s.total > 0.0)) break;
       // A ball of radius r has the chord ends r: from them 3/4 r and 3/5 r^2 are the moments of the
       // solid between the center and the ends.
       const Vec3 shift = 0.75 / s.total * Vec3(s.first[0], s.first[1], s.first[2]);

@@ -6,6 +6,7 @@
 
 #include "volcontact/pair/mesh_columns/contained.h"
 #include "volcontact/pair/mesh_columns/in_round/points_within.h"
+#include "volcontact/pair/mesh_columns/layer_depth.h"
 
 namespace volcontact {
 namespace {
@@ -25,6 +26,10 @@ constexpr double kSliverError = 0.25;  // of their volume; as measured
 constexpr double kRestError = 1e-7;    // of V; as measured
 constexpr double kSeamError = 1e-4;    // the same where faces of B meet
 constexpr double kLooksUp = 1e-9;      // of a plane face: the sine of its slope
+constexpr double kSteepShare = 0.02;   // of V, over a triangle that is large
+constexpr double kChangeError = 0.03;  // of what the last division changes: error that is left
+constexpr double kStarError = 4.0;     // of the doubt of what is seen from a point; as measured
+constexpr double kStarShare = 0.1;     // of the tolerance: most that this adds to the doubt
 constexpr int kMostRounds = 6;         // of divisions of triangles
 constexpr double kAlmostAxis = 0.97, kAlmostAcross = 0.3;
 
@@ -194,8 +199,10 @@ class RoundColumns {
     patch.moments.counter_area =
         std::max(std::abs(sum.moments.counter_area), surface.area_vector.norm());
     patch.deep = true;
-    patch.volume_error =
-        sum.doubt + kSliverError * sum.slivers + kSeamError * std::abs(sum.moments.volume);
+    const double volume = std::abs(sum.moments.volume);
+    const double more =
+        std::min((kStarError - 1.0) * sum.doubt, kStarShare * options_.tolerance * volume);
+    patch.volume_error = sum.doubt + more + kSliverError * sum.slivers + kSeamError * volume;
   }
 
   // Which plane faces of B the outline of the patch may run along.
@@ -245,11 +252,16 @@ class RoundColumns {
     for (std::size_t i = 0; i < slivers; ++i) {
       if (s_.points.tip_depth[i] > kTipDepth * sum.longest) return false;
     }
-    for (int round = 0; round < kMostRounds && !precise(sum); ++round) {
-      divide_doubtful(sum);
+    double changed = 0.0;
+    for (int round = 0; round < kMostRounds; ++round) {
+      const bool first = round == 0 && is_steep(sum);
+      if (!first && precise(sum)) break;
+      const double before = sum.volume;
+      divide_doubtful(sum, first);
       sum = sum_parts(up);
+      changed = std::abs(sum.volume - before);
     }
-    const double excess_doubt = take_excess(sum);
+    const double excess_doubt = take_excess(sum) + kChangeError * changed;
     const Vec3 n = surface.area_vector.stableNormalized();
     RoundSum along_n = sum;  // what the depth is about
     if (!n.isZero(0.0) && up.dot(n) < 1.0 - 1e-9 && up.dot(n) > 0.0) along_n = sum_parts(n);
@@ -317,13 +329,23 @@ class RoundColumns {
     return sum_round_columns(solid_, up, s_.triangles, s_.points, s_.search.path);
   }
 
-  // In four, those that hold most of the doubt.
-  void divide_doubtful(const RoundSum& sum) {
+  // Whether columns from large triangles end on steep faces. There both rules may err by the same,
+  // on all triangles at once where these are alike: then a first division tells.
+  bool is_steep(const RoundSum& sum) const {
+    const double least = kSteepShare * std::abs(sum.volume);
+    return std::any_of(s_.triangles.steep.begin(), s_.triangles.steep.end(),
+                       [&](double steep) { return steep > least; });
+  }
+
+  // In four, those that hold most of the doubt, and those from which columns end on steep faces if
+  // `steep`.
+  void divide_doubtful(const RoundSum& sum, bool steep) {
     const double least = 0.3 * sum.doubt / static_cast<double>(s_.parts.size());
+    const double steepest = steep ? kSteepShare * std::abs(sum.volume) : kInfinity;
     s_.divided.clear();
     for (std::size_t i = 0; i < s_.parts.size(); ++i) {
       const Triangle& t = s_.parts[i];
-      if (s_.triangles.doubt[i] < least) {
+      if (s_.triangles.doubt[i] < least && s_.triangles.steep[i] <= steepest) {
         s_.divided.push_back(t);
         continue;
       }
@@ -385,15 +407,6 @@ class RoundColumns {
     m.volume_error = patch.volume_error;
     out_.sites.push_back(transformed(m, Pose{Mat3::Identity(), origin_}));
     out_.total = out_.total + out_.sites.back();
-  }
-
-  // A layer as thick everywhere has the variance thickness^2 / 12 across.
-  static void set_depth_of_layer(VolumeMetrics& m) {
-    const Mat3 variance = m.second_moment() / m.volume;
-    const Vec3 n = m.normal();
-    const double across = n.isZero(0.0) ? variance.trace() / 3.0 : n.dot(variance * n);
-    m.depth = std::sqrt(12.0 * std::max(0.0, across));
-    m.depth_moment = 0.5 * m.volume * m.depth;
   }
 
   const SurfaceView& a_;

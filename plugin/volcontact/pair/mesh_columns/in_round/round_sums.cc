@@ -14,6 +14,11 @@ using namespace triangle_rule;
 constexpr double kOffArc = 1e-6;         // of the way from the arc to the chord
 constexpr double kLeastSquare = 1e-300;  // of a direction mapped
 constexpr double kLeastCosine = 1e-3;
+constexpr double kSteep = 0.9;          // cosine between columns and the normal where they end
+constexpr double kUpright = 0.1;        // the same at an arc: columns begin there with a steep rise
+constexpr double kUprightLength = 0.1;  // of a column at the arc, by that at the chord
+// The share of kSliverShare where what is integrated falls with the root of the way to the arc.
+constexpr double kRootShare = 0.1875 * kPi;
 constexpr double kLooksUp = 1e-6;  // sine of a surface's slope
 constexpr int kNewtonSteps = 4;
 
@@ -70,6 +75,7 @@ void RoundTriangles::resize(std::size_t count) {
   }
   doubt.assign(count, 0.0);
   longest.assign(count, 0.0);
+  steep.assign(count, 0.0);
 }
 
 void RoundTriangles::set(std::size_t i, const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -14,6 +14,7 @@ struct RoundTriangles {
   std::vector<double> corner[3][3];  ///< corner[i][axis]
   std::vector<double> doubt;         ///< of what each adds to V [m^3]
   std::vector<double> longest;       ///< of the columns on each [m]
+  std::vector<double> steep;         ///< V over each at most, where columns end on a steep face
   void resize(std::size_t count);
   void set(std::size_t i, const Vec3& a, const Vec3& b, const Vec3& c);
 };

@@ -7,16 +7,19 @@
 
 #include "volcontact/base/disjoint_sets.h"
 #include "volcontact/pair/mesh_columns/contained.h"
+#include "volcontact/pair/mesh_columns/layer_depth.h"
 #include "volcontact/pair/mesh_columns/radial/bore_plug.h"
 
 namespace volcontact {
 namespace {
 
 constexpr double kLeanAcross = 1e-12;        // how far a plane across an axis may lean
+constexpr double kRadialError = 8.0;         // of the doubt of a sum along radii; as measured
 constexpr double kComposedRestError = 1e-6;  // of V; as measured
 constexpr double kSameSeam = 1e-9;   // of the size of a body: a bore through it ends in its faces
 constexpr double kDeviations = 4.0;  // from its middle a region reaches no farther
-constexpr double kAlongAxis = 0.5;   // share of the area vector: a face is pressed, not the wall
+constexpr double kPlacesOnWall[] = {0.5, 0.1, 0.9, 0.3, 0.7};  // of its length
+constexpr double kAlongAxis = 0.5;  // share of the area vector: a face is pressed, not the wall
 
 bool holds(const Aabb& bounds, const Vec3& p) {
   return (p.array() >= bounds.min.array()).all() && (p.array() <= bounds.max.array()).all();
@@ -55,14 +58,20 @@ class ComposedColumns {
       if (!done) return false;
     }
     join_sites();
-    VolumeMetrics& total = out_.total;
-    if (total.volume_error > options_.tolerance * total.volume && total.touching()) {
-      total.status = Status::kApproximate;
-    }
-    return is_finite(total);
+    for (VolumeMetrics& site : out_.sites) settle_status(site);
+    settle_status(out_.total);
+    return is_finite(out_.total);
   }
 
  private:
+  // A part of little volume may be known to less than the tolerance of its own, and a sum no better
+  // than its parts.
+  void settle_status(VolumeMetrics& m) const {
+    const bool precise = m.volume_error <= options_.tolerance * m.volume || !m.touching();
+    if (!precise) m.status = Status::kApproximate;
+    if (precise && m.status == Status::kApproximate) m.status = Status::kOk;
+  }
+
   template <typename Body>
   bool add_piece(const Body& body, const CarvedPiece& piece, int number) {
     const Pose X_ABody = X_AB_ * piece.X_SB;
@@ -156,14 +165,14 @@ class ComposedColumns {
       if (k == 0 && holds_other_faces(body, X_SQ.inverse() * piece.X_SB, X_AQ)) return false;
       bool split = false;
       RadialSum all;
+      const std::uint64_t bit = std::uint64_t{1} << k;
       for (const RadialPatch& patch : s_.radial.patches) {
         if (patch.at_wall && patch.at_other) return false;
-        const std::uint64_t bit = std::uint64_t{1} << k;
         if (patch.at_wall) walls |= bit;
         if (!patch.at_wall && patch.at_other) left |= bit;
         if (!patch.at_wall && (patch.at_other || k > 0)) continue;
         const Vec3& area = patch.sum.moments.area_vector;
-        presses_wall &= std::abs(area.z()) <= kAlongAxis * area.norm();
+        presses_wall &= !is_across(area);
         split |= !(patch.sum.moments.volume > 0.0);
         all.moments += patch.sum.moments;
         all.depth_moment += patch.sum.depth_moment;
@@ -178,6 +187,12 @@ class ComposedColumns {
         if (!patch.at_wall && (patch.at_other || k > 0)) continue;
         add_site(patch.sum, X_AQ, number);
       }
+    }
+    // Lines run from the wall of one bore: another one that A holds without a patch of its own is
+    // no end of theirs, and would be counted as if it were filled.
+    const std::uint64_t ends = walls != 0 ? walls : 1;
+    for (std::size_t k = 0; k < s_.bores.size() && s_.bores.size() > 1; ++k) {
+      if ((ends >> k & 1u) == 0 && holds_wall(body, piece, k)) return false;
     }
     // What one bore leaves to another must have been found there: bores that run into each other
     // may both see the patch behind the other one's wall.
@@ -223,6 +238,34 @@ class ComposedColumns {
     return !s_.solid.rounds.empty() && in_a(Vec3::UnitX());
   }
 
+  // Whether A holds the wall of bore k half way through the body; of bores about one axis, where it
+  // is a wall.
+  bool holds_wall(const ConvexView& body, const CarvedPiece& piece, std::size_t k) {
+    const Pose X_SQ{basis_with_z(s_.bores[k].axis), s_.bores[k].center};
+    if (!set_solid(body, piece, k, X_SQ)) return false;
+    const Pose X_QBody = X_SQ.inverse() * piece.X_SB, X_AQ = X_AB_ * X_SQ;
+    const Vec3 up = Vec3::UnitZ();
+    const std::optional<BorePlug> plug =
+        bore_plug(s_.solid, -body.support_height(X_QBody, -up), body.support_height(X_QBody, up));
+    if (!plug) return false;
+    for (const double part : kPlacesOnWall) {
+      const double z = (1.0 - part) * plug->low + part * plug->high;
+      const Vec3 p(s_.solid.wall.radius + s_.solid.wall.slope * z, 0.0, z);
+      const bool is_wall = std::none_of(
+          s_.solid.others.begin(), s_.solid.others.end(),
+          [&](const Bore& other) { return other.from_axis(p).norm() <= other.radius_at(p); });
+      const Vec3 p_A = X_AQ * p;
+      if (is_wall) return holds(a_.bounds, p_A) && winding_around(a_, p_A, columns_.cells) != 0;
+    }
+    return false;
+  }
+
+  // Whether a face across the axis is what pushes, and not the wall, which may be a cone.
+  bool is_across(const Vec3& area) const {
+    const double slope = std::abs(s_.solid.wall.slope), wall = slope / std::hypot(1.0, slope);
+    return std::abs(area.z()) > std::max(kAlongAxis, 0.5 * (1.0 + wall)) * area.norm();
+  }
+
   void add_site(RadialSum sum, const Pose& X_AQ, int number) {
     if (!(sum.moments.volume > 0.0)) return;
     // The faces across the axis close what the wall leaves open.
@@ -230,15 +273,16 @@ class ComposedColumns {
         std::max(std::max(0.0, sum.moments.counter_area) + std::abs(sum.moments.area_vector.z()),
                  sum.moments.area_vector.norm());
     VolumeMetrics m = sum.moments.metrics();
-    m.depth_moment = sum.depth_moment;
-    m.depth = sum.depth;
-    const double area = m.area_vector.norm();
-    if (std::abs(m.area_vector.z()) > kAlongAxis * area) {
+    // From the wall of a cone columns along the normal are shorter than those across the axis.
+    const double slant = std::hypot(1.0, s_.solid.wall.slope);
+    m.depth_moment = sum.depth_moment / slant;
+    m.depth = sum.depth / slant;
+    if (is_across(m.area_vector)) {
       // Of a layer as thick everywhere.
-      m.depth = m.volume / area;
+      m.depth = m.volume / m.area_vector.norm();
       m.depth_moment = 0.5 * m.volume * m.depth;
     }
-    m.volume_error = sum.doubt + kComposedRestError * m.volume;
+    m.volume_error = kRadialError * sum.doubt + kComposedRestError * m.volume;
     s_.sites.push_back({transformed(m, X_AQ), number});
   }
 
@@ -263,6 +307,7 @@ class ComposedColumns {
     }
     // What was taken off is an estimate; no surface is smaller than its area vector.
     rest.counter_area = std::max(counter_area, rest.area_vector.norm());
+    set_depth_of_layer(rest);  // what was taken off tells nothing of the longest column left
     if (!(rest.volume > 0.0)) return rest.volume_error < options_.tolerance * s_.whole.total.volume;
     s_.sites.push_back({rest, number});
     return true;

@@ -5,6 +5,7 @@
 
 #include "volcontact/base/interrupt.h"
 #include "volcontact/pair/quadrature/outer_rule.h"
+#include "volcontact/pair/sections/bore/wall_film.h"
 #include "volcontact/pair/sections/even_turn.h"
 #include "volcontact/pair/sections/section_metrics.h"
 
@@ -21,6 +22,7 @@ constexpr double kOnWall = 1e-12;  // of a place from the wall, per the size of 
 constexpr double kEndError =
     5.0;  // error by its estimate where an arc ends in nothing, as measured
 constexpr double kInnerCone = 1e-4;   // error of the rule along a half-plane, from an apex, per V
+constexpr double kNearWall = 1e-3;    // of a place from the wall, in radii: there may be a film
 constexpr double kThroughBore = 0.5;  // of radii: between places outside of the wall nothing is
 
 class BoreRun {
@@ -54,6 +56,14 @@ class BoreRun {
     }
     const auto [nearest, farthest] = std::minmax_element(
         places.begin(), places.end(), [](const Place& p, const Place& q) { return p.rho < q.rho; });
+    const double radius = bore_.radius_at(window_.center);
+    // The places are known to what the sections take to be parallel to the wall.
+    if (std::abs(farthest->rho - 1.0) < kNearWall &&
+        is_wall_film(s_.faces.active, bore_, std::max(farthest->rho - 1.0, 0.0) * radius,
+                     extent_along()) &&
+        add_wall_film({a_, b_, X_AB_, bore_, owner_}, window_.center, places, options_, regions_)) {
+      return true;
+    }
     if (!is_outer(*farthest)) return true;  // all of it in the bore
     if (nearest->rho < 1.0 - rounding_) return each_lobe();
     return outside_all_round();
@@ -61,6 +71,11 @@ class BoreRun {
 
  private:
   using Place = BoreOutline::Place;
+
+  // About how far the overlap reaches along the axis.
+  double extent_along() const {
+    return 2.0 * std::sqrt(5.0) * (window_.spread.transpose() * bore_.axis).norm();
+  }
 
   // Distance from the wall, in radii, below which a place lies on it. There is nothing between a
   // wall and what fits it, and a bore that the overlap touches takes nothing away.

@@ -326,5 +326,50 @@ TEST(ComposedColumns, BoresThatRunIntoEachOther) {
   }
 }
 
+// A bar through a plate cuts one bore in half along its axis and holds all of another. Closed form.
+TEST(ComposedColumns, ABoreThatTheMeshHoldsWholeIsNoPartOfTheOverlap) {
+  constexpr double kBar = 0.006, kWide = 0.007, kOne = 0.002, kOther = 0.0015;
+  const Mesh bar = mesh_of(box_soup({kBar, kWide, 0.03}));
+  for (const bool held_first : {false, true}) {
+    const Csg cut = solids::tube(kOne, .05, solids::at(kBar, 0, 0)),
+              held = solids::tube(kOther, .05, solids::at(-.002, .001, 0));
+    const Csg plate = held_first ? solids::box(.02, .02, kHalfPlate) - held - cut
+                                 : solids::box(.02, .02, kHalfPlate) - cut - held;
+    const double area = 4.0 * kBar * kWide - kPi * (0.5 * kOne * kOne + kOther * kOther);
+    const double expected = 2.0 * kHalfPlate * area;
+    for (const double tilt : {0.0, 1e-13, -1e-13}) {
+      const Pose X = solids::turned(Vec3(1, 2, 0), tilt, Vec3::Zero());
+      const Interference ab = evaluated(bar, plate, X), ba = evaluated(plate, bar, X.inverse());
+      EXPECT_NEAR(ab.total.volume, expected, 1e-5 * expected) << held_first << " " << tilt;
+      EXPECT_NEAR(ba.total.volume, expected, 1e-5 * expected) << held_first << " " << tilt;
+      EXPECT_EQ(ab.engine, Engine::kColumns);
+    }
+  }
+}
+
+// A part of the overlap of little volume is known to less than the tolerance of its own volume; the
+// sum is known well, and the octree, which would follow, is off by more. Lines of the reference.
+TEST(ComposedColumns, ASumIsJudgedByItsOwnVolume) {
+  const ConvexPolytope a({{-0.28445077809946406, -0.083553231281763, 0.029008739768811822},
+                          {-0.17225272273347508, -0.11697026396573278, -0.095506429520302014},
+                          {0.34376238143566362, 0.00081886117118630617, -0.025532862553541154},
+                          {0.14444008801405275, 0.12956614172177158, -0.071697916001074821},
+                          {0.024275644006779822, -0.13527740452421669, -0.10754748755016579},
+                          {0.10412503693983567, 0.0078652079561351736, 0.23802234789277857}});
+  const double half = 0.084339378337642879;
+  const Csg b = solids::tube(0.33689015789923504, half) -
+                solids::tube(0.25, half, solids::at(0, 0, 0.065968669041942235));
+  Pose X;
+  X.rotation << 0.40478901456709881, 0.91441011241444459, 0.0, 0.91441011241444459,
+      -0.40478901456709881, 0.0, 0.0, 0.0, -1.0;
+  X.translation << -0.31425607419828133, -0.12140056968091492, -0.084339269778138382;
+  const VolumeMetrics m = evaluated(a, b, X).total;
+  const Vec3 expected(-0.065344614, -0.057523054, -0.040730388);  // to 4e-7
+  const double gyration = std::sqrt(m.second_moment().trace() / m.volume);
+  EXPECT_EQ(m.status, Status::kOk);
+  EXPECT_LT((m.centroid - expected).norm(), 1e-4 * gyration);
+  EXPECT_NEAR(m.volume, 0.00161872042, 3e-8 + m.volume_error);
+}
+
 }  // namespace
 }  // namespace volcontact::composed_columns_test

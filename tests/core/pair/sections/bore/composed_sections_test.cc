@@ -68,6 +68,24 @@ TEST(ComposedLines, APartInsideAsAWholeHasItsArea) {
   EXPECT_NEAR(out.total.area_vector.z(), ring, 1e-5 * ring);
 }
 
+// A ball where a pipe's bore widens to a chamfer, all of it in the pipe: the seam between the two
+// pieces is no surface, and what is left of the area vectors is rounding, which has a direction.
+TEST(ComposedLines, WhatSeamsLeaveOfTheAreaVectorHasNoDirection) {
+  const Csg pipe = testing::tube(.25, .095) - testing::tube(.05, .2) -
+                   testing::cone(.05, .088, .019, testing::at(0, 0, .076));
+  const double volume = 4.0 / 3.0 * kPi * .05 * .05 * .05;
+  test::Random random(7);
+  for (int i = 0; i < 50; ++i) {
+    const double angle = random.uniform(0.0, 2.0 * kPi);
+    const Pose X(random.pose(0.0).rotation,
+                 Vec3(.17 * std::cos(angle), .17 * std::sin(angle), random.uniform(.03, .04)));
+    const VolumeMetrics m = evaluated(Sphere({.radius = .05}), pipe, X.inverse()).total;
+    EXPECT_NEAR(m.volume, volume, 1e-5 * volume);
+    EXPECT_LE(m.area_vector.norm(), std::min(m.area, m.counter_area) * (1.0 + 1e-12));
+    EXPECT_TRUE(m.normal().isZero(0.0));
+  }
+}
+
 TEST(ComposedLines, StaysWithinTheCertifiedBoundsOfTheOctree) {
   const Csg block(Box({.half_sizes = {0.3, 0.25, 0.2}}));
   const Csg bore(Cylinder({.radius = 0.1, .half_length = 0.5}));
