@@ -67,7 +67,11 @@ def cross(machine: str, arguments: list[str]) -> None:
 def _run_tests(machine: Machine, tree: Path, arguments: list[str]) -> None:
     """All programs, whatever the first says. Each whole: an emulator takes seconds to start."""
     folder = str(tree / "plugin" / "c_api").replace("/", "\\")  # of the library, for its programs
-    environment = {"WINEPATH": f"Z:{folder}", "WINEDEBUG": "-all"}
+    environment = {
+        "WINEPATH": f"Z:{folder}",
+        "WINEDEBUG": "-all",
+        "WINEDLLOVERRIDES": "winedbg.exe=d",  # whose status hides that of a program that crashed
+    }
     failed = []
     for program in sorted((tree / "tests").rglob(f"*_test{machine.suffix}")):
         say(program.name)
