@@ -102,6 +102,23 @@ def test_metrics_of_a_scene_give_its_sites(tmp_path, monkeypatch, capsys):
     assert "normal force [N]" in capsys.readouterr().out
 
 
+def test_metrics_of_a_scene_at_a_keyframe(tmp_path, capsys):
+    """A ball of 5 cm, 1 cm in the floor: pi h^2 (3 r - h) / 3."""
+    scene = tmp_path / "scene.xml"
+    scene.write_text(
+        '<mujoco><worldbody><geom type="plane" size="1 1 1"/><body pos="0 0 0.2"><freejoint/>'
+        '<geom type="sphere" size="0.05" mass="1"/></body></worldbody>'
+        '<keyframe><key name="start" qpos="0 0 0.2 1 0 0 0"/>'
+        '<key name="low" qpos="0 0 0.04 1 0 0 0"/></keyframe></mujoco>'
+    )
+    assert printed(["metrics", str(scene)], capsys)["sites"] == []
+    (site,) = printed(["metrics", str(scene), "--keyframe", "low"], capsys)["sites"]
+    cap = math.pi * 1e-4 * (0.15 - 0.01) / 3
+    assert site["volume [m^3]"] == pytest.approx(cap, rel=1e-9)
+    assert main(["metrics", str(scene), "--keyframe", "lwo"]) == 1
+    assert "no keyframe 'lwo'; did you mean" in capsys.readouterr().err
+
+
 def test_metrics_of_mesh_files(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     main(["new", "mine", "--template", "mesh_in_hole"])
@@ -133,7 +150,7 @@ def test_a_solid_without_numbers_is_told_how_to_write_it(name, capsys):
         (["sphere:radius=big", "half_space"], "'big' is no number; write sphere:radius=X"),
         (["ball.stl", "half_space"], "neither a mesh file nor a solid"),
         (["sphere:radius=1"], "give a scene or two solids"),
-        (["half_space"] * 3, "give one scene, with --time if wanted, or two solids"),
+        (["half_space"] * 3, "give one scene, with --time and --keyframe if wanted, or two solids"),
     ],
 )
 def test_wrong_solids_are_explained(arguments, message, capsys):
