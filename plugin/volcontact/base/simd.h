@@ -3,9 +3,7 @@
 
 #include <cmath>
 
-// GCC on Windows does not align the stack for registers of more than 16 bytes (GCC bug 54412).
-#if defined(__x86_64__) && !(defined(_WIN32) && !defined(__clang__))
-#define VOLCONTACT_SIMD_X86
+#if defined(__x86_64__)
 #include <immintrin.h>
 #endif
 
@@ -22,7 +20,7 @@ enum class SimdPath : int { kPortable = 0, kAvx2 = 1, kAvx512 = 2 };
 
 /// Whether this machine can run a path.
 inline bool can_run(SimdPath path) noexcept {
-#if defined(VOLCONTACT_SIMD_X86)
+#if defined(__x86_64__)
   if (path == SimdPath::kAvx2) return __builtin_cpu_supports("avx2");
   if (path == SimdPath::kAvx512) {
     return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
@@ -43,7 +41,7 @@ inline SimdPath best_simd_path() noexcept {
 }  // namespace volcontact
 
 /// Calls the function that "simd_paths.inc" compiled for a path.
-#if defined(VOLCONTACT_SIMD_X86)
+#if defined(__x86_64__)
 #define VOLCONTACT_SIMD_CALL(path, function, ...)                            \
   ((path) == ::volcontact::SimdPath::kAvx512 ? avx512::function(__VA_ARGS__) \
    : (path) == ::volcontact::SimdPath::kAvx2 ? avx2::function(__VA_ARGS__)   \
