@@ -116,6 +116,7 @@ SECTIONS = {
         *(
             f"docs/tutorials/{name}"
             for name in (
+                "ten_minutes",
                 "drop",
                 "insertion",
                 "jamming",

@@ -77,7 +77,7 @@ class Slip:
 INSTALL = (
     Step("python3 -m venv env"),
     Step("env/bin/pip install -q --no-index --find-links index volcontact"),
-    Step("volcontact doctor", ("volcontact", "MuJoCo", "Python", "adaptor", "works")),
+    Step("volcontact doctor", ("good ", "extra report", "extra view")),
 )
 START = (
     Step("volcontact new first"),
