@@ -86,9 +86,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
         _print_scene(what[0], arguments.time, arguments.keyframe, terminal)
         return 0
     if len(what) != 2 or arguments.time is not None or arguments.keyframe is not None:
-        raise ValueError(
-            "give one scene, with --time and --keyframe if wanted, or two solids"
-        )
+        raise ValueError("give one scene, with --time and --keyframe if wanted, or two solids")
     from volcontact.typed_solids import pose, solid
 
     found = volcontact.interference(
@@ -133,9 +131,7 @@ def _of_metrics(metrics: volcontact.VolumeMetrics) -> dict[str, Any]:
     }
 
 
-def _print_scene(
-    scene: str, time: float | None, keyframe: str | None, terminal: Terminal
-) -> None:
+def _print_scene(scene: str, time: float | None, keyframe: str | None, terminal: Terminal) -> None:
     from volcontact.driving import to_keyframe
 
     model = volcontact.load(scene)
