@@ -201,7 +201,9 @@ def block(steps: list[tuple[Step, str, float]]) -> str:
 def message_of(text: str) -> str:
     """The line of an error, for a table."""
     (line,) = re.findall(r"^.*error: (.*)$", text, re.MULTILINE) or [text.strip().splitlines()[-1]]
-    return line.replace("|", "\\|")
+    for sign, written in (("|", "\\|"), ("<", "&lt;"), (">", "&gt;")):
+        line = line.replace(sign, written)
+    return line
 
 
 TEMPLATE = """\
