@@ -132,7 +132,7 @@ class Page(Closing):
                 flat_shading=True,
                 side="double",
             )
-            if moves:
+            if moves and self._stage.can_pull:
                 self._let_drag(geom, mesh)
             yield geom, mesh
 

@@ -72,6 +72,8 @@ class Playback(Stage):
         snapshots: in the order of their times, at least one.
     """
 
+    can_pull = False  # what was recorded stays
+
     def __init__(
         self, model: mujoco.MjModel, contact: Contact | None, snapshots: Sequence[Snapshot]
     ) -> None:

@@ -40,10 +40,13 @@ class Stage(Closing):
         speed: simulated seconds a second; less where the machine does not keep up.
         hand: pulls at bodies; it lets go when the scene is reset or shown at another time.
         history: what was seen, to go back to with `show`.
+        can_pull: whether the hand acts.
 
     Raises:
         ValueError: the scene cannot be read or understood, or it has no such keyframe or actuator.
     """
+
+    can_pull = True
 
     def __init__(
         self,

@@ -141,7 +141,7 @@ def test_record_steps_as_simulate_does_and_is_driven():
     drive = Drive(keyframe="aside", controls={"push": 2.0})
     run = simulate(DRIVEN, duration=0.4, drive=drive, frame_interval=None)
     with record(DRIVEN, 0.4, drive=drive) as stage:
-        assert stage.data.qpos[0] == 0.4
+        assert stage.data.qpos[0] == 0.4 and not stage.can_pull
         stage.show(9.0)
         assert stage.data.time == pytest.approx(0.4) and stage.data.qpos[0] == run.qpos[-1, 0]
         stage.show(0.2)
