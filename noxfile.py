@@ -18,7 +18,18 @@ import nox
 
 sys.path.insert(0, str(Path(__file__).parent / "python"))
 
-from tasks import cgal, crossing, environments, linting, recording, shell, sites, system, testing
+from tasks import (
+    cgal,
+    crossing,
+    environments,
+    linting,
+    recording,
+    releasing,
+    shell,
+    sites,
+    system,
+    testing,
+)
 
 logging.getLogger("nox").setLevel(logging.ERROR)  # the output of a command is its own
 nox.options.sessions = []
@@ -154,6 +165,12 @@ def cross(session: nox.Session) -> None:
     system.need_system()
     machine, *rest = session.posargs or [""]
     crossing.cross(machine, rest)
+
+
+@command
+def release(session: nox.Session) -> None:
+    """What is left to do before a version is given away; changes nothing."""
+    releasing.release()
 
 
 @command

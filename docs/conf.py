@@ -22,7 +22,7 @@ language = "en"
 extensions = [
     "autoapi.extension",
     "hawkmoth",
-    "myst_parser",
+    "myst_nb",
     "sphinx.ext.githubpages",
     "sphinx.ext.napoleon",
 ]
@@ -32,6 +32,7 @@ include_patterns = [
     "plugin/**.md",
     "mjcf_models/**.md",
     "python/examples/*.md",
+    "python/volcontact/templates/tour/tour.ipynb",
 ]
 root_doc = "docs/index"
 html_theme = "furo"
@@ -42,6 +43,8 @@ html_math_renderer = "mathml"
 myst_enable_extensions = ["dollarmath"]
 myst_fence_as_directive = ["math"]
 myst_heading_anchors = 4
+nb_execution_mode = "off"  # docs/generate/make_tour.py has run it, and a test compares
+nb_ipywidgets_js: dict[str, dict[str, str]] = {}  # which would be loaded from elsewhere
 
 # ---- References from the code -------------------------------------------------------------------
 
@@ -109,9 +112,11 @@ SECTIONS = {
         "docs/gallery",
         "docs/start",
         "docs/tutorials/index",
+        "A tour in a notebook </python/volcontact/templates/tour/tour>",
         *(
             f"docs/tutorials/{name}"
             for name in (
+                "ten_minutes",
                 "drop",
                 "insertion",
                 "jamming",

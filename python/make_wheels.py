@@ -52,7 +52,8 @@ def main() -> int:
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "wheels")
     parser.add_argument("--eigen", type=Path, help="folder of Eigen, so that builds share a cache")
     parser.add_argument("--releases", nargs="+", required=True, help="of MuJoCo, in the wheels")
-    parser.add_argument("--other", required=True, help="a release that is compiled at first use")
+    parser.add_argument("--other", help="a release that is compiled at first use; none: not tried")
+    parser.add_argument("--untried", action="store_true", help="build alone, and keep no record")
     parser.add_argument("--pythons", nargs="+", type=Path, required=True)
     arguments = parser.parse_args()
     out: Path = arguments.out.resolve()
@@ -69,12 +70,15 @@ def main() -> int:
     shutil.rmtree(out / "dist", ignore_errors=True)
     wheels = [complete(wheel, adaptors, out) for wheel in raw]
 
+    if arguments.untried:
+        return 0
     rows = []
     for python, wheel in zip(arguments.pythons, wheels, strict=True):
         for adaptor in adaptors:
             rows += try_wheel(out, python, wheel, release_of(adaptor))
-    compiler = {"PATH": os.environ["PATH"], "CMAKE_PREFIX_PATH": str(eigen or "")}
-    rows += try_wheel(out, arguments.pythons[0], wheels[0], arguments.other, compiler)
+    if arguments.other:
+        compiler = {"PATH": os.environ["PATH"], "CMAKE_PREFIX_PATH": str(eigen or "")}
+        rows += try_wheel(out, arguments.pythons[0], wheels[0], arguments.other, compiler)
     write_table(rows)
     return 0
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from volcontact.names import name_of
 
-_SINKS = 0.02  # of a body's size: deeper than this at rest is worth a word [-]
+SINKS = 0.02  # of a body's size: deeper than this at rest is worth a word [-]
 _LARGE = 5.0  # the least size of what moves, from which on it looks like millimetres [m]
 _AT_REST = 1e-2  # [m/s]
 
@@ -34,7 +34,7 @@ def hints(
         pairs: of `Contact.description`.
     """
     yield from _sinking(model, data, pairs)
-    yield from _creeping(model, pairs)
+    yield from creeping_grasps(model, pairs)
     yield from _millimetres(model)
 
 
@@ -53,7 +53,7 @@ def sunk(model: mujoco.MjModel, data: mujoco.MjData, sites: np.ndarray) -> Itera
             deepest[key] = max(deepest.get(key, 0.0), float(site["depth"]))
     velocity = np.zeros(6)
     for geoms, depth in deepest.items():
-        sizes = {geom: size_of(model, geom) for geom in geoms if _has_size(model, geom)}
+        sizes = {geom: size_of(model, geom) for geom in geoms if has_size(model, geom)}
         if not sizes:
             continue
         small = min(sizes, key=lambda geom: sizes[geom])
@@ -61,7 +61,7 @@ def sunk(model: mujoco.MjModel, data: mujoco.MjData, sites: np.ndarray) -> Itera
         for geom in geoms:
             mujoco.mj_objectVelocity(model, data, int(mujoco.mjtObj.mjOBJ_GEOM), geom, velocity, 0)
             speeds.append(float(np.linalg.norm(velocity[3:])))
-        if depth > _SINKS * sizes[small] and max(speeds) < _AT_REST:
+        if depth > SINKS * sizes[small] and max(speeds) < _AT_REST:
             a, b = (name_of(model, "geom", geom) for geom in geoms)
             yield (
                 f"{a} and {b} rest {1e3 * depth:.3g} mm deep in each other, "
@@ -83,7 +83,8 @@ def size_of(model: mujoco.MjModel, geom: int) -> float:
     return float(extents.min()) if extents is not None else 2.0 * float(model.geom_rbound[geom])
 
 
-def _has_size(model: mujoco.MjModel, geom: int) -> bool:
+def has_size(model: mujoco.MjModel, geom: int) -> bool:
+    """Whether `size_of` says something of a geom: not of a plane."""
     return int(model.geom_type[geom]) != _PLANE and float(model.geom_rbound[geom]) > 0.0
 
 
@@ -109,7 +110,7 @@ def _sinking(
         for key in ("id_a", "id_b"):
             geom = _geom_of(model, pair, key)
             root = None if geom is None else _free_root(model, int(model.geom_bodyid[geom]))
-            if geom is None or root is None or not _has_size(model, geom) or gravity == 0.0:
+            if geom is None or root is None or not has_size(model, geom) or gravity == 0.0:
                 continue
             weight = gravity * float(model.body_subtreemass[root])
             depth = _depth(model, data, geom, weight / float(pair["stiffness"]))
@@ -119,16 +120,16 @@ def _sinking(
     for of_root in found.values():
         geom = min(of_root, key=lambda one: of_root[one][0])
         share, depth, pair = of_root[geom]
-        if share <= _SINKS:
+        if share <= SINKS:
             continue
         # A patch that stays flat sinks by load over stiffness; a round one by its square root.
         power = 2.0 if int(model.geom_type[geom]) in _ROUND else 1.0
-        enough = float(pair["stiffness"]) * (share / _SINKS) ** power
+        enough = float(pair["stiffness"]) * (share / SINKS) ** power
         yield (
             f"{name_of(model, 'geom', geom)} would sink by about {1e3 * depth:.2g} mm, "
             f"{100 * share:.2g} % of its size, under the weight on {_other(model, pair, geom)}: a "
             f"pair of {enough:.1g} N/m^3 (now {float(pair['stiffness']):.1g}) sinks by "
-            f"{100 * _SINKS:.0f} %"
+            f"{100 * SINKS:.0f} %"
         )
 
 
@@ -154,7 +155,7 @@ def _depth(model: mujoco.MjModel, data: mujoco.MjData, geom: int, volume: float)
     return volume / area
 
 
-def _creeping(model: mujoco.MjModel, pairs: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+def creeping_grasps(model: mujoco.MjModel, pairs: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     """Grasps that friction without memory holds: it creeps under any load."""
     told: dict[tuple[str, str], float] = {}
     for pair in pairs:
@@ -182,7 +183,7 @@ def _millimetres(model: mujoco.MjModel) -> Iterator[str]:
     moving = [
         2.0 * float(model.geom_rbound[geom])
         for geom in range(model.ngeom)
-        if model.body_weldid[model.geom_bodyid[geom]] and _has_size(model, geom)
+        if model.body_weldid[model.geom_bodyid[geom]] and has_size(model, geom)
     ]
     if moving and min(moving) >= _LARGE:
         yield (

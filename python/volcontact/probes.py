@@ -66,6 +66,7 @@ def probe_of(model: mujoco.MjModel, contact: volumetric_scene.Contact | None) ->
 class _VolumetricProbe:
     def __init__(self, contact: volumetric_scene.Contact) -> None:
         self._contact = contact
+        contact._lookout.end()  # a run has its notes
         self.description: dict[str, Any] = dict(contact.description)
         touch = int(mujoco.mjtSensor.mjSENS_TOUCH)
         self._has_touch = bool((contact.model.sensor_type == touch).any())

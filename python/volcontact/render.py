@@ -123,6 +123,7 @@ class Renderer(Closing):
         surfaces: Sequence[SiteSurface] = (),
         style: SiteStyle | None = None,
         view: View | str | None = None,
+        mocap: tuple[np.ndarray, np.ndarray] | None = None,
     ) -> np.ndarray:
         """Draws one state.
 
@@ -136,6 +137,8 @@ class Renderer(Closing):
             style: of the sites; needed with `sites`.
             view: camera, or the name of one of the scene; when None the scene's first camera, or
                 one that sees the whole scene.
+            mocap: positions [m] and quaternions of the mocap bodies, as in `mjData`; None leaves
+                them where the file has them.
 
         Returns:
             Picture, shape (height, width, 3), uint8.
@@ -148,6 +151,8 @@ class Renderer(Closing):
         self._look_from(view)
         self._gl.make_current()
         self._data.qpos[:] = qpos
+        if mocap is not None:
+            self._data.mocap_pos[:], self._data.mocap_quat[:] = mocap
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_comPos(self._model, self._data)
         mujoco.mj_camlight(self._model, self._data)

@@ -6,6 +6,7 @@ from __future__ import annotations
 import ctypes
 import json
 import os
+import sys
 import warnings
 from typing import Any, NamedTuple
 
@@ -16,6 +17,7 @@ from volcontact._adaptor import CONTACT_DTYPE, SITE_DTYPE, RawEnergy, RawSurface
 from volcontact._closing import Closing
 from volcontact.compiling import compile_scene
 from volcontact.given_keys import GivenKeys, Values
+from volcontact.lookout import Lookout
 from volcontact.names import name_of
 from volcontact.spelling import nearest
 from volcontact.surface import SiteSurface
@@ -137,6 +139,9 @@ def attach(
     Returns:
         A context manager that closes at exit.
 
+    The first readings (`sites`, `energy`, `force_on`, ...) warn, once each, of bodies that rest
+    deep in each other and of grasps that friction without memory lets creep.
+
     Raises:
         TypeError: not an MjModel, or a value that is neither number nor word.
         ValueError: a `volcontact/...` key is wrong, userdata is too small for the keys of the file,
@@ -179,6 +184,7 @@ class Contact(Closing):
         self._model = model
         self._sites = np.empty(64, SITE_DTYPE)
         self._reported = ""
+        self._lookout = Lookout(model, lambda: self.description["pairs"])
         _, text = self._adaptor.call_with_message("attach_with", model._address, *keys.arguments)
         Contact._open[model._address] = self
         for warning in text.splitlines():
@@ -245,6 +251,9 @@ class Contact(Closing):
         """
         model = self._require_open()
         self._check(data)
+        return self._read_sites(model, data)
+
+    def _read_sites(self, model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:
         while True:
             count = self._adaptor.call(
                 "sites", model._address, data._address, self._sites.ctypes.data, len(self._sites)
@@ -438,6 +447,9 @@ class Contact(Closing):
         error = self.live_error()
         if error:
             self._report(f"the last valid numbers stay in force: {error}")
+        if not self._lookout.is_over and self._lookout.is_time(data):
+            for line in self._lookout.look(data, self._read_sites(self._model, data)):
+                warnings.warn(line, RuntimeWarning, stacklevel=_out_of_here())
 
     def _fits(self, data: mujoco.MjData) -> bool:
         model = self._model
@@ -449,3 +461,11 @@ class Contact(Closing):
             return
         self._reported = text
         warnings.warn(text, RuntimeWarning, stacklevel=4)
+
+
+def _out_of_here() -> int:
+    """Which `stacklevel` is the first outside of this file, for who asks."""
+    level, frame = 2, sys._getframe(2)
+    while frame.f_code.co_filename == __file__ and frame.f_back is not None:
+        level, frame = level + 1, frame.f_back
+    return level

@@ -14,7 +14,7 @@ from rich.markup import escape
 from rich.table import Table
 
 import volcontact
-from volcontact.cli.arguments import add_file, plain_command, positive
+from volcontact.cli.arguments import add_file, add_keyframe, plain_command, positive
 from volcontact.cli.terminal import Terminal
 
 if TYPE_CHECKING:
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 _EXAMPLES = """\
   volcontact metrics scene.xml                     contact sites at the start
   volcontact metrics scene.xml --time 2            the same after two seconds
+  volcontact metrics scene.xml --keyframe seated   at a keyframe
   volcontact metrics box:half_sizes=0.1,0.1,0.1 sphere:radius=0.05 --at 0 0 0.149
   volcontact metrics hole.stl peg.stl --at 0 0 0.01 --turn 0 0 30 --json
 """
@@ -48,6 +49,7 @@ def add_to(commands: Subparsers) -> None:
     parser.add_argument(
         "--time", type=positive, metavar="S", help="step the scene so long first [s]"
     )
+    add_keyframe(parser)
     parser.add_argument(
         "--at",
         type=float,
@@ -81,10 +83,10 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     if len(what) == 1:
         if Path(what[0]).suffix.lower() not in _SCENES:
             raise ValueError(f"{what[0]}: one solid overlaps nothing; give a scene or two solids")
-        _print_scene(what[0], arguments.time, terminal)
+        _print_scene(what[0], arguments.time, arguments.keyframe, terminal)
         return 0
-    if len(what) != 2 or arguments.time is not None:
-        raise ValueError("give one scene, with --time if wanted, or two solids")
+    if len(what) != 2 or arguments.time is not None or arguments.keyframe is not None:
+        raise ValueError("give one scene, with --time and --keyframe if wanted, or two solids")
     from volcontact.typed_solids import pose, solid
 
     found = volcontact.interference(
@@ -129,12 +131,12 @@ def _of_metrics(metrics: volcontact.VolumeMetrics) -> dict[str, Any]:
     }
 
 
-def _print_scene(scene: str, time: float | None, terminal: Terminal) -> None:
-    from volcontact.simulation import to_start
+def _print_scene(scene: str, time: float | None, keyframe: str | None, terminal: Terminal) -> None:
+    from volcontact.driving import to_keyframe
 
     model = volcontact.load(scene)
     data = mujoco.MjData(model)
-    to_start(model, data)
+    to_keyframe(model, data, keyframe)
     with volcontact.attach(model) as contact:
         steps = round((time or 0.0) / model.opt.timestep)
         with terminal.progress() as bars:

@@ -23,6 +23,7 @@ TEMPLATES = {
     "peg_in_hole": "a peg falls through a hole that is cut exactly",
     "mesh_in_hole": "a mesh falls through the hole of another mesh",
     "insertion": "a shaft is pushed into a chamfered bore, exact and as meshes",
+    "tour": "a notebook from two solids to a force curve, for Jupyter",
 }
 
 _FOLDER = Path(__file__).parents[1] / "templates"
@@ -30,6 +31,7 @@ _EXAMPLES = """\
   volcontact new my_scene
   volcontact new my_scene --template mesh_in_hole
   volcontact new my_press --template insertion
+  volcontact new my_tour --template tour
   volcontact check my_scene/scene.xml
 """
 
@@ -58,8 +60,9 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     folder: Path = arguments.folder
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise FileExistsError(f"{folder} exists already: name a new folder, or an empty one")
-    scene = folder / "scene.xml"
     template = _FOLDER / arguments.template
+    notebooks = [path.name for path in template.glob("*.ipynb")]
+    first = folder / (notebooks[0] if notebooks else "scene.xml")
     written = []
     with appearing_in(folder) as new:
         for source in sorted(path for path in template.rglob("*") if path.is_file()):
@@ -68,17 +71,27 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
             name = source.relative_to(template)
             target = new / name
             target.parent.mkdir(parents=True, exist_ok=True)
-            # The comments of the template say what to type next.
             content = source.read_text(encoding="utf-8")
-            own = str(folder / name) if name.suffix == ".xml" else str(scene)
-            for word, meant in (("SCENE", own), ("FOLDER", str(folder))):
-                content = re.sub(rf"\b{word}\b", meant.replace("\\", r"\\"), content)
+            if not notebooks:
+                content = _with_names(content, folder, folder / name if _is_scene(name) else first)
             target.write_text(content, encoding="utf-8")
             written.append(str(folder / name))
     if terminal.json:
-        terminal.result({"scene": str(scene), "files": written})
+        terminal.result({"notebook" if notebooks else "scene": str(first), "files": written})
         return 0
     for name in written:
         terminal.out.print(f"written: {escape(name)}", soft_wrap=True)
-    terminal.out.print(f"next: volcontact check {escape(str(scene))}", soft_wrap=True)
+    command = "jupyter lab" if notebooks else "volcontact check"
+    terminal.out.print(f"next: {command} {escape(str(first))}", soft_wrap=True)
     return 0
+
+
+def _is_scene(name: Path) -> bool:
+    return name.suffix == ".xml"
+
+
+def _with_names(content: str, folder: Path, scene: Path) -> str:
+    """The comments of a template say what to type next."""
+    for word, meant in (("SCENE", str(scene)), ("FOLDER", str(folder))):
+        content = re.sub(rf"\b{word}\b", meant.replace("\\", r"\\"), content)
+    return content

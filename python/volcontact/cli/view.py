@@ -4,17 +4,21 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from volcontact.cli.arguments import add_file, plain_command, positive, scene
+from volcontact.cli.arguments import add_drive, add_file, drive_of, plain_command, positive, scene
 from volcontact.cli.terminal import Terminal
 
 if TYPE_CHECKING:
     from volcontact.cli.arguments import Subparsers
+    from volcontact.view import Stage
 
 _EXAMPLES = """\
   volcontact view scene.xml
   volcontact view scene.xml --speed 0.1 --paused
+  volcontact view scene.xml --keyframe above --ctrl push=5
+  volcontact view scene.xml --record 2 --clip fall.mp4    two seconds, to look through and to keep
   volcontact view scene.xml --browser                  on a machine without a display
   volcontact view scene.xml --browser --host 0.0.0.0 --port 9000
 """
@@ -48,6 +52,19 @@ def add_to(commands: Subparsers) -> None:
         help="simulated seconds a second (default: %(default)s)",
     )
     parser.add_argument("--paused", action="store_true", help="wait at the start")
+    add_drive(parser)
+    parser.add_argument(
+        "--record",
+        type=positive,
+        metavar="S",
+        help="step so long first [s], then show that run, to go back and forth in",
+    )
+    parser.add_argument(
+        "--clip",
+        type=clip,
+        metavar="FILE",
+        help="at the end, write what was seen as a film, .mp4; needs the extra report",
+    )
     parser.add_argument(
         "--host",
         default="127.0.0.1",
@@ -63,20 +80,65 @@ def add_to(commands: Subparsers) -> None:
     parser.set_defaults(execute=execute)
 
 
+def clip(text: str) -> Path:
+    """Reads the name of a film."""
+    path = Path(text)
+    if path.suffix.lower() != ".mp4":
+        raise argparse.ArgumentTypeError(f"{text}: the name of a clip must end in .mp4")
+    if not path.parent.is_dir():
+        raise argparse.ArgumentTypeError(f"no such folder: {path.parent}")
+    return path
+
+
 def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     """Runs the command and returns the exit status."""
-    from volcontact.view import Stage, browser, window
+    from volcontact.view import browser, window
 
     in_browser = arguments.browser
     reason = "" if in_browser else window.why_no_window()
     if reason:
         raise RuntimeError(reason)
-    with Stage(arguments.scene, contact=arguments.contact) as stage:
+    if arguments.clip is not None:
+        from volcontact.report import film  # says now what is not installed
+
+        del film
+    with _stage(arguments, terminal) as stage:
         stage.speed, stage.paused = arguments.speed, arguments.paused
-        if not in_browser:
-            window.show(stage, seconds=arguments.seconds)
-            return 0
-        with browser.Page(stage, host=arguments.host, port=arguments.port) as page:
-            terminal.out.print(f"open {page.address}, end with Ctrl-C", markup=False)
-            page.run(seconds=arguments.seconds)
+        try:
+            if not in_browser:
+                window.show(stage, seconds=arguments.seconds)
+            else:
+                with browser.Page(stage, host=arguments.host, port=arguments.port) as page:
+                    terminal.out.print(f"open {page.address}, end with Ctrl-C", markup=False)
+                    page.run(seconds=arguments.seconds)
+        except KeyboardInterrupt:
+            if arguments.clip is None:
+                raise
+        if arguments.clip is not None:
+            _write_clip(stage, arguments.clip, terminal)
     return 0
+
+
+def _stage(arguments: argparse.Namespace, terminal: Terminal) -> Stage:
+    from volcontact.view import Stage
+    from volcontact.view.playback import record
+
+    drive = drive_of(arguments)
+    if arguments.record is None:
+        return Stage(arguments.scene, contact=arguments.contact, drive=drive)
+    with terminal.progress() as bars:
+        return record(
+            arguments.scene,
+            arguments.record,
+            contact=arguments.contact,
+            drive=drive,
+            progress=bars.task("recording"),
+        )
+
+
+def _write_clip(stage: Stage, path: Path, terminal: Terminal) -> None:
+    from volcontact.view.clip import write_clip
+
+    with terminal.progress() as bars:
+        count = write_clip(stage, path, progress=bars.task("clip"))
+    terminal.out.print(f"written: {path}, {count} pictures", markup=False, soft_wrap=True)

@@ -8,7 +8,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-import imageio_ffmpeg
 import matplotlib
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
@@ -17,6 +16,7 @@ from volcontact.recording import Frame, Recording
 from volcontact.render import Renderer, SiteStyle
 from volcontact.report import palette
 from volcontact.report.comparison import Comparison
+from volcontact.report.film import write_film
 
 _BAR = 36  # height of the caption bar [pixel]
 _GAP = 4  # between the two pictures [pixel]
@@ -120,44 +120,9 @@ def write_movie(pairs: list[FramePair], path: Path) -> bool:
     if len(pairs) < 2:
         path.unlink(missing_ok=True)
         return False
-    sheets = [np.asarray(side_by_side(pair)) for pair in pairs]
-    # The codec wants even sizes.
-    height, width = (size - size % 2 for size in sheets[0].shape[:2])
     rate = (len(pairs) - 1) / (pairs[-1].time - pairs[0].time)
-    film = imageio_ffmpeg.write_frames(
-        str(path),
-        (width, height),
-        fps=rate,
-        quality=8,
-        macro_block_size=1,
-        ffmpeg_log_level="error",
-    )
-    film.send(None)
-    try:
-        for sheet in sheets:
-            film.send(np.ascontiguousarray(sheet[:height, :width]))
-    except OSError as error:
-        reason = str(error).split("\n", 1)[0]
-        raise OSError(f"{path.name}: the film cannot be written: {reason}") from error
-    film.close()
-    if not _is_whole_film(path):  # the encoder ends without a word
-        raise OSError(f"{path.name}: the film was cut short: is the disk full?")
+    write_film((np.asarray(side_by_side(pair)) for pair in pairs), path, rate)
     return True
-
-
-def _is_whole_film(path: Path) -> bool:
-    """Whether an MP4 file has its index and all of its boxes."""
-    place, size, kinds = 0, path.stat().st_size if path.exists() else 0, set()
-    with path.open("rb") if size else io.BytesIO() as file:
-        while place < size:
-            file.seek(place)
-            head = file.read(16)
-            length = int.from_bytes(head[:4], "big")
-            if length == 1:  # a long one, with its length behind
-                length = int.from_bytes(head[8:16], "big")
-            kinds.add(head[4:8])
-            place += max(length, 8)
-    return b"moov" in kinds and place == size
 
 
 def png(picture: np.ndarray, colors: int | None = None) -> bytes:

@@ -19,6 +19,12 @@ from volcontact.scene import Contact
 
 _LINE = 20  # of the legend [pixel]
 _MOST_LINES = 12
+# From above, so that what lies flat is brighter than what stands.
+_LIGHT = (
+    '<light directional="true" castshadow="false" dir="-0.25 0.35 -1" ambient="0 0 0" '
+    'diffuse="0.55 0.55 0.55" specular="0 0 0"/>'
+)
+_HEADLIGHT = '<headlight ambient="0.4 0.4 0.4" diffuse="0.3 0.3 0.3" specular="0 0 0"/>'
 
 
 def draw_solids(
@@ -137,9 +143,9 @@ def _scene(model: mujoco.MjModel, data: mujoco.MjData, solids: list[Any]) -> str
     # MuJoCo measures both in extents.
     return (
         f'<mujoco><statistic center="{_words(center)}" extent="{extent:.6g}"/>'
-        f'<visual><map znear="{near / extent:.6g}" zfar="{far / extent:.6g}"/></visual>'
+        f'<visual>{_HEADLIGHT}<map znear="{near / extent:.6g}" zfar="{far / extent:.6g}"/></visual>'
         f"<asset>{''.join(assets)}</asset>"
-        f"<worldbody>{''.join(cameras)}{''.join(bodies)}</worldbody></mujoco>"
+        f"<worldbody>{_LIGHT}{''.join(cameras)}{''.join(bodies)}</worldbody></mujoco>"
     )
 
 

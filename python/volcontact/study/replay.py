@@ -26,7 +26,8 @@ from volcontact.study.results import Folder
 from volcontact.study.scene import Scene
 from volcontact.study.settings import Settings, StudyError
 from volcontact.study.trial import Runner
-from volcontact.view.playback import Playback, Snapshot
+from volcontact.view.history import Snapshot
+from volcontact.view.playback import Playback
 
 if TYPE_CHECKING:
     from volcontact.report.comparison import Comparison

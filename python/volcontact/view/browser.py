@@ -4,16 +4,20 @@
 from __future__ import annotations
 
 import contextlib
+import tempfile
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import mujoco
 import numpy as np
 
 from volcontact._closing import Closing
-from volcontact.render import default_view
+from volcontact.extras import advice
+from volcontact.render import View, default_view
 from volcontact.report.palette import NATIVE, VOLUMETRIC, rgb
+from volcontact.view.controls import Controls
 from volcontact.view.drawing import SiteDrawing, Triangles
 from volcontact.view.geoms import geom_triangles
 from volcontact.view.guard import Guard, guarded
@@ -22,6 +26,7 @@ from volcontact.view.stage import Stage
 _PERIOD = 1.0 / 30.0  # of moving bodies [s]
 _OVERLAY_PERIOD = 1.0 / 8.0  # of patches and forces, of which all are sent anew [s]
 _FRICTION = (255, 166, 26)
+_HAND = (30, 140, 60)
 _SEEN_THROUGH = 0.15  # opacity of moving bodies, so that the sites inside are seen
 _POINT = 0.012  # of a contact without an area, in scene extents
 
@@ -64,7 +69,7 @@ class Page(Closing):
         self._things: dict[str, Any] = {}
         self._shown: tuple[object, ...] = ()
         self._look()
-        self._add_controls()
+        self._wanted = Controls(self._server.gui, stage)
         self._move_bodies()
         self._draw()
 
@@ -75,12 +80,16 @@ class Page(Closing):
             now = time.monotonic()
             self._stage.advance(now - last)
             last = now
+            if self._wanted.clip_for is not None:
+                self._send_clip()
+                last = time.monotonic()
             seen = self._seen()
             if seen == self._shown:
                 time.sleep(_PERIOD)
                 continue
             self._move_bodies()
             if now - drawn > _OVERLAY_PERIOD:
+                self._wanted.follow()
                 self._draw()
                 self._shown = seen
                 # Where drawing takes long, half of the time is left for stepping.
@@ -94,11 +103,11 @@ class Page(Closing):
 
     def _seen(self) -> tuple[object, ...]:
         """All that the page depends on: while it stays, nothing is sent."""
-        stage, wanted = self._stage, self._wanted
+        stage = self._stage
         with stage.lock:
             state = (stage.contact, stage.paused, stage.data.time, stage.data.qpos.tobytes())
-        boxes = (wanted.patches, wanted.bodies, wanted.thick, wanted.forces, wanted.numbers)
-        return (*state, *(box.value for box in boxes))
+        held = stage.hand.grip
+        return (*state, None if held is None else held.target.tobytes(), *self._wanted.drawn)
 
     # ---- Bodies ----------------------------------------------------------------------------------
 
@@ -114,18 +123,35 @@ class Page(Closing):
                 continue
             moves = model.body_weldid[model.geom_bodyid[geom]] != 0
             opacity = float(color[3]) * (_SEEN_THROUGH if moves else 1.0)
-            yield (
-                geom,
-                self._server.scene.add_mesh_simple(
-                    f"/geoms/{geom}",
-                    triangles[0].astype(np.float32),
-                    triangles[1].astype(np.uint32),
-                    color=_bytes(color[:3]),
-                    opacity=opacity if opacity < 1.0 else None,
-                    flat_shading=True,
-                    side="double",
-                ),
+            mesh = self._server.scene.add_mesh_simple(
+                f"/geoms/{geom}",
+                triangles[0].astype(np.float32),
+                triangles[1].astype(np.uint32),
+                color=_bytes(color[:3]),
+                opacity=opacity if opacity < 1.0 else None,
+                flat_shading=True,
+                side="double",
             )
+            if moves and self._stage.can_pull:
+                self._let_drag(geom, mesh)
+            yield geom, mesh
+
+    def _let_drag(self, geom: int, mesh: Any) -> None:
+        """The left button pulls at the body; beside it, and on what is fixed, it turns the view."""
+        hand = self._stage.hand
+
+        async def drag(event: Any) -> None:  # async: in the order in which they come
+            if event.phase == "start":
+                # Where the page shows the body, which is where the pointer took hold of it.
+                frame = np.zeros(9)
+                mujoco.mju_quat2Mat(frame, np.array(mesh.wxyz, float))
+                hand.take(geom, frame.reshape(3, 3).T @ (event.start_position - mesh.position))
+            if event.phase == "end":
+                hand.let_go()
+            else:
+                hand.move(event.end_position)
+
+        mesh.on_drag("left")(drag)
 
     def _move_bodies(self) -> None:
         data = self._stage.data
@@ -135,6 +161,9 @@ class Page(Closing):
                 mujoco.mju_mat2Quat(quaternion, data.geom_xmat[geom].reshape(9))
                 mesh.position = tuple(data.geom_xpos[geom])
                 mesh.wxyz = tuple(quaternion)
+            pull = self._stage.hand.ends(data)
+            arrow = [] if pull is None else [(pull[0], pull[1] - pull[0])]
+            self._put_arrows("/hand", arrow, _HAND)
 
     def _look(self) -> None:
         view = default_view(self._stage.model)
@@ -151,6 +180,29 @@ class Page(Closing):
         camera.position = np.array(view.lookat) - view.distance * ahead
         # MuJoCo's own field of view; viser's is wider.
         camera.fov = float(np.radians(self._stage.model.vis.global_.fovy))
+
+    # ---- Clip ------------------------------------------------------------------------------------
+
+    def _send_clip(self) -> None:
+        """Draws what is recorded, as the one who asked sees it, and sends it for download."""
+        client, wanted = self._wanted.clip_for, self._wanted
+        try:
+            from volcontact.view.clip import write_clip
+
+            with tempfile.TemporaryDirectory() as folder:
+                path = Path(folder, "clip.mp4")
+                write_clip(
+                    self._stage,
+                    path,
+                    view=_view_of(client.camera),
+                    progress=lambda i, n: wanted.say_clip(f"Drawing {i} of {n}"),
+                )
+                client.send_file_download(path.name, path.read_bytes(), save_immediately=True)
+        except (ModuleNotFoundError, OSError, RuntimeError, ValueError) as error:
+            client.add_notification("No clip", _reason(error), color="red")
+        finally:
+            wanted.clip_for = None
+            wanted.say_clip("")
 
     # ---- Contacts --------------------------------------------------------------------------------
 
@@ -172,7 +224,7 @@ class Page(Closing):
                 "/sites/friction", [(d.position, d.friction_arrow) for d in arrows], _FRICTION
             )
             self._put_labels(drawings if wanted.numbers.value else [])
-            self._text.content = self._numbers(drawings)
+            wanted.text.content = self._numbers(drawings)
 
     def _put_mesh(
         self,
@@ -268,54 +320,23 @@ class Page(Closing):
             lines.append(f"| {i} | {d.label} | {thicker} |")
         return "\n".join(lines) if drawings else lines[0] + ", nothing touches"
 
-    # ---- Controls --------------------------------------------------------------------------------
 
-    def _add_controls(self) -> None:
-        gui, stage = self._server.gui, self._stage
-        pause = gui.add_button("Go on" if stage.paused else "Pause")
-        step = gui.add_button("One step")
-        reset = gui.add_button("Start again")
-        contact = gui.add_dropdown("Contact", ("volumetric", "native"), initial_value=stage.contact)
-        speed = gui.add_slider("Speed", 0.01, 2.0, 0.01, min(stage.speed, 2.0))
-        self._wanted = _Wanted(gui)
-        self._text = gui.add_markdown("")
-
-        def set_paused(paused: bool) -> None:
-            stage.paused = paused
-            pause.label = "Go on" if paused else "Pause"
-
-        @pause.on_click
-        def _(_: Any) -> None:
-            set_paused(not stage.paused)
-
-        @step.on_click
-        def _(_: Any) -> None:
-            set_paused(True)
-            stage.step()
-
-        @reset.on_click
-        def _(_: Any) -> None:
-            stage.reset()
-
-        @contact.on_update
-        def _(_: Any) -> None:
-            stage.set_contact("native" if contact.value == "native" else "volumetric")
-
-        @speed.on_update
-        def _(_: Any) -> None:
-            stage.speed = speed.value
+def _view_of(camera: Any) -> View:
+    """The view of a client as a camera of MuJoCo's."""
+    ahead = np.asarray(camera.look_at) - np.asarray(camera.position)
+    distance = float(np.linalg.norm(ahead))
+    x, y, z = (float(part) for part in ahead / distance)
+    return View(
+        lookat=tuple(float(part) for part in camera.look_at),
+        distance=distance,
+        azimuth=float(np.degrees(np.arctan2(y, x))),
+        elevation=float(np.degrees(np.arcsin(z))),
+    )
 
 
-class _Wanted:
-    """What shall be drawn: check boxes."""
-
-    def __init__(self, gui: Any) -> None:
-        with gui.add_folder("Draw"):
-            self.patches = gui.add_checkbox("patches", True)
-            self.bodies = gui.add_checkbox("overlaps", True)
-            self.thick = gui.add_checkbox("overlaps thick enough to see", True)
-            self.forces = gui.add_checkbox("forces", True)
-            self.numbers = gui.add_checkbox("numbers", False)
+def _reason(error: Exception) -> str:
+    missing = advice(error.name) if isinstance(error, ModuleNotFoundError) else None
+    return missing or str(error)
 
 
 def _bytes(color: np.ndarray | tuple[float, ...]) -> tuple[int, int, int]:

@@ -62,13 +62,18 @@ def draw_sites(
         surfaces: of each of them; none for native contacts.
         stretch: how many times thicker bodies are drawn; None makes each thick enough to be seen.
     """
-    weight = np.linalg.norm(model.opt.gravity) * model.body_mass[model.body_weldid != 0].sum()
-    forces = np.linalg.norm(sites["force"], axis=1)
-    reference = float(weight) or float(forces.max(initial=0.0)) or 1.0
+    reference = reference_force(model, sites)
     return [
         _drawing(model, site, surfaces[i] if surfaces else None, reference, stretch)
         for i, site in enumerate(sites)
     ]
+
+
+def reference_force(model: mujoco.MjModel, sites: np.ndarray) -> float:
+    """The force whose arrow has full length [N]: the weight, without gravity the largest force."""
+    weight = np.linalg.norm(model.opt.gravity) * model.body_mass[model.body_weldid != 0].sum()
+    forces = np.linalg.norm(sites["force"], axis=1)
+    return float(weight) or float(forces.max(initial=0.0)) or 1.0
 
 
 def _drawing(

@@ -3,31 +3,64 @@
 
 from __future__ import annotations
 
+import os
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import mujoco
-import numpy as np
 
+from volcontact.driving import Drive, Driver
 from volcontact.recording import ContactKind
-from volcontact.scene import Contact
+from volcontact.scene import Contact, attach, load
+from volcontact.view.hand import Hand
+from volcontact.view.history import History, Snapshot
 from volcontact.view.stage import Stage
 
-_FIELDS = ("qpos", "qvel", "act", "ctrl", "userdata", "mocap_pos", "mocap_quat")
+_PICTURE = 1.0 / 120.0  # between two states that are kept [s]
 
 
-class Snapshot:
-    """What a state of a scene is set again by."""
+def record(
+    scene: str | os.PathLike[str],
+    seconds: float,
+    *,
+    contact: ContactKind = "volumetric",
+    drive: Drive | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Playback:
+    """Steps a scene for a while and returns what it went through, to be looked at.
 
-    def __init__(self, data: mujoco.MjData) -> None:
-        self.time = float(data.time)
-        self._values = [np.array(getattr(data, name)) for name in _FIELDS]
+    Args:
+        scene: path of an MJCF file, or MJCF text.
+        seconds: of simulated time.
+        contact: "volumetric" or "native".
+        drive: where it starts, and its controls over time.
+        progress: called now and then with (steps done, steps in all).
 
-    def put_into(self, data: mujoco.MjData) -> None:
-        """Sets the state; nothing is evaluated."""
-        data.time = self.time
-        for name, value in zip(_FIELDS, self._values, strict=True):
-            getattr(data, name)[...] = value
+    Raises:
+        ValueError: the scene cannot be read or understood, or it has no such keyframe or actuator.
+    """
+    model = load(scene)
+    data = mujoco.MjData(model)
+    driver = Driver(model, drive or Drive())
+    driver.start(data)
+    attached = attach(model) if contact == "volumetric" else None
+    try:
+        mujoco.mj_forward(model, data)
+        snapshots = [Snapshot(data)]
+        steps = max(1, round(seconds / float(model.opt.timestep)))
+        every = max(1, round(_PICTURE / float(model.opt.timestep)))
+        for i in range(1, steps + 1):
+            driver.write(data)
+            mujoco.mj_step(model, data)
+            if i % every == 0 or i == steps:
+                snapshots.append(Snapshot(data))
+                if progress is not None:
+                    progress(i, steps)
+        return Playback(model, attached, snapshots)
+    except BaseException:
+        if attached is not None:
+            attached.close()
+        raise
 
 
 class Playback(Stage):
@@ -39,6 +72,8 @@ class Playback(Stage):
         snapshots: in the order of their times, at least one.
     """
 
+    can_pull = False  # what was recorded stays
+
     def __init__(
         self, model: mujoco.MjModel, contact: Contact | None, snapshots: Sequence[Snapshot]
     ) -> None:
@@ -47,8 +82,11 @@ class Playback(Stage):
         self.lock = threading.RLock()
         self.paused = False
         self.speed = 1.0
+        self.hand = Hand()
+        self.history = History(most_bytes=float("inf"))
+        for snapshot in snapshots:
+            self.history.add(snapshot)
         self._contact = contact
-        self._snapshots = snapshots
         self._time = 0.0
         self.reset()
 
@@ -57,12 +95,17 @@ class Playback(Stage):
 
     def reset(self) -> None:
         """Goes back to the first snapshot."""
-        self._show(0)
+        self._put(0)
+
+    def show(self, time: float) -> None:
+        """Pauses at the snapshot nearest to a time [s]."""
+        self.paused = True
+        self._put(self.history.at(time))
 
     def step(self, count: int = 1) -> None:
         """Goes on by so many snapshots."""
         with self.lock:
-            self._show((self._place + count) % len(self._snapshots))
+            self._put((self._place + count) % len(self.history))
 
     def advance(self, seconds: float) -> None:
         """Goes on by so much real time."""
@@ -70,19 +113,19 @@ class Playback(Stage):
             if self.paused:
                 return
             time = self._time + self.speed * seconds
-            if time > self._snapshots[-1].time:
-                self._show(0)
+            if time > self.history.end:
+                self._put(0)
                 return
             place = self._place
-            while self._snapshots[place].time < time:
+            while self.history[place].time < time:
                 place += 1
             if place != self._place:
-                self._show(place)
+                self._put(place)
             self._time = time
 
-    def _show(self, place: int) -> None:
+    def _put(self, place: int) -> None:
         with self.lock:
             self._place = place
-            self._time = self._snapshots[place].time
-            self._snapshots[place].put_into(self.data)
+            self._time = self.history[place].time
+            self.history[place].put_into(self.data)
             mujoco.mj_forward(self.model, self.data)

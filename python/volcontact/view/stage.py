@@ -11,11 +11,13 @@ import mujoco
 import numpy as np
 
 from volcontact._closing import Closing
+from volcontact.driving import Drive, Driver
 from volcontact.probes import native_sites, recorded_sites
 from volcontact.recording import ContactKind
 from volcontact.scene import Contact, attach, load
-from volcontact.simulation import to_start
 from volcontact.view.drawing import SiteDrawing, draw_sites
+from volcontact.view.hand import Hand
+from volcontact.view.history import History, Snapshot
 
 _SHARE = 0.7  # of real time that may go into stepping
 
@@ -28,6 +30,7 @@ class Stage(Closing):
     Args:
         scene: path of an MJCF file, or MJCF text.
         contact: "volumetric" or "native", to begin with.
+        drive: where it starts, and its controls over time, as of `volcontact.driving.Drive`.
 
     Attributes:
         model: of the scene.
@@ -35,16 +38,31 @@ class Stage(Closing):
         lock: held while the state changes.
         paused: whether `advance` does nothing.
         speed: simulated seconds a second; less where the machine does not keep up.
+        hand: pulls at bodies; it lets go when the scene is reset or shown at another time.
+        history: what was seen, to go back to with `show`.
+        can_pull: whether the hand acts.
+
+    Raises:
+        ValueError: the scene cannot be read or understood, or it has no such keyframe or actuator.
     """
 
+    can_pull = True
+
     def __init__(
-        self, scene: str | os.PathLike[str], *, contact: ContactKind = "volumetric"
+        self,
+        scene: str | os.PathLike[str],
+        *,
+        contact: ContactKind = "volumetric",
+        drive: Drive | None = None,
     ) -> None:
         self.model = load(scene)
         self.data = mujoco.MjData(self.model)
         self.lock = threading.RLock()
         self.paused = False
         self.speed = 1.0
+        self.hand = Hand()
+        self.history = History()
+        self._driver = Driver(self.model, drive or Drive())
         self._contact: Contact | None = None
         self._behind = 0.0
         self.set_contact(contact)
@@ -54,6 +72,11 @@ class Stage(Closing):
     def contact(self) -> ContactKind:
         """Which contact acts now."""
         return "native" if self._contact is None else "volumetric"
+
+    @property
+    def attached(self) -> Contact | None:
+        """The volumetric contact that acts now, or None."""
+        return self._contact
 
     def set_contact(self, kind: ContactKind) -> None:
         """Changes the contact; the motion goes on from the present state."""
@@ -69,19 +92,47 @@ class Stage(Closing):
             mujoco.mj_forward(self.model, self.data)
 
     def reset(self) -> None:
-        """Goes back to the start: the keyframe `start` where the scene has one."""
+        """Goes back to the start: the keyframe that was asked for, or that called `start`."""
         with self.lock:
             mujoco.mj_resetData(self.model, self.data)
-            to_start(self.model, self.data)
-            self._behind = 0.0
-            mujoco.mj_forward(self.model, self.data)
+            self._driver.start(self.data)
+            self._settle()
+
+    def show(self, time: float) -> None:
+        """Pauses at what was seen next to a time [s]; from there the scene goes on anew.
+
+        Raises:
+            ValueError: nothing was seen yet.
+        """
+        with self.lock:
+            self.paused = True
+            self.history[self.history.at(time)].put_into(self.data)
+            self._settle(keep=True)
+
+    def _settle(self, *, keep: bool = False) -> None:
+        """After a jump: nothing is held, nothing is behind, the state is evaluated."""
+        self.hand.forget()
+        self._behind = 0.0
+        mujoco.mj_forward(self.model, self.data)
+        if not keep:
+            self.history.add(Snapshot(self.data))
 
     def step(self, count: int = 1) -> None:
         """Takes so many steps, also while paused."""
         with self.lock:
             for _ in range(count):
-                mujoco.mj_step(self.model, self.data)
-            mujoco.mj_forward(self.model, self.data)
+                self._take_step()
+            self._show_state()
+
+    def _take_step(self) -> None:
+        self._driver.write(self.data)
+        self.hand.apply(self.model, self.data)
+        mujoco.mj_step(self.model, self.data)
+
+    def _show_state(self) -> None:
+        self.hand.take_out(self.data)  # what is kept of a state is the scene's own
+        mujoco.mj_forward(self.model, self.data)
+        self.history.add(Snapshot(self.data))
 
     def advance(self, seconds: float) -> None:
         """Steps for so much real time; what there is no time for is left out, not made up for."""
@@ -91,11 +142,13 @@ class Stage(Closing):
             self._behind += self.speed * seconds
             end = time.monotonic() + _SHARE * seconds
             step = float(self.model.opt.timestep)
+            begin = self.data.time
             while self._behind >= step and time.monotonic() < end:
-                mujoco.mj_step(self.model, self.data)
+                self._take_step()
                 self._behind -= step
             self._behind = min(self._behind, step)
-            mujoco.mj_forward(self.model, self.data)
+            if self.data.time != begin:
+                self._show_state()
 
     def sites(self) -> np.ndarray:
         """Contacts of the present state: structured array of `volcontact.recording.SITE`."""

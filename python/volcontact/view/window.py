@@ -29,8 +29,12 @@ _POINT_RADIUS = 0.01  # of a contact without an area, in scene extents
 _EMISSION = 0.7
 # Keys that MuJoCo's viewer leaves free.
 _RESET, _STEP, _OVERLAY, _CONTACT, _PAUSE = ord("6"), ord("7"), ord("8"), ord("9"), ord(" ")
+_BACK, _ON = 268, 269  # of GLFW: Home, End
 _KEYS = (
+    ("double click", "select a body"),
+    ("ctrl, right button", "pull at it"),
     ("space", "pause"),
+    ("home, end", "back, on"),
     ("6", "start again"),
     ("7", "one step"),
     ("8", "patches and forces"),
@@ -107,6 +111,10 @@ class _Keys:
         elif key == _STEP:
             stage.paused = True
             stage.step()
+        elif key in (_BACK, _ON) and len(stage.history) > 0:
+            history = stage.history
+            place = history.at(stage.data.time) + (1 if key == _ON else -1)
+            stage.show(history[min(max(place, 0), len(history) - 1)].time)
         elif key == _OVERLAY:
             self.overlay = not self.overlay
         elif key == _CONTACT:

@@ -6,8 +6,27 @@
 #include <cstdlib>
 #include <limits>
 #include <new>
+#ifdef _WIN32
+#include <malloc.h>
+#endif
 
 namespace {
+
+// Windows keeps what is aligned apart from the rest, also where it is given back.
+void* aligned(std::size_t size, std::size_t alignment) {
+#ifdef _WIN32
+  return _aligned_malloc(size, alignment);
+#else
+  return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+#endif
+}
+void free_aligned(void* p) {
+#ifdef _WIN32
+  _aligned_free(p);
+#else
+  std::free(p);
+#endif
+}
 
 constexpr long kNone = std::numeric_limits<long>::max() / 2;
 std::atomic<long> left{kNone};
@@ -20,9 +39,7 @@ void* take(std::size_t size) {
 }
 void* take(std::size_t size, std::size_t alignment) {
   if (left.fetch_sub(1, std::memory_order_relaxed) > 0) {
-    if (void* p = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)) {
-      return p;
-    }
+    if (void* p = aligned(size, alignment)) return p;
   }
   throw std::bad_alloc();
 }
@@ -36,9 +53,9 @@ void* take(std::size_t size, std::size_t alignment) {
 }
 [[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::align_val_t) noexcept { free_aligned(p); }
 [[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
-  std::free(p);
+  free_aligned(p);
 }
 
 namespace volcontact::test {

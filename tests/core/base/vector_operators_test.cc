@@ -74,7 +74,7 @@ TEST(VectorOperators, ProductsStayEigens) {
 }
 
 TEST(VectorOperators, AVectorMayBeAssignedToItself) {
-  const Mat3 quarter = Mat3(Eigen::AngleAxisd(0.5 * M_PI, Vec3::UnitZ())).array().round();
+  const Mat3 quarter = Mat3(Eigen::AngleAxisd(0.5 * kPi, Vec3::UnitZ())).array().round();
   Vec3 v(1, 2, 3);
   v = quarter * v - v;
   EXPECT_EQ(v, Vec3(-3, -1, 0));

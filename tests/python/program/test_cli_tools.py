@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from volcontact.cli import main, make_parser
+from volcontact.cli import main, make_parser, new
 from volcontact.cli.new import TEMPLATES
 from volcontact.driving import Drive
 from volcontact.simulation import simulate
@@ -26,7 +26,7 @@ def printed(arguments, capsys):
 # ---- new -----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("template", TEMPLATES)
+@pytest.mark.parametrize("template", sorted(TEMPLATES.keys() - {"tour"}))  # that is no scene
 def test_template_runs_at_once_and_comes_to_rest(template, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     made = printed(["new", "mine", "--template", template], capsys)
@@ -50,6 +50,14 @@ def test_commands_in_the_comments_name_the_new_scene(tmp_path, monkeypatch, caps
     commands = re.findall(r"volcontact (\w+) mine/scene\.xml", text)
     assert commands == ["check", "run", "compare", "view"]
     assert "SCENE" not in text
+
+
+def test_tour_is_a_notebook_and_is_written_as_it_is(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "mine", "--template", "tour"]) == 0
+    assert "next: jupyter lab mine/tour.ipynb" in capsys.readouterr().out
+    kept = Path(new.__file__).parents[1] / "templates" / "tour" / "tour.ipynb"
+    assert Path("mine/tour.ipynb").read_bytes() == kept.read_bytes()
 
 
 def test_new_overwrites_nothing(tmp_path, monkeypatch, capsys):
@@ -94,6 +102,23 @@ def test_metrics_of_a_scene_give_its_sites(tmp_path, monkeypatch, capsys):
     assert "normal force [N]" in capsys.readouterr().out
 
 
+def test_metrics_of_a_scene_at_a_keyframe(tmp_path, capsys):
+    """A ball of 5 cm, 1 cm in the floor: pi h^2 (3 r - h) / 3."""
+    scene = tmp_path / "scene.xml"
+    scene.write_text(
+        '<mujoco><worldbody><geom type="plane" size="1 1 1"/><body pos="0 0 0.2"><freejoint/>'
+        '<geom type="sphere" size="0.05" mass="1"/></body></worldbody>'
+        '<keyframe><key name="start" qpos="0 0 0.2 1 0 0 0"/>'
+        '<key name="low" qpos="0 0 0.04 1 0 0 0"/></keyframe></mujoco>'
+    )
+    assert printed(["metrics", str(scene)], capsys)["sites"] == []
+    (site,) = printed(["metrics", str(scene), "--keyframe", "low"], capsys)["sites"]
+    cap = math.pi * 1e-4 * (0.15 - 0.01) / 3
+    assert site["volume [m^3]"] == pytest.approx(cap, rel=1e-9)
+    assert main(["metrics", str(scene), "--keyframe", "lwo"]) == 1
+    assert "no keyframe 'lwo'; did you mean" in capsys.readouterr().err
+
+
 def test_metrics_of_mesh_files(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     main(["new", "mine", "--template", "mesh_in_hole"])
@@ -125,7 +150,7 @@ def test_a_solid_without_numbers_is_told_how_to_write_it(name, capsys):
         (["sphere:radius=big", "half_space"], "'big' is no number; write sphere:radius=X"),
         (["ball.stl", "half_space"], "neither a mesh file nor a solid"),
         (["sphere:radius=1"], "give a scene or two solids"),
-        (["half_space"] * 3, "give one scene, with --time if wanted, or two solids"),
+        (["half_space"] * 3, "give one scene, with --time and --keyframe if wanted, or two solids"),
     ],
 )
 def test_wrong_solids_are_explained(arguments, message, capsys):

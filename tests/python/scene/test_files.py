@@ -251,17 +251,17 @@ def test_a_film_that_is_cut_short_is_an_error(tmp_path, monkeypatch):
     """The encoder says nothing when the disk is full; the index of a film is its end."""
     import numpy as np
 
-    from volcontact.report import pictures
+    from volcontact.report import film, pictures
 
     picture = np.zeros((48, 64, 3), np.uint8)
     pairs = [pictures.FramePair(0.1 * i, picture, picture, ("", "")) for i in range(3)]
-    film = tmp_path / "run.mp4"
-    assert pictures.write_movie(pairs, film)
-    whole = film.read_bytes()
+    path = tmp_path / "run.mp4"
+    assert pictures.write_movie(pairs, path)
+    whole = path.read_bytes()
     for length in (0, 10, len(whole) // 2, len(whole) - 1):
         (tmp_path / "cut.mp4").write_bytes(whole[:length])
-        assert not pictures._is_whole_film(tmp_path / "cut.mp4")
-    assert pictures._is_whole_film(film)
+        assert not film._is_whole(tmp_path / "cut.mp4")
+    assert film._is_whole(path)
 
 
 @pytest.mark.parametrize("command", [["check"], ["run", "--duration", "0.01"]])

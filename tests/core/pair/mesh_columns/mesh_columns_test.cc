@@ -490,7 +490,7 @@ TEST(Columns, ConvexSolidsCutAsTheirTrianglesDo) {
   expect_cut_as_by_triangles(test::polytope_of(Box({.half_sizes = Vec3(1.2, 0.9, 0.4)})));
   std::vector<Vec3> corners;
   for (int i = 0; i < 6; ++i) {
-    const double angle = i * M_PI / 3.0;
+    const double angle = i * kPi / 3.0;
     corners.emplace_back(1.5 * std::cos(angle), 1.5 * std::sin(angle), -0.5);
     corners.emplace_back(0.9 * std::cos(angle), 0.9 * std::sin(angle), 0.5);
   }

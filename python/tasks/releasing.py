@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`./run release`: what must be true before a version is given away, one line each."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from tasks.interpreters import VERSIONS
+from tasks.shell import BUILD, ROOT, output_of, stop
+
+# The version is in pyproject.toml; these must agree with it.
+_PLACES = {
+    "CMakeLists.txt": r"project\(volcontact VERSION ([\d.]+)",
+    "CITATION.cff": r"^version: (\S+)",
+    "python/volcontact/__init__.py": r'^__version__ = "(.+)"',
+}
+_SECTIONS = {"Added", "Changed", "Fixed", "Removed", "Deprecated", "Security"}
+
+
+class Item(NamedTuple):
+    """One line of the list: whether it is done, and what is to do where it is not."""
+
+    done: bool
+    what: str
+    todo: str = ""
+
+
+def release() -> None:
+    """Prints the list; stops where something is to do."""
+    items = list(checklist(ROOT))
+    for item in items:
+        print(f"{'ok   ' if item.done else 'TO DO'}  {item.what}")
+        if not item.done:
+            print(f"       {item.todo}")
+    left = sum(not item.done for item in items)
+    if left:
+        stop(f"{left} of {len(items)} points are left")
+
+
+def checklist(root: Path) -> Iterator[Item]:
+    """All points of the list for a checkout."""
+    version = version_of(root)
+    yield Item(version is not None, f"pyproject.toml has version {version}", "write one")
+    for name, pattern in _PLACES.items():
+        found = re.search(pattern, (root / name).read_text(encoding="utf-8"), re.MULTILINE)
+        other = found[1] if found else "none"
+        yield Item(other == version, f"{name} has version {other}", f"write {version}")
+    yield from changelog(root, version or "")
+    status = output_of("git", "-C", root, "status", "--porcelain")
+    yield Item(status == "", "nothing is uncommitted", "commit, or throw away")
+    tags = (output_of("git", "-C", root, "tag", "--list", f"v{version}") or "").split()
+    yield Item(not tags, f"there is no tag v{version} yet", "raise the version")
+    for python in sorted(VERSIONS, key=lambda text: int(text.split(".")[1])):
+        tag = "cp" + python.replace(".", "")
+        made = list((BUILD / "wheels" / "dist").glob(f"volcontact-{version}-{tag}-*.whl"))
+        yield Item(bool(made), f"a wheel of CPython {python}", "./run wheels")
+    site = BUILD / "site" / "docs" / "index.html"
+    yield Item(_is_newer(site, root), "the site is newer than the last commit", "./run docs")
+    tested = BUILD / "test-results"
+    reports = list(tested.glob("*-python.xml")) if tested.is_dir() else []
+    passed = bool(reports) and all(_passed(path) and _is_newer(path, root) for path in reports)
+    yield Item(passed, "tests have passed since the last commit", ".ci/run")
+
+
+def changelog(root: Path, version: str) -> Iterator[Item]:
+    """Whether the version has its section, with parts of the usual names and a date."""
+    text = (root / "CHANGELOG.md").read_text(encoding="utf-8")
+    found = re.search(
+        rf"^## \[?{re.escape(version)}\]? - (\d{{4}}-\d\d-\d\d)$(.*?)(?=^## |\Z)",
+        text,
+        re.MULTILINE | re.DOTALL,
+    )
+    yield Item(
+        found is not None,
+        f"CHANGELOG.md has a section {version} with its date",
+        f"call the section Unreleased '{version} - YEAR-MONTH-DAY', and begin a new one above it",
+    )
+    parts = set(re.findall(r"^### (.+)$", text, re.MULTILINE))
+    yield Item(
+        parts <= _SECTIONS,
+        "the parts of CHANGELOG.md have the usual names",
+        f"rename {', '.join(sorted(parts - _SECTIONS))}",
+    )
+
+
+def version_of(root: Path) -> str | None:
+    """The version of pyproject.toml."""
+    text = (root / "pyproject.toml").read_text(encoding="utf-8")
+    found = re.search(r'^version = "(.+)"$', text, re.MULTILINE)
+    return found[1] if found else None
+
+
+def _is_newer(path: Path, root: Path) -> bool:
+    made = subprocess.run(
+        ["git", "-C", str(root), "log", "-1", "--format=%ct"],
+        capture_output=True,
+        text=True,
+        check=False,
+    ).stdout.strip()
+    return path.exists() and made != "" and path.stat().st_mtime > float(made)
+
+
+def _passed(path: Path) -> bool:
+    head = path.read_text(encoding="utf-8", errors="replace")[:2000]
+    return 'errors="0"' in head and 'failures="0"' in head

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The list of `./run release` sees what is not done."""
+
+import importlib
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[3]
+VERSIONED = ("pyproject.toml", "CMakeLists.txt", "CITATION.cff", "python/volcontact/__init__.py")
+
+
+@pytest.fixture
+def releasing(monkeypatch):
+    monkeypatch.syspath_prepend(str(ROOT / "python"))
+    yield importlib.import_module("tasks.releasing")
+    for name in [name for name in sys.modules if name.partition(".")[0] == "tasks"]:
+        del sys.modules[name]
+
+
+@pytest.fixture
+def checkout(tmp_path):
+    """A checkout with what the list reads, all of it done but for wheels, site and tests."""
+    for name in VERSIONED:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, tmp_path / name)
+    (tmp_path / "CHANGELOG.md").write_text(
+        "# Changelog\n\n## Unreleased\n\n## 0.1.0 - 2026-12-01\n\n### Added\n\n- All.\n"
+    )
+    git(tmp_path, "init", "-q")
+    git(tmp_path, "add", ".")
+    git(tmp_path, "-c", "user.name=a", "-c", "user.email=a@b", "commit", "-q", "-m", "All")
+    return tmp_path
+
+
+def git(folder, *words):
+    subprocess.run(["git", "-C", folder, *words], check=True)
+
+
+def left(releasing, checkout):
+    """What is to do, but for what is built."""
+    built = ("a wheel of", "the site", "tests have")
+    items = releasing.checklist(checkout)
+    return [item.what for item in items if not item.done and not item.what.startswith(built)]
+
+
+def test_version_is_the_same_everywhere(releasing):
+    items = [item for item in releasing.checklist(ROOT) if "has version" in item.what]
+    assert len(items) == 4 and all(item.done for item in items)
+
+
+def test_nothing_is_left_where_all_is_done(releasing, checkout):
+    assert left(releasing, checkout) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "what"),
+    [
+        ("CITATION.cff", "version: 0.1.0", "version: 0.0.9", "CITATION.cff has version 0.0.9"),
+        ("CMakeLists.txt", "VERSION 0.1.0", "VERSION 0.2.0", "CMakeLists.txt has version 0.2.0"),
+        ("CHANGELOG.md", "## 0.1.0 - 2026-12-01", "## 0.1.0", "has a section 0.1.0 with its date"),
+        ("CHANGELOG.md", "### Added", "### New", "the parts of CHANGELOG.md have the usual names"),
+    ],
+)
+def test_what_is_not_done_is_told(releasing, checkout, name, old, new, what):
+    path = checkout / name
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+    found = left(releasing, checkout)
+    assert any(what in line for line in found)
+    assert "nothing is uncommitted" in found
+
+
+def test_a_version_that_has_its_tag_is_not_released_twice(releasing, checkout):
+    git(checkout, "tag", "v0.1.0")
+    assert left(releasing, checkout) == ["there is no tag v0.1.0 yet"]
