@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "adaptor/mujoco/mjgeoms.h"
-#include "adaptor/mujoco/sizes.h"
+#include "volcontact/base/sizes.h"
 
 namespace volcontact::adaptor {
 namespace {
