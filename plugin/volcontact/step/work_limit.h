@@ -272,6 +272,7 @@ struct WorkLimit {
   /// speed or while the bodies part slowly.
   double likely_share() const noexcept {
     constexpr double kAim = 0.9;
+    if (!(high.work > low.work)) return 0.5;
     const auto of_work = [&](double most) {
       return std::clamp((most - low.work) / (high.work - low.work), 0.0, 1.0);
     };
