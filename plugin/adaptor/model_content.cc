@@ -33,7 +33,8 @@ void visit_structure(const mjModel* m, Visit visit) {
 
 template <typename Visit>
 void visit_values(const mjModel* m, const std::vector<NumericSpan>& numerics,
-                  const std::vector<IndexSpan>& parts, const std::vector<IndexSpan>& bodies, Visit visit) {
+                  const std::vector<IndexSpan>& parts, const std::vector<IndexSpan>& bodies,
+                  Visit visit) {
   const auto geoms = static_cast<std::size_t>(m->ngeom);
   for (const NumericSpan& span : numerics) {
     bytes_of(m->numeric_data + span.address, static_cast<std::size_t>(span.size), visit);
@@ -120,9 +121,8 @@ ModelContent::ModelContent(const mjModel* m, const SceneKeys& keys,
 
 bool ModelContent::is_same_model(const mjModel* m) const noexcept {
   ContentCopy::Comparison compare(structure_);
-  visit_structure(m, [&](const std::byte* data, std::size_t size, std::size_t) {
-    compare(data, size);
-  });
+  visit_structure(
+      m, [&](const std::byte* data, std::size_t size, std::size_t) { compare(data, size); });
   return compare.equal();
 }
 

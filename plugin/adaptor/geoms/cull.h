@@ -25,7 +25,7 @@ class Cull {
     std::vector<double> low;      ///< by solid, along the axis of the sweep
     std::vector<Bounds> ordered;  ///< in the order of the sweep
     std::vector<std::pair<double, double>> ends;
-    FixedSolids::Kept fixed;      ///< of the solids that do not move
+    FixedSolids::Kept fixed;   ///< of the solids that do not move
     std::vector<PairId> near;  ///< result, ascending
   };
 

@@ -44,10 +44,9 @@ void ContactEquations::make_slopes(int places) {
 }
 
 void ContactEquations::forget() {
-  for (Factored* factored : {static_cast<Factored*>(&normal_by_dofs_),
-                             static_cast<Factored*>(&by_dofs_),
-                             static_cast<Factored*>(&normal_by_forces_),
-                             static_cast<Factored*>(&by_forces_)}) {
+  for (Factored* factored :
+       {static_cast<Factored*>(&normal_by_dofs_), static_cast<Factored*>(&by_dofs_),
+        static_cast<Factored*>(&normal_by_forces_), static_cast<Factored*>(&by_forces_)}) {
     factored->is_valid = false;
   }
 }
