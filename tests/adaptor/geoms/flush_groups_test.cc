@@ -62,6 +62,21 @@ TEST(FlushGroups, TilesOfTheWorldAreOneGroup) {
   EXPECT_EQ(scene.groups.largest_face(scene.geom("b")), 4.0);
 }
 
+// They are sought along the axis on which they are spread most.
+TEST(FlushGroups, RowsAlongAnyAxisAreOneGroup) {
+  for (int axis = 0; axis < 3; ++axis) {
+    std::string row;
+    for (int i = 0; i < 40; ++i) {
+      std::string at[] = {"0", "0", "0"};
+      at[axis] = std::to_string(axis == 2 ? 0.2 * (7 * i % 40) : 1.0 * (7 * i % 40));
+      row += box("b" + std::to_string(i), at[0] + " " + at[1] + " " + at[2]);
+    }
+    const Scene scene(row);
+    ASSERT_EQ(scene.groups.groups().size(), 1u) << axis;
+    EXPECT_EQ(scene.tiles(), 40u);
+  }
+}
+
 TEST(FlushGroups, EndsInOnePlaneAreTheSameNumber) {
   // Places that no binary number has, and a seam that misses by rounding.
   const Scene scene(box("a", "0.1 0 0") + box("b", "1.1000000000000003 0 1e-17") +
