@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <sstream>
 #include <string>
 
 #include "adaptor/geoms/solids_of_geoms.h"
@@ -67,9 +68,11 @@ TEST(FlushGroups, RowsAlongAnyAxisAreOneGroup) {
   for (int axis = 0; axis < 3; ++axis) {
     std::string row;
     for (int i = 0; i < 40; ++i) {
-      std::string at[] = {"0", "0", "0"};
-      at[axis] = std::to_string(axis == 2 ? 0.2 * (7 * i % 40) : 1.0 * (7 * i % 40));
-      row += box("b" + std::to_string(i), at[0] + " " + at[1] + " " + at[2]);
+      Vec3 at = Vec3::Zero();
+      at[axis] = (axis == 2 ? 0.2 : 1.0) * (7 * i % 40);
+      std::ostringstream place;
+      place << at.transpose();
+      row += box(std::to_string(i), place.str());
     }
     const Scene scene(row);
     ASSERT_EQ(scene.groups.groups().size(), 1u) << axis;
