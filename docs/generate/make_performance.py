@@ -359,8 +359,9 @@ def _many() -> str:
         "`attach` adds to the most that the process had; of few geoms it is the library's own.\n\n"
         + table(titles, rows("many_bodies"))
         + "\nOne free box on a floor beside boxes of the world, which it does not touch. MuJoCo "
-        "places each of them in every step, whatever the contact; that they are where they were, "
-        "and are of the same material, is looked up in every step as well, and nothing else.\n\n"
+        "places each of them in every step, whatever the contact; that their positions, sizes and "
+        "materials are what they were is looked up in every step as well, each number read once, "
+        "and nothing else. MuJoCo tells nobody what a program has changed.\n\n"
         + table(titles, rows("fixed_bodies"))
     )
 
@@ -377,7 +378,22 @@ once a step, the Jacobian of a site has the degrees of freedom that carry its bo
 few columns, and some six solutions a step have six rows a site: 0.30 ms, 2.1 times native contact.
 Of the plugin's time 37 % is the interference of the solids, 31 % the solutions by blocks, 22 % the
 matrices.
-"""
+
+Solutions of the linear equations in a step, and where the time of the scenes goes that are slowest
+beside native contact (of our part of the step, sampled at 1.5 kHz):
+
+| scene | solutions | of these | our time goes to |
+| --- | --- | --- | --- |
+| hammer, before | 84 | 11 searches for shares that two pairs took from each other, each step | 70 % these searches |
+| humanoid | 10 | 1.45 guesses of the limits | 82 % implicit step (of it 57 % solutions, most by velocities), 18 % interference |
+| hand, block | 20 | 4.3 guesses of the limits | 78 % implicit step (of it 51 % solutions, by forces), 22 % interference |
+| assembly peg | 3 | 1 guess | 53 % interference of convex meshes, 29 % implicit step, 17 % bounds of the meshes |
+| can in bins | 2 | 1 guess | 87 % interference of a mesh and a box (of it 84 % finding regions) |
+
+Shares of several pairs are now sought together, points that push are those of the solution before,
+and a matrix of the same slopes is factored once in a step: hammer 165 to 47 us, 11.5 to 3.1 times
+native contact, with 1.1 searches a step.
+"""  # noqa: E501
 
 
 def table(header: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:

@@ -2,15 +2,15 @@
 #include "adaptor/model_content.h"
 
 #include <algorithm>
-#include <cstring>
 #include <set>
 
 namespace volcontact::adaptor {
 namespace {
 
 template <typename T, typename Visit>
-void bytes_of(const T* array, std::size_t count, Visit& visit) {
-  if (count > 0) visit(reinterpret_cast<const std::byte*>(array), count * sizeof(T));
+void bytes_of(const T* array, std::size_t count, Visit& visit, std::size_t per_row = 1) {
+  const std::size_t size = count * sizeof(T);
+  if (count > 0) visit(reinterpret_cast<const std::byte*>(array), size, sizeof(T) * per_row);
 }
 
 template <typename Visit>
@@ -33,52 +33,38 @@ void visit_structure(const mjModel* m, Visit visit) {
 
 template <typename Visit>
 void visit_values(const mjModel* m, const std::vector<NumericSpan>& numerics,
-                  const std::vector<int>& parts, const std::vector<int>& bodies, Visit visit) {
+                  const std::vector<IndexSpan>& parts, const std::vector<IndexSpan>& bodies,
+                  Visit visit) {
   const auto geoms = static_cast<std::size_t>(m->ngeom);
   for (const NumericSpan& span : numerics) {
     bytes_of(m->numeric_data + span.address, static_cast<std::size_t>(span.size), visit);
   }
-  bytes_of(m->geom_size, 3 * geoms, visit);
-  bytes_of(m->geom_friction, 3 * geoms, visit);
-  bytes_of(m->pair_friction, 5 * static_cast<std::size_t>(m->npair), visit);
+  bytes_of(m->geom_size, 3 * geoms, visit, 3);
+  bytes_of(m->geom_friction, 3 * geoms, visit, 3);
+  bytes_of(m->pair_friction, 5 * static_cast<std::size_t>(m->npair), visit, 5);
   bytes_of(m->geom_type, geoms, visit);
   bytes_of(m->geom_dataid, geoms, visit);
   bytes_of(m->hfield_data, static_cast<std::size_t>(m->nhfielddata), visit);
   bytes_of(m->geom_contype, geoms, visit);
   bytes_of(m->geom_conaffinity, geoms, visit);
-  for (const int geom : parts) {
-    bytes_of(m->geom_pos + 3 * geom, 3, visit);
-    bytes_of(m->geom_quat + 4 * geom, 4, visit);
-  }
-  for (const int body : bodies) {
-    bytes_of(m->body_pos + 3 * body, 3, visit);
-    bytes_of(m->body_quat + 4 * body, 4, visit);
-  }
+  const auto poses_of = [&](const std::vector<IndexSpan>& spans, const mjtNum* positions,
+                            const mjtNum* quaternions) {
+    for (const IndexSpan& span : spans) {
+      const auto count = static_cast<std::size_t>(span.count);
+      bytes_of(positions + std::ptrdiff_t{3} * span.first, 3 * count, visit, 3);
+      bytes_of(quaternions + std::ptrdiff_t{4} * span.first, 4 * count, visit, 4);
+    }
+  };
+  poses_of(parts, m->geom_pos, m->geom_quat);
+  poses_of(bodies, m->body_pos, m->body_quat);
   if (!parts.empty()) bytes_of(m->tuple_objprm, static_cast<std::size_t>(m->ntupledata), visit);
   const int parent_filter = m->opt.disableflags & mjDSBL_FILTERPARENT;
   bytes_of(&parent_filter, 1, visit);
 }
 
-// Compares what is visited with a stored copy.
-class Comparison {
- public:
-  explicit Comparison(const std::vector<std::byte>& stored) : stored_(stored) {}
-  void operator()(const std::byte* data, std::size_t size) {
-    equal_ = equal_ && size <= stored_.size() - at_ &&
-             std::memcmp(data, stored_.data() + at_, size) == 0;
-    if (equal_) at_ += size;
-  }
-  bool equal() const { return equal_ && at_ == stored_.size(); }
-
- private:
-  const std::vector<std::byte>& stored_;
-  std::size_t at_ = 0;
-  bool equal_ = true;
-};
-
-auto copy_into(std::vector<std::byte>& bytes) {
-  return [&bytes](const std::byte* data, std::size_t size) {
-    bytes.insert(bytes.end(), data, data + size);
+auto copy_into(ContentCopy& copy) {
+  return [&copy](const std::byte* data, std::size_t size, std::size_t width) {
+    copy.add(data, size, width);
   };
 }
 
@@ -95,20 +81,30 @@ std::vector<NumericSpan> merged(std::vector<NumericSpan> spans) {
   return out;
 }
 
+// Neighbouring numbers as one span.
+std::vector<IndexSpan> spans_of(const std::set<int>& indices) {
+  std::vector<IndexSpan> out;
+  for (const int index : indices) {
+    if (out.empty() || out.back().first + out.back().count != index) out.push_back({index, 0});
+    ++out.back().count;
+  }
+  return out;
+}
+
 }  // namespace
 
 ModelContent::ModelContent(const mjModel* m, const SceneKeys& keys,
                            const std::vector<std::vector<int>>& flush)
     : numerics_(merged(keys.numerics)) {
+  std::set<int> parts, bodies;
   for (const ComposedGeoms& solid : keys.solids) {
-    for (const ComposedGeoms::Part& part : solid.parts) parts_.push_back(part.geom);
+    for (const ComposedGeoms::Part& part : solid.parts) parts.insert(part.geom);
   }
-  std::set<int> bodies;
   for (const std::vector<int>& group : flush) {
     const bool is_one_body = std::all_of(group.begin(), group.end(), [&](int geom) {
       return m->geom_bodyid[geom] == m->geom_bodyid[group.front()];
     });
-    parts_.insert(parts_.end(), group.begin(), group.end());
+    parts.insert(group.begin(), group.end());
     if (is_one_body) continue;
     for (const int geom : group) {
       for (int body = m->geom_bodyid[geom]; body != m->body_weldid[body];) {
@@ -117,22 +113,24 @@ ModelContent::ModelContent(const mjModel* m, const SceneKeys& keys,
       }
     }
   }
-  bodies_.assign(bodies.begin(), bodies.end());
+  parts_ = spans_of(parts);
+  bodies_ = spans_of(bodies);
   visit_structure(m, copy_into(structure_));
   visit_values(m, numerics_, parts_, bodies_, copy_into(values_));
 }
 
 bool ModelContent::is_same_model(const mjModel* m) const noexcept {
-  Comparison comparison(structure_);
-  visit_structure(m, [&](const std::byte* data, std::size_t size) { comparison(data, size); });
-  return comparison.equal();
+  ContentCopy::Comparison compare(structure_);
+  visit_structure(
+      m, [&](const std::byte* data, std::size_t size, std::size_t) { compare(data, size); });
+  return compare.equal();
 }
 
 bool ModelContent::has_same_values(const mjModel* m) const noexcept {
-  Comparison comparison(values_);
+  ContentCopy::Comparison compare(values_);
   visit_values(m, numerics_, parts_, bodies_,
-               [&](const std::byte* data, std::size_t size) { comparison(data, size); });
-  return comparison.equal();
+               [&](const std::byte* data, std::size_t size, std::size_t) { compare(data, size); });
+  return compare.equal();
 }
 
 }  // namespace volcontact::adaptor

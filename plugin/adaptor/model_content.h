@@ -4,9 +4,15 @@
 #include <cstddef>
 #include <vector>
 
+#include "adaptor/content_copy.h"
 #include "adaptor/keys/scene_keys.h"
 
 namespace volcontact::adaptor {
+
+/// Some neighbouring geoms or bodies.
+struct IndexSpan {
+  int first, count;
+};
 
 /// A copy of the parts of an mjModel on which volcontact's reading of it depends. Models are known
 /// by content: an address says nothing, since MuJoCo copies models (Batch) and memory is reused.
@@ -26,10 +32,9 @@ class ModelContent {
 
  private:
   std::vector<NumericSpan> numerics_;
-  std::vector<int> parts_;   // geoms of composed solids, and flush ones
-  std::vector<int> bodies_;  // bodies of flush geoms, and those that these are fixed to
-  std::vector<std::byte> structure_;
-  std::vector<std::byte> values_;
+  std::vector<IndexSpan> parts_;   // geoms of composed solids, and flush ones
+  std::vector<IndexSpan> bodies_;  // bodies of flush geoms, and those that these are fixed to
+  ContentCopy structure_, values_;
 };
 
 }  // namespace volcontact::adaptor

@@ -13,7 +13,7 @@ namespace volcontact::adaptor {
 class BodyForces {
  public:
   void reset(const mjModel* m);
-  bool empty() const { return !any_; }
+  bool empty() const { return loaded_.empty(); }
 
   /// A force [N] at `point`, a point of the world [m], and a torque [N m], on a body, world frame.
   void add(const mjModel* m, const mjData* d, int body, const Vec3& point, const Vec3& force,
@@ -29,9 +29,12 @@ class BodyForces {
   std::vector<double>& cartesian(const mjModel* m, const mjData* d);
 
  private:
+  void load(int body);
+
   std::vector<Wrench> at_tree_com_;  // of each body, about its tree's centre of mass
+  std::vector<char> is_loaded_;      // by body
+  std::vector<int> loaded_;
   std::vector<double> numbers_;
-  bool any_ = false;
 };
 
 /// Sets what is not a finite number to zero; returns whether there was any.

@@ -2,8 +2,6 @@
 #include "adaptor/geoms/cull.h"
 
 #include <algorithm>
-#include <atomic>
-#include <cstring>
 #include <numeric>
 
 #include "volcontact/base/sizes.h"
@@ -21,15 +19,10 @@ bool reaches_plane(const mjData* d, int plane, const Shape& solid, const Pose& X
   return !(height >= reach);
 }
 
-std::uint64_t next_number() {
-  static std::atomic<std::uint64_t> last{0};
-  return last.fetch_add(1) + 1;
-}
-
 }  // namespace
 
 Cull::Cull(const PairRules& rules, const std::vector<Shape>& solids)
-    : rules_(&rules), solids_(&solids), number_(next_number()) {
+    : rules_(&rules), solids_(&solids) {
   std::size_t with_plane = 0;
   for (const int geom : rules.touching()) {
     const bool is_plane = std::holds_alternative<HalfSpace>(solid_of(geom));
@@ -58,16 +51,11 @@ void Cull::list_pairs() {
 
 // Two solids that do not move never touch.
 void Cull::tell_fixed_apart() {
+  std::vector<int> fixed;
   const auto stays = [&](int geom) { return rules_->is_static(geom); };
-  std::copy_if(moving_.begin(), moving_.end(), std::back_inserter(fixed_), stays);
+  std::copy_if(moving_.begin(), moving_.end(), std::back_inserter(fixed), stays);
   std::erase_if(moving_, stays);
-  for (const int geom : fixed_) {
-    if (runs_of_fixed_.empty() ||
-        runs_of_fixed_.back().first + runs_of_fixed_.back().second != geom) {
-      runs_of_fixed_.emplace_back(geom, 0);
-    }
-    ++runs_of_fixed_.back().second;
-  }
+  fixed_ = FixedSolids(*solids_, std::move(fixed));
 }
 
 void Cull::compare_all(const mjData* d, Scratch& scratch) const {
@@ -91,7 +79,8 @@ void Cull::reach_planes(const mjData* d, Scratch& scratch) const {
       if (rules_->admits(plane, geom)) scratch.near.push_back(rules_->id(plane, geom));
     };
     std::for_each(moving_.begin(), moving_.end(), look_at);
-    if (!rules_->is_static(plane)) std::for_each(fixed_.begin(), fixed_.end(), look_at);
+    if (rules_->is_static(plane)) continue;
+    std::for_each(fixed_.geoms().begin(), fixed_.geoms().end(), look_at);
   }
 }
 
@@ -155,44 +144,12 @@ void Cull::sweep(Scratch& scratch) const {
   }
 }
 
-// The tree is that of the present poses: a program may move what MuJoCo does not.
-void Cull::follow_fixed(const mjData* d, Scratch::Fixed& fixed) const {
-  const auto are_same = [&](const mjtNum* now, const std::vector<mjtNum>& then, int numbers) {
-    const mjtNum* kept = then.data();
-    return std::all_of(runs_of_fixed_.begin(), runs_of_fixed_.end(), [&](const auto& run) {
-      const std::size_t length = size(numbers) * size(run.second);
-      const bool same =
-          std::memcmp(now + size(numbers) * size(run.first), kept, length * sizeof(mjtNum)) == 0;
-      kept += length;
-      return same;
-    });
-  };
-  if (fixed.owner == number_ && are_same(d->geom_xpos, fixed.positions, 3) &&
-      are_same(d->geom_xmat, fixed.rotations, 9)) {
-    return;
-  }
-  fixed.owner = number_;
-  fixed.positions.clear();
-  fixed.rotations.clear();
-  for (const auto& [first, count] : runs_of_fixed_) {
-    const mjtNum *p = d->geom_xpos + 3 * size(first), *r = d->geom_xmat + 9 * size(first);
-    fixed.positions.insert(fixed.positions.end(), p, p + 3 * size(count));
-    fixed.rotations.insert(fixed.rotations.end(), r, r + 9 * size(count));
-  }
-  fixed.boxes.clear();
-  for (const int geom : fixed_) {
-    fixed.boxes.push_back(world_bounds(solid_of(geom), pose_of_geom(d, geom)));
-  }
-  fixed.tree.build(fixed.boxes);
-}
-
 void Cull::meet_fixed(const mjData* d, Scratch& scratch) const {
-  if (fixed_.empty()) return;
-  follow_fixed(d, scratch.fixed);
+  fixed_.follow(d, scratch.fixed);
+  if (fixed_.geoms().empty()) return;
   for (std::size_t i = 0; i < moving_.size(); ++i) {
-    scratch.fixed.tree.find(scratch.boxes[i], [&](int other) {
-      if (are_apart(scratch.boxes[i], scratch.fixed.boxes[size(other)])) return;
-      const int a = moving_[i], b = fixed_[size(other)];
+    const int a = moving_[i];
+    fixed_.meet(d, scratch.boxes[i], scratch.fixed, [&](int b) {
       if (rules_->admits(a, b)) scratch.near.push_back(rules_->id(a, b));
     });
   }

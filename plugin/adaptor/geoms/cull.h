@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <utility>
 #include <vector>
 
-#include "adaptor/geoms/bounds_tree.h"
+#include "adaptor/geoms/fixed_solids.h"
 #include "adaptor/geoms/pair_rules.h"
 
 namespace volcontact::adaptor {
@@ -26,12 +25,7 @@ class Cull {
     std::vector<double> low;      ///< by solid, along the axis of the sweep
     std::vector<Bounds> ordered;  ///< in the order of the sweep
     std::vector<std::pair<double, double>> ends;
-    struct Fixed {  ///< of the solids that do not move, as long as their poses are these
-      std::uint64_t owner = 0;
-      std::vector<mjtNum> positions, rotations;
-      std::vector<Bounds> boxes;
-      BoundsTree tree;
-    } fixed;
+    FixedSolids::Kept fixed;   ///< of the solids that do not move
     std::vector<PairId> near;  ///< result, ascending
   };
 
@@ -49,16 +43,14 @@ class Cull {
   void reach_planes(const mjData* d, Scratch& scratch) const;
   void sort_moving(Scratch& scratch) const;
   void sweep(Scratch& scratch) const;
-  void follow_fixed(const mjData* d, Scratch::Fixed& fixed) const;
   void meet_fixed(const mjData* d, Scratch& scratch) const;
 
   const PairRules* rules_;
   const std::vector<Shape>* solids_;
-  std::uint64_t number_;  // no other one has it
   bool is_swept_ = false;
-  std::vector<int> planes_, moving_, fixed_;        // geoms that can touch others, ascending
-  std::vector<Listed> with_plane_, between_;        // where there are few
-  std::vector<std::pair<int, int>> runs_of_fixed_;  // neighbours among the geoms: first, count
+  std::vector<int> planes_, moving_;          // geoms that can touch others, ascending
+  FixedSolids fixed_;                         // the rest of them, where there are many
+  std::vector<Listed> with_plane_, between_;  // where there are few
 };
 
 }  // namespace volcontact::adaptor

@@ -82,15 +82,28 @@ bool continue_each_other(const Aabb& a, const Aabb& b) {
   return false;
 }
 
+// Along which the blocks are spread most.
+int widest_axis(const std::vector<Block>& blocks) {
+  Vec3 low = Vec3::Constant(kInfinity), high = Vec3::Constant(-kInfinity);
+  for (const Block& block : blocks) {
+    low = low.cwiseMin(block.bounds.min);
+    high = high.cwiseMax(block.bounds.min);
+  }
+  int axis = 0;
+  (high - low).maxCoeff(&axis);
+  return axis;
+}
+
 // Joins blocks with parallel axes, by their bounds.
 void join_neighbours(const std::vector<Block>& blocks, std::vector<int>& sets) {
+  const int axis = widest_axis(blocks);
   std::vector<std::size_t> order(blocks.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  const auto low = [&](std::size_t i) { return blocks[i].bounds.min.x(); };
+  const auto low = [&](std::size_t i) { return blocks[i].bounds.min[axis]; };
   std::sort(order.begin(), order.end(), [&](auto i, auto j) { return low(i) < low(j); });
   for (std::size_t i = 0; i < order.size(); ++i) {
     const Aabb& one = blocks[order[i]].bounds;
-    const double reach = one.max.x() + kFlush * length_of(one);
+    const double reach = one.max[axis] + kFlush * length_of(one);
     for (std::size_t j = i + 1; j < order.size() && low(order[j]) <= reach; ++j) {
       if (continue_each_other(one, blocks[order[j]].bounds)) {
         join_sets(sets, static_cast<int>(order[i]), static_cast<int>(order[j]));

@@ -43,35 +43,78 @@ void ContactEquations::make_slopes(int places) {
   }
 }
 
+void ContactEquations::forget() {
+  for (Factored* factored :
+       {static_cast<Factored*>(&normal_by_dofs_), static_cast<Factored*>(&by_dofs_),
+        static_cast<Factored*>(&normal_by_forces_), static_cast<Factored*>(&by_forces_)}) {
+    factored->is_valid = false;
+  }
+}
+
+bool ContactEquations::has_friction() const {
+  return std::any_of(slopes_.begin(), slopes_.end(), [](const ContactSpace::Square& slope) {
+    return !slope.bottomRightCorner<3, 3>().isZero(0.0);
+  });
+}
+
+bool ContactEquations::is_of_slopes(const Factored& factored) const {
+  return factored.is_valid && factored.slopes == slopes_;
+}
+
 template <int K>
-void ContactEquations::solve_blocks(const ContactSpace& space, double step, BlockMatrix<K>& matrix,
-                                    std::vector<double>& force) {
+void ContactEquations::factor(const ContactSpace& space, double step, ByForces<K>& out) const {
   using Block = typename BlockMatrix<K>::Block;
-  using Part = typename BlockMatrix<K>::Vector;
+  out.is_valid = false;
+  out.slopes = slopes_;
+  out.factors.resize(slopes_.size());
+  out.active.clear();
+  for (int place = 0; place < space.places(); ++place) {
+    const ContactSpace::Square& slope = slopes_[size(place)];
+    if (slope.isZero(0.0)) continue;
+    out.active.push_back(place);
+    ContactSpace::Square& factor = out.factors[size(place)];
+    factor.setZero();
+    factor.topLeftCorner<3, 3>() = root_of(slope.topLeftCorner<3, 3>());
+    if (K > 3) factor.bottomRightCorner<3, 3>() = root_of(slope.bottomRightCorner<3, 3>());
+  }
   const bool is_symmetric = space.is_symmetric();
-  const int count = static_cast<int>(active_.size());
-  matrix.reset(count, is_symmetric);
+  const int count = static_cast<int>(out.active.size());
+  out.matrix.reset(count, is_symmetric);
+  for (int i = 0; i < count; ++i) {
+    const int place = out.active[size(i)];
+    const Block left = step * out.factors[size(place)].template topLeftCorner<K, K>();
+    for (int k = 0; k < (is_symmetric ? i + 1 : count); ++k) {
+      const int other = out.active[size(k)];
+      const Block moved = space.delassus(place, other).template topLeftCorner<K, K>() *
+                          out.factors[size(other)].template topLeftCorner<K, K>();
+      out.matrix(i, k).noalias() = left.transpose() * moved;
+    }
+    out.matrix(i, i).diagonal().array() += 1.0;
+  }
+  out.matrix.factor();
+  out.is_valid = true;
+}
+
+template <int K>
+void ContactEquations::solve_blocks(const ContactSpace& space, double step, ByForces<K>& by,
+                                    std::vector<double>& force) {
+  using Part = typename BlockMatrix<K>::Vector;
+  if (!is_of_slopes(by)) factor(space, step, by);
+  const auto factor_of = [&](int place) {
+    return by.factors[size(place)].template topLeftCorner<K, K>();
+  };
+  const int count = static_cast<int>(by.active.size());
   right_.resize(size(K * count));
   for (int i = 0; i < count; ++i) {
-    const int place = active_[size(i)];
-    const Block left = step * factors_[size(place)].topLeftCorner<K, K>();
-    for (int k = 0; k < (is_symmetric ? i + 1 : count); ++k) {
-      const int other = active_[size(k)];
-      const Block moved = space.delassus(place, other).template topLeftCorner<K, K>() *
-                          factors_[size(other)].topLeftCorner<K, K>();
-      matrix(i, k).noalias() = left.transpose() * moved;
-    }
-    matrix(i, i).diagonal().array() += 1.0;
+    const int place = by.active[size(i)];
     const Eigen::Map<const Part> motion(&response_[size(kRows * place)]);
-    Eigen::Map<Part> right(&right_[size(K * i)]);
-    right.noalias() = factors_[size(place)].topLeftCorner<K, K>().transpose() * motion;
+    Eigen::Map<Part>(&right_[size(K * i)]).noalias() = factor_of(place).transpose() * motion;
   }
-  matrix.factor();
-  matrix.solve(right_.data());
+  by.matrix.solve(right_.data());
   for (int i = 0; i < count; ++i) {
-    const int place = active_[size(i)];
+    const int place = by.active[size(i)];
     Eigen::Map<Part>(&force[size(kRows * place)]).noalias() -=
-        factors_[size(place)].topLeftCorner<K, K>() * Eigen::Map<const Part>(&right_[size(K * i)]);
+        factor_of(place) * Eigen::Map<const Part>(&right_[size(K * i)]);
   }
 }
 
@@ -79,48 +122,48 @@ void ContactEquations::solve_for_forces(const ContactSpace& space, double step,
                                         std::vector<double>& force, std::vector<double>& velocity) {
   const int rows = space.rows();
   make_slopes(space.places());
-  factors_.resize(slopes_.size());
-  active_.clear();
-  bool is_normal = true;
-  for (int place = 0; place < space.places(); ++place) {
-    const ContactSpace::Square& slope = slopes_[size(place)];
-    if (slope.isZero(0.0)) continue;
-    active_.push_back(place);
-    ContactSpace::Square& factor = factors_[size(place)];
-    factor.setZero();
-    factor.topLeftCorner<3, 3>() = root_of(slope.topLeftCorner<3, 3>());
-    factor.bottomRightCorner<3, 3>() = root_of(slope.bottomRightCorner<3, 3>());
-    is_normal = is_normal && slope.bottomRightCorner<3, 3>().isZero(0.0);
-  }
   force.assign(constant.begin(), constant.end());
   velocity.resize(size(rows));
   response_.resize(size(rows));
   space.move_by_delassus(force.data(), response_.data());
-  if (is_normal) {
-    solve_blocks(space, step, normal_, force);
+  if (has_friction()) {
+    solve_blocks(space, step, by_forces_, force);
   } else {
-    solve_blocks(space, step, all_, force);
+    solve_blocks(space, step, normal_by_forces_, force);
   }
   space.move_by_delassus(force.data(), velocity.data());
 }
 
 // Adds h J' C J of one place to the matrix.
-void ContactEquations::add_slope(const ContactSpace& space, int place, double step) {
+void ContactEquations::add_slope(const ContactSpace& space, int place, double step,
+                                 EnvelopeMatrix& matrix) const {
   const ContactSpace::Square slope = step * slopes_[size(place)];
   for (const ContactSpace::Move& from : space.moves(place)) {
     const ContactSpace::Block response = slope * from.column;
     for (const ContactSpace::Move& to : space.moves(place)) {
-      if (to.dof >= from.dof) matrix_.add_both(to.dof, from.dof, to.column.dot(response));
+      if (to.dof >= from.dof) matrix.add_both(to.dof, from.dof, to.column.dot(response));
     }
   }
+}
+
+void ContactEquations::factor(ContactSpace& space, double step, ByDofs& out) const {
+  out.is_valid = false;
+  out.slopes = slopes_;
+  out.matrix.reset(space.envelope(), space.is_symmetric());
+  out.matrix.add(space.matrix().matrix());
+  for (int place = 0; place < space.places(); ++place) {
+    if (!slopes_[size(place)].isZero(0.0)) add_slope(space, place, step, out.matrix);
+  }
+  out.matrix.factor();
+  out.is_valid = true;
 }
 
 void ContactEquations::solve_for_dofs(ContactSpace& space, double step, std::vector<double>& force,
                                       std::vector<double>& velocity) {
   const int rows = space.rows(), n = space.dofs();
   make_slopes(space.places());
-  matrix_.reset(space.envelope(), space.is_symmetric());
-  matrix_.add(space.matrix().matrix());
+  ByDofs& by = has_friction() ? by_dofs_ : normal_by_dofs_;
+  if (!is_of_slopes(by)) factor(space, step, by);
   // What the contacts would bear at the velocities of now.
   force.assign(constant.begin(), constant.end());
   velocity.resize(size(rows));
@@ -131,17 +174,14 @@ void ContactEquations::solve_for_dofs(ContactSpace& space, double step, std::vec
         slopes_[size(place)] * u.segment<kRows>(place * kRows);
   };
   for (int place = 0; place < rows / kRows; ++place) {
-    if (slopes_[size(place)].isZero(0.0)) continue;
-    bear(place);
-    add_slope(space, place, step);
+    if (!slopes_[size(place)].isZero(0.0)) bear(place);
   }
   right_.resize(size(n));
   Vector right(right_.data(), n);
   right = space.known();
   space.add_load(force.data(), right_.data());
   right *= step;
-  matrix_.factor();
-  matrix_.solve(right_.data(), 0, n);
+  by.matrix.solve(right_.data(), 0, n);
   space.add_motion(right_.data(), velocity.data());
   std::copy(constant.begin(), constant.end(), force.begin());
   for (int place = 0; place < rows / kRows; ++place) bear(place);

@@ -20,6 +20,10 @@ struct ContactEquations {
   std::vector<Column> columns;
   std::vector<double> constant;  ///< e
 
+  /// To be called when the space, or the step, is another one: until then a matrix of the same C is
+  /// factored once.
+  void forget();
+
   /// Writes f and u'. In the form of less work: for the forces,
   /// (1 + h L' Lambda L) y = L' (u_free + h Lambda e), f = e - L y, or for the velocities,
   /// (H + h J' C J) dv = h (t + J' (e - C u)).
@@ -33,19 +37,38 @@ struct ContactEquations {
                       std::vector<double>& velocity);
 
  private:
-  void make_slopes(int places);
-  void add_slope(const ContactSpace& space, int place, double step);
-  // Forces by the first K coordinates of each place alone: the others have no columns.
+  using Squares = std::vector<ContactSpace::Square>;
+  // A matrix that was factored, of these C by places.
+  struct Factored {
+    Squares slopes;
+    bool is_valid = false;
+  };
+  struct ByDofs : Factored {
+    EnvelopeMatrix matrix;
+  };
   template <int K>
-  void solve_blocks(const ContactSpace& space, double step, BlockMatrix<K>& matrix,
+  struct ByForces : Factored {
+    BlockMatrix<K> matrix;
+    Squares factors;          // L of C = L L'
+    std::vector<int> active;  // the places with columns
+  };
+
+  void make_slopes(int places);
+  bool has_friction() const;
+  bool is_of_slopes(const Factored& factored) const;
+  void add_slope(const ContactSpace& space, int place, double step, EnvelopeMatrix& matrix) const;
+  void factor(ContactSpace& space, double step, ByDofs& out) const;
+  template <int K>
+  void factor(const ContactSpace& space, double step, ByForces<K>& out) const;
+  template <int K>
+  void solve_blocks(const ContactSpace& space, double step, ByForces<K>& by,
                     std::vector<double>& force);
 
-  EnvelopeMatrix matrix_;
-  BlockMatrix<3> normal_;
-  BlockMatrix<kRows> all_;
-  std::vector<ContactSpace::Square> slopes_;   // C by places
-  std::vector<ContactSpace::Square> factors_;  // L of C = L L'
-  std::vector<int> active_;                    // the places with columns
+  Squares slopes_;  // C by places
+  // Without and with friction: one of the two comes back as it was, under other constants.
+  ByDofs normal_by_dofs_, by_dofs_;
+  ByForces<3> normal_by_forces_;  // by the first three coordinates of each place alone
+  ByForces<kRows> by_forces_;
   std::vector<double> right_, response_;
 };
 

@@ -111,6 +111,7 @@ void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& fa
                       s1 * reach[1] * principal.vectors.col(1);
       Point& point = site.points[size(site.point_count++)];
       point.motion = {1.0, at.y(), -at.x()};
+      point.pushes = true;
       point.constant = std::max(0.0, (force + s0 * lean[0] + s1 * lean[1]) / count);
       sum += point.constant;
     }
@@ -179,28 +180,43 @@ void ImplicitStep::solve_once(bool with_friction, double step) {
   equations_.solve(space_, step, force_, velocity_);
 }
 
-// Leaves out the points that would pull, until none does.
-void ImplicitStep::solve_active(bool with_friction, double step) {
-  constexpr int kRounds = 12;
+// Solves with the points that push, leaves out those that would pull and takes back those that
+// would push, or not. Returns whether none had to change.
+bool ImplicitStep::improve_active(bool with_friction, bool takes_back, double step) {
+  solve_once(with_friction, step);
+  bool changed = false;
   for (std::size_t i = 0; i < island_.size(); ++i) {
-    for (Point& point : site(i).points) point.pushes = limits_[site(i).pair].acts;
-  }
-  for (int round = 0; round < kRounds; ++round) {
-    solve_once(with_friction, step);
-    bool changed = false;
-    for (std::size_t i = 0; i < island_.size(); ++i) {
-      if (!limits_[site(i).pair].acts) continue;
-      const Vec3 motion = Eigen::Map<const Vec3>(&velocity_[i * size(kRows)]);
-      for (int k = 0; k < site(i).point_count; ++k) {
-        Point& point = site(i).points[size(k)];
-        const bool pushes = point.constant - point.slope * point.motion.dot(motion) > 0.0;
-        // Who was left out comes back where it is needed, in the first rounds: else it might go on.
-        if (point.pushes == pushes || (pushes && round >= kRounds / 2)) continue;
-        point.pushes = pushes;
-        changed = true;
-      }
+    if (!limits_[site(i).pair].acts) continue;
+    const Vec3 motion = Eigen::Map<const Vec3>(&velocity_[i * size(kRows)]);
+    for (int k = 0; k < site(i).point_count; ++k) {
+      Point& point = site(i).points[size(k)];
+      const bool pushes = point.constant - point.slope * point.motion.dot(motion) > 0.0;
+      if (point.pushes == pushes || (pushes && !takes_back)) continue;
+      point.pushes = pushes;
+      changed = true;
     }
-    if (!changed) return;
+  }
+  return !changed;
+}
+
+// Finds the points that push, of which none pulls. Those that pushed in the solution before are
+// tried first: few change from one solution of a step to the next.
+void ImplicitStep::solve_active(bool with_friction, double step) {
+  constexpr int kFirstRounds = 6, kRounds = 12;
+  const auto set_points = [this](auto pushes) {
+    for (std::size_t i = 0; i < island_.size(); ++i) {
+      const bool acts = limits_[site(i).pair].acts;
+      for (Point& point : site(i).points) point.pushes = acts && pushes(point);
+    }
+  };
+  set_points([](const Point& point) { return point.pushes; });
+  for (int round = 0; round < kFirstRounds; ++round) {
+    if (improve_active(with_friction, true, step)) return;
+  }
+  set_points([](const Point&) { return true; });
+  // Who was left out comes back where it is needed, in the first rounds: else it might go on.
+  for (int round = 0; round < kRounds; ++round) {
+    if (improve_active(with_friction, round < kRounds / 2, step)) return;
   }
 }
 
@@ -296,6 +312,7 @@ void ImplicitStep::solve_contacts(FrictionBound bound, double step) {
 
 void ImplicitStep::solve_island(ImplicitParts parts, double step, double resting) {
   space_.build_mobility();
+  equations_.forget();
   make_points(parts, step, resting);
   set_shares();
   solve_contacts(FrictionBound::kCut, step);
@@ -326,6 +343,7 @@ void ImplicitStep::add_up_work(double step, double resting) {
   constexpr double kRounding = 1e-9;
   for_each_pair([](WorkLimit& limit) {
     limit.normal_work = limit.friction_work = limit.slack = limit.exit = limit.from_free = 0.0;
+    limit.pushes = false;
   });
   double from_free = 0.0, allowed = 0.0;
   for (std::size_t i = 0; i < island_.size(); ++i) {
@@ -342,6 +360,7 @@ void ImplicitStep::add_up_work(double step, double resting) {
     // What gravity does meanwhile: no more than to the weight that may rest on the pair.
     limit.slack += 0.5 * std::min(impulse[0], resting * mass_) * resting +
                    kRounding * impulse.cwiseAbs().dot(begin.cwiseAbs() + end.cwiseAbs());
+    limit.pushes = limit.pushes || impulse[0] > 0.0;
     if (impulse[0] > 0.0) limit.exit = std::max(limit.exit, end[0]);
     from_free += impulse.dot(mean_of_free);
   }
@@ -374,7 +393,7 @@ void ImplicitStep::limit_work(double step, double resting) {
       for_each_pair([&](WorkLimit& limit) {
         if (last == kAllNone || (last == kNone && !limit.is_kept())) limit.share = 0.0;
         if (last == kLowest && !limit.is_kept())
-          limit.share = limit.low < limit.share ? limit.low : 0.0;
+          limit.share = limit.low.share < limit.share ? limit.low.share : 0.0;
       });
     }
     set_shares();

@@ -124,6 +124,7 @@ class ImplicitStep {
                     ImplicitParts parts, double step);
   double normal_force(std::size_t i) const { return std::max(0.0, force_[6 * i]); }
   void solve_active(bool with_friction, double step);
+  bool improve_active(bool with_friction, bool takes_back, double step);
   void solve_once(bool with_friction, double step);
   void set_drift(const Mechanism& mechanism, double time);
   void set_friction(double step);

@@ -198,9 +198,14 @@ struct WorkLimit {
   double slack = 0.0;  ///< what other forces do meanwhile, which a finite step cannot tell [J]
   double exit = 0.0;   ///< fastest parting at the end of the step [m/s]
 
-  // Shares between which the one sought lies, and the work under them.
-  double low = 0.0, high = 1.0;
-  double work_low = 0.0, work_high = 0.0;
+  bool pushes = false;  ///< whether a normal force of the pair acts
+
+  // Shares between which the one sought lies, with the work and the parting under them.
+  struct Tried {
+    double share = 0.0, work = 0.0, exit = 0.0;
+  };
+  Tried low, high;
+  bool is_high_known = false;
 
   /// `dissipated`: by all contacts of the scene so far [J]; `moving`: kinetic energy of the bodies
   /// along the contact, of which with what is stored a part may be overdrawn [J].
@@ -244,33 +249,49 @@ struct WorkLimit {
   }
 
   void start() noexcept {
-    low = 0.0;
-    high = 1.0;
-    work_low = 0.0;
-    work_high = HUGE_VAL;
+    low = {};
+    is_high_known = false;
   }
 
-  /// Chooses the next share to try; false when the present one will do.
+  /// Chooses the next share to try; false when the present one will do. The shares of other pairs
+  /// change with it, so that what was kept may be kept no more.
   bool search() noexcept {
-    constexpr double kEnough = 0.8, kNarrow = 0.05, kNothing = 1e-3;
+    constexpr double kEnough = 0.8, kNarrow = 0.05, kNothing = 1e-3, kAside = 0.1;
     if (is_kept()) {
-      low = share;
-      work_low = work();
-      if (share >= 1.0 || work_low >= kEnough * allowed() || high - low < kNarrow) return false;
+      low = {share, work(), exit};
+      if (is_high_known && high.share <= share) is_high_known = false;
+      const bool is_near = (is_high_known ? high.share : 1.0) - share < kNarrow;
+      if (share >= 1.0 || !pushes || is_near || work() >= kEnough * allowed()) return false;
+      if (slow > 0.0 && exit >= kEnough * exit_speed && exit <= exit_speed) return false;
     } else {
-      high = share;
-      work_high = work();
-      if (allowed() < kNothing * work_high) {
+      high = {share, work(), exit};
+      is_high_known = true;
+      if (low.share >= share) low = {};
+      if (allowed() < kNothing * work()) {
         share = 0.0;
         return true;
       }
     }
-    double at = 0.5;
-    if (work_high < HUGE_VAL && work_high > work_low) {
-      at = (0.9 * allowed() - work_low) / (work_high - work_low);
-    }
-    share = low + std::clamp(at, 0.1, 0.9) * (high - low);
+    const double top = is_high_known ? high.share : 1.0;
+    const double at = is_high_known ? likely_share() : 0.5;
+    share = low.share + std::clamp(at, kAside, 1.0 - kAside) * (top - low.share);
     return true;
+  }
+
+  /// Where between the two the share may lie under which as much is done as is allowed, at any
+  /// speed or while the bodies part slowly.
+  double likely_share() const noexcept {
+    constexpr double kAim = 0.9;
+    if (!(high.work > low.work)) return 0.5;
+    const auto of_work = [&](double most) {
+      return std::clamp((most - low.work) / (high.work - low.work), 0.0, 1.0);
+    };
+    const double fast = of_work(kAim * (stored + slack));
+    const double slowly = of_work(kAim * (stored + slack + slow));
+    if (high.exit <= exit_speed) return slowly;
+    if (low.exit >= exit_speed) return fast;
+    const double parting = (kAim * exit_speed - low.exit) / (high.exit - low.exit);
+    return std::max(fast, std::min(parting, slowly));
   }
 };
 

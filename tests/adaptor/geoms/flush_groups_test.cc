@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <sstream>
 #include <string>
 
 #include "adaptor/geoms/solids_of_geoms.h"
@@ -60,6 +61,23 @@ TEST(FlushGroups, TilesOfTheWorldAreOneGroup) {
   }
   EXPECT_EQ(scene.groups.bounds(scene.geom("c")).min, Vec3(0.5, 0.5, -0.1));
   EXPECT_EQ(scene.groups.largest_face(scene.geom("b")), 4.0);
+}
+
+// They are sought along the axis on which they are spread most.
+TEST(FlushGroups, RowsAlongAnyAxisAreOneGroup) {
+  for (int axis = 0; axis < 3; ++axis) {
+    std::string row;
+    for (int i = 0; i < 40; ++i) {
+      Vec3 at = Vec3::Zero();
+      at[axis] = (axis == 2 ? 0.2 : 1.0) * (7 * i % 40);
+      std::ostringstream place;
+      place << at.transpose();
+      row += box(std::to_string(i), place.str());
+    }
+    const Scene scene(row);
+    ASSERT_EQ(scene.groups.groups().size(), 1u) << axis;
+    EXPECT_EQ(scene.tiles(), 40u);
+  }
 }
 
 TEST(FlushGroups, EndsInOnePlaneAreTheSameNumber) {

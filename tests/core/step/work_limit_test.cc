@@ -147,6 +147,7 @@ double share_found(WorkLimit limit, double a, double b) {
   limit.start();
   for (int i = 0; i < 40; ++i) {
     limit.normal_work = a * limit.share + b * limit.share * limit.share;
+    limit.pushes = true;
     if (!limit.search()) break;
   }
   return limit.share;
