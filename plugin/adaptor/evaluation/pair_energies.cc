@@ -104,11 +104,14 @@ bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m, Evaluation
     if (!report.touching()) continue;
     PairEnergy& energy = scratch.energies[k];
     const PairEnergy::Now now(report);
-    energy.act(now);
     const double unpaid = now.elastic - energy.stored - energy.found;
-    if (energy.found == 0.0 && unpaid <= kRounding * now.elastic) continue;
+    if (energy.found == 0.0 && unpaid <= kRounding * now.elastic) {
+      energy.act(now);
+      continue;
+    }
     const auto [share, released_at_most, slowly] = share_of(contact, m, k, now, scratch);
     if (share == 1.0) {
+      energy.act(now);
       if (slowly) energy.slow = released_at_most;
       continue;
     }

@@ -109,6 +109,7 @@ def _listed(plugin: Path) -> tuple[tuple[str, ...], frozenset[str]]:
         return re.findall(r"[\w/]+\.cc", match[1])
 
     alone = files(r"volcontact_unity_by_folder\(volcontact_core ALONE")
+    alone += files(r"set\(kernels")
     alone += files(r"set_source_files_properties\((?=model)")
     return tuple(files(r"add_library\(volcontact_core STATIC")), frozenset(alone)
 

@@ -326,8 +326,9 @@ def _view_of(camera: Any) -> View:
     ahead = np.asarray(camera.look_at) - np.asarray(camera.position)
     distance = float(np.linalg.norm(ahead))
     x, y, z = (float(part) for part in ahead / distance)
+    at_x, at_y, at_z = (float(part) for part in camera.look_at)
     return View(
-        lookat=tuple(float(part) for part in camera.look_at),
+        lookat=(at_x, at_y, at_z),
         distance=distance,
         azimuth=float(np.degrees(np.arctan2(y, x))),
         elevation=float(np.degrees(np.arcsin(z))),

@@ -70,37 +70,36 @@ class Controls:
         self._clip.disabled = bool(text)
 
     def _add_callbacks(self) -> None:
-        stage = self._stage
+        self._pause.on_click(self._on_pause)
+        self._step.on_click(self._on_step)
+        self._reset.on_click(self._on_reset)
+        self._contact.on_update(self._on_contact)
+        self._speed.on_update(self._on_speed)
+        self._time.on_update(self._on_time)
+        self._clip.on_click(self._on_clip)
 
-        @self._pause.on_click
-        def _(_: Any) -> None:
-            stage.paused = not stage.paused
-            self.follow()
+    def _on_pause(self, _: Any) -> None:
+        self._stage.paused = not self._stage.paused
+        self.follow()
 
-        @self._step.on_click
-        def _(_: Any) -> None:
-            stage.paused, self._scrubbed = True, False
-            stage.step()
+    def _on_step(self, _: Any) -> None:
+        self._stage.paused, self._scrubbed = True, False
+        self._stage.step()
 
-        @self._reset.on_click
-        def _(_: Any) -> None:
-            self._scrubbed = False
-            stage.reset()
+    def _on_reset(self, _: Any) -> None:
+        self._scrubbed = False
+        self._stage.reset()
 
-        @self._contact.on_update
-        def _(_: Any) -> None:
-            stage.set_contact("native" if self._contact.value == "native" else "volumetric")
+    def _on_contact(self, _: Any) -> None:
+        self._stage.set_contact("native" if self._contact.value == "native" else "volumetric")
 
-        @self._speed.on_update
-        def _(_: Any) -> None:
-            stage.speed = self._speed.value
+    def _on_speed(self, _: Any) -> None:
+        self._stage.speed = self._speed.value
 
-        @self._time.on_update
-        def _(event: Any) -> None:
-            if event.client is not None:  # not by `follow`
-                self._scrubbed = True
-                stage.show(self._time.value)
+    def _on_time(self, event: Any) -> None:
+        if event.client is not None:  # not by `follow`
+            self._scrubbed = True
+            self._stage.show(self._time.value)
 
-        @self._clip.on_click
-        def _(event: Any) -> None:
-            self.clip_for = event.client
+    def _on_clip(self, event: Any) -> None:
+        self.clip_for = event.client
