@@ -30,7 +30,7 @@ double settling(double speed, double fall) {
 
 // Numerical damping of what settles, as a multiple of h K: with less a box rocks from edge to edge
 // for ever.
-constexpr double kSettling = 2.0;
+constexpr double kSettling = 1.5;
 
 // The same of all where the force is held while positions move with the mean of the velocities
 // before and after the step: without it a stiff contact overshoots, and lifts off again and again.
