@@ -257,9 +257,11 @@ def test_implicit_contact_under_native_contact_gains_nothing_and_bears_what_is_o
     with vc.attach(model) as contact:
         mujoco.mj_forward(model, data)
         first = most = data.energy.sum()
-        for _ in range(1500):
+        for step in range(8000):  # a box on the stack may lean on its edge for ten seconds
             mujoco.mj_step(model, data)
             most = max(most, data.energy.sum())
+            if step > 1500 and np.abs(data.qvel).max() < 1e-6:
+                break
         assert most <= 1.000001 * first
         assert np.abs(data.qvel[:6]).max() < 1e-6  # MuJoCo's own contacts creep
         on_floor = contact.sites(data)[contact.sites(data)["geom_a"] == 0]

@@ -8,7 +8,7 @@ import pytest
 
 # In a process of its own: its address space ends where it is, but for some bytes.
 CODE = """
-import resource, sys
+import resource, sys, threading
 import numpy as np
 import volcontact as vc
 
@@ -51,17 +51,25 @@ calls = [
     lambda: model.evaluate(X_WA=np.eye(4), X_WB=X, V_WA=still, V_WB=still).metrics.volume,
 ]
 vc.interference(vc.Sphere(0.1), vc.Sphere(0.1), X)
-for call in calls:
-    for size in (0, 1 << 20, 4 << 20):
-        limited(size)
-        try:
-            call()
-            outcome = "none"
-        except MemoryError:
-            outcome = "MemoryError"
-        limited(None)
-        print(outcome)
-    print(repr(call()))
+
+def run():
+    for call in calls:
+        for size in (0, 1 << 20, 4 << 20):
+            limited(size)
+            try:
+                call()
+                outcome = "none"
+            except MemoryError:
+                outcome = "MemoryError"
+            limited(None)
+            print(outcome)
+        print(repr(call()))
+
+# The stack of the first thread grows when it is used, and where it may not the process ends.
+threading.stack_size(1 << 26)
+thread = threading.Thread(target=run)
+thread.start()
+thread.join()
 print(repr(vc.interference(ball(120, 5.0), ball(121, 3.0), X).volume))
 """
 
