@@ -22,9 +22,9 @@ _MOST_LINES = 12
 # From above, so that what lies flat is brighter than what stands.
 _LIGHT = (
     '<light directional="true" castshadow="false" dir="-0.25 0.35 -1" ambient="0 0 0" '
-    'diffuse="0.55 0.55 0.55" specular="0 0 0"/>'
+    'diffuse="0.35 0.35 0.35" specular="0 0 0"/>'
 )
-_HEADLIGHT = '<headlight ambient="0.4 0.4 0.4" diffuse="0.3 0.3 0.3" specular="0 0 0"/>'
+_HEADLIGHT = '<headlight ambient="0.4 0.4 0.4" diffuse="0.2 0.2 0.2" specular="0 0 0"/>'
 
 
 def draw_solids(

@@ -84,7 +84,7 @@ def test_hole_is_open_in_the_picture():
         picture = draw_solids(contact, data, sites, width=160, height=120, camera="above")
     middle, beside = picture[60, 80].astype(int), picture[60, 55].astype(int)
     assert middle.min() > 180  # the background shines through
-    assert (middle - beside).min() > 20
+    assert beside.max() < 180
     # The legend begins with the one material that has a name.
     swatch = np.array(rgb(MATERIALS[0])) * 255
     np.testing.assert_allclose(picture[14, 14], swatch, atol=1.5)
