@@ -170,8 +170,7 @@ void write_forces(const SceneContact& contact, const mjModel* m, mjData* d, bool
       scratch.mocaps.add_load(m, d, a, c, site.force_on_A, site.torque_on_A);
       scratch.mocaps.add_load(m, d, b, c, -site.force_on_A, -site.torque_on_A);
       if (goes_on && scratch.held[k]) continue;
-      forces.add(m, d, a, c, site.force_on_A, site.torque_on_A);
-      forces.add(m, d, b, c, -site.force_on_A, -site.torque_on_A);
+      forces.add_between(m, d, geoms, c, site.force_on_A, site.torque_on_A);
     }
   }
   if (goes_on && cartesian) add_held(contact, m, d, our, forces);
@@ -214,8 +213,7 @@ void write_friction(const SceneContact& contact, const mjModel* m, mjData* d,
       const Vec3& c = site.metrics.centroid;
       const Vec3 force = site.force_on_A - site.normal_force * site.normal;
       const Vec3 torque = site.torque_on_A.dot(site.normal) * site.normal;
-      forces.add(m, d, m->geom_bodyid[geoms.a], c, force, torque);
-      forces.add(m, d, m->geom_bodyid[geoms.b], c, -force, -torque);
+      forces.add_between(m, d, geoms, c, force, torque);
     }
   }
   std::vector<double>& numbers = forces.generalized(m, d);

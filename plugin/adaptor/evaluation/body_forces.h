@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "adaptor/geoms/pair_rules.h"
 #include "adaptor/mujoco/mujoco_compat.h"
 #include "volcontact/base/types.h"
 
@@ -18,6 +19,13 @@ class BodyForces {
   /// A force [N] at `point`, a point of the world [m], and a torque [N m], on a body, world frame.
   void add(const mjModel* m, const mjData* d, int body, const Vec3& point, const Vec3& force,
            const Vec3& torque);
+
+  /// The same on body a and, turned round, on body b.
+  void add_between(const mjModel* m, const mjData* d, const GeomPair& geoms, const Vec3& point,
+                   const Vec3& force, const Vec3& torque) {
+    add(m, d, m->geom_bodyid[geoms.a], point, force, torque);
+    add(m, d, m->geom_bodyid[geoms.b], point, -force, -torque);
+  }
 
   // Both return the same memory of this object, which the caller may change. Ask for each once at
   // most, and for `generalized` last.

@@ -40,9 +40,7 @@ const double* foreseen_acceleration(const SceneContact& contact, const mjModel* 
       if (*stiff++ != 0) continue;
       const GeomPair& geoms = scratch.geoms_of_site(contact, k, i);
       const Vec3& c = sites[i].metrics.centroid;
-      const Vec3 &force = sites[i].force_on_A, &torque = sites[i].torque_on_A;
-      scratch.forces.add(m, d, m->geom_bodyid[geoms.a], c, force, torque);
-      scratch.forces.add(m, d, m->geom_bodyid[geoms.b], c, -force, -torque);
+      scratch.forces.add_between(m, d, geoms, c, sites[i].force_on_A, sites[i].torque_on_A);
     }
   }
   std::vector<double>& load = scratch.forces.generalized(m, d);

@@ -133,8 +133,7 @@ void add_held(const SceneContact& contact, const mjModel* m, const mjData* d,
   for (int i = 0; i < our.solved(); ++i) {
     const HeldSite site = our.solved_site(i);
     const GeomPair& geoms = contact.pair(site.pair()).geoms;
-    forces.add(m, d, m->geom_bodyid[geoms.a], site.centroid(), site.force(), site.torque());
-    forces.add(m, d, m->geom_bodyid[geoms.b], site.centroid(), -site.force(), -site.torque());
+    forces.add_between(m, d, geoms, site.centroid(), site.force(), site.torque());
   }
 }
 

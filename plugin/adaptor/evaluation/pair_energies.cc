@@ -6,6 +6,7 @@
 
 #include "adaptor/evaluation/report_sums.h"
 #include "adaptor/scene/pair_rates.h"
+#include "adaptor/step/mujoco_mechanism.h"
 
 namespace volcontact::adaptor {
 namespace {
@@ -39,10 +40,6 @@ double put_in_by_turns(const PairContact& pair) {
 }
 
 }  // namespace
-
-double fall_of(const mjModel* m) {
-  return m->opt.timestep * Eigen::Map<const Vec3>(m->opt.gravity).norm();
-}
 
 WorkLimit limit_of(const SceneContact& contact, const mjModel* m, std::size_t k,
                    const EvaluationScratch& scratch) {

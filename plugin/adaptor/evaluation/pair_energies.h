@@ -8,9 +8,6 @@
 
 namespace volcontact::adaptor {
 
-/// Change of speed by gravity in a step [m/s].
-double fall_of(const mjModel* m);
-
 /// What the pairs hold of the energy of the bodies, after the step that ends here, into
 /// `scratch.energies`. Returns the elastic energy that nobody paid [J].
 double read_energies(const SceneContact& contact, const double* committed, double elapsed,

@@ -35,11 +35,15 @@ MechanismTrees trees_of(const mjModel* m) {
   return out;
 }
 
+double fall_of(const mjModel* m) {
+  return m->opt.timestep * Eigen::Map<const Vec3>(m->opt.gravity).norm();
+}
+
 MujocoMechanism::MujocoMechanism(const mjModel* m, mjData* d, const MechanismTrees& of_model)
     : m_(m), d_(d), damping_(make_damping(m, d)) {
   trees = &of_model;
   step = m->opt.timestep;
-  fall = step * Eigen::Map<const Vec3>(m->opt.gravity).norm();
+  fall = fall_of(m);
   speeds = d->qvel;
   motions = d->cdof;
   motion_rates = d->cdof_dot;

@@ -9,6 +9,9 @@ namespace volcontact::adaptor {
 /// How the bodies of a model hang on its degrees of freedom.
 MechanismTrees trees_of(const mjModel* m);
 
+/// Change of speed by gravity in a step [m/s].
+double fall_of(const mjModel* m);
+
 /// The bodies of a model at the positions and velocities that are current in its data.
 class MujocoMechanism final : public Mechanism {
  public:

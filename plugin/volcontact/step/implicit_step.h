@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "volcontact/base/sizes.h"
 #include "volcontact/model/site_laws.h"
 #include "volcontact/step/contact_equations.h"
 #include "volcontact/step/work_limit.h"
@@ -66,6 +67,8 @@ class ImplicitStep {
   bool is_solved(std::size_t site) const { return sites_[site].is_solved; }
 
  private:
+  using ConstVector = Eigen::Map<const Eigen::VectorXd>;
+
   // A patch is borne at up to four points, which have its area and moments; none of them pulls.
   struct Point {
     Vec3 motion = Vec3::Zero();  // of the point along n, by the normal coordinates: (1, y, -x)
@@ -113,8 +116,16 @@ class ImplicitStep {
   void add_up_work(double step, double resting);
   void set_shares();
   void share_deficit();
+  // The pairs that have sites in the island; these stand together.
   template <typename Use>
-  void for_each_pair(Use use);
+  void for_each_pair(Use use) {
+    const WorkLimit* last = nullptr;
+    for (const int i : island_) {
+      WorkLimit& limit = limits_[sites_[size(i)].pair];
+      if (&limit != last) use(limit);
+      last = &limit;
+    }
+  }
   void solve_with_constraints(const Mechanism& mechanism, LinearConstraints& constraints,
                               ImplicitParts parts, int island, const double* known);
   void take_explicit();
