@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws the figures of docs/studies from the rows of the two studies, and prints the numbers.
 
-./run volcontact study run studies/NAME/study.toml --out build/studies/NAME   (both names)
+./run volcontact study run mjcf_models/studies/NAME/study.toml --out build/studies/NAME   (both names)
 ./run python docs/generate/make_studies.py
 """
 
@@ -98,7 +98,7 @@ def battery() -> None:
     """What costs the battery box its seat."""
     table = Study.rows(ROWS / BATTERY)
     rows = table.to_pandas()
-    study = Study(ROOT / "studies" / BATTERY / "study.toml")
+    study = Study(ROOT / "mjcf_models" / "studies" / BATTERY / "study.toml")
     good = int(rows["success"].sum())
     low, high = wilson(good, len(rows))
     print(f"battery: {good} of {len(rows)}, {good / len(rows):.4f} ({low:.4f} to {high:.4f})")

@@ -22,7 +22,7 @@ __all__ = ["Study", "StudyError"]
 class Study:
     """A scene, what varies, how it is sampled, what is recorded, and what success means.
 
-        study = vc.Study("studies/peg_in_hole_misalignment/study.toml")
+        study = vc.Study("mjcf_models/studies/peg_in_hole_misalignment/study.toml")
         study.check()
         study.run("results", engine="processes", trials=1000)
         rows = study.rows("results")
