@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <ctime>
 
-#include "core/support/characterisation.h"
+#include "core/search/characterisation.h"
 
 namespace volcontact::test {
 namespace {

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <ctime>
 
-#include "core/support/fuzz.h"
+#include "core/search/fuzz.h"
 
 int main(int argc, char** argv) {
   using namespace volcontact;

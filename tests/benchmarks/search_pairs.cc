@@ -15,8 +15,8 @@
 #include <map>
 #include <stdexcept>
 
-#include "core/support/line_oracle.h"
-#include "core/support/pair_search.h"
+#include "core/reference/line_oracle.h"
+#include "core/search/pair_search.h"
 
 namespace {
 

@@ -15,8 +15,8 @@
 #include <tuple>
 #include <vector>
 
+#include "core/reference/reference_integral.h"
 #include "core/support/meshes.h"
-#include "core/support/reference_integral.h"
 #include "volcontact/base/simd.h"
 #include "volcontact/pair/interference.h"
 

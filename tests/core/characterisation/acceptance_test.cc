@@ -5,9 +5,9 @@
 // of a bore in bored_lines_test.cc.
 #include <gtest/gtest.h>
 
+#include "core/reference/reference_integral.h"
 #include "core/support/evaluated.h"
 #include "core/support/random.h"
-#include "core/support/reference_integral.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact::test::acceptance_test {

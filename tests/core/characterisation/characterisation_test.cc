@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/support/characterisation.h"
+#include "core/search/characterisation.h"
 
 #include <gtest/gtest.h>
 

@@ -3,9 +3,9 @@
 // Poses that the search for failures found, once mended.
 #include <gtest/gtest.h>
 
-#include "core/support/contact_poses.h"
+#include "core/search/contact_poses.h"
+#include "core/search/overlap_checks.h"
 #include "core/support/evaluated.h"
-#include "core/support/overlap_checks.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact::test::found_poses_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/support/fuzz.h"
+#include "core/search/fuzz.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The judge of the random search, by formulas that are in books.
-#include "core/support/line_oracle.h"
+#include "core/reference/line_oracle.h"
 
 #include <gtest/gtest.h>
 

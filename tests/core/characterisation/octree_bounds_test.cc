@@ -3,8 +3,8 @@
 // through solids that are written down once more: no cells, no pieces, no signed distances.
 #include <gtest/gtest.h>
 
-#include "core/support/fuzz.h"
-#include "core/support/line_lattice.h"
+#include "core/reference/line_lattice.h"
+#include "core/search/fuzz.h"
 #include "core/support/random_solids.h"
 #include "volcontact/pair/octree/octree.h"
 

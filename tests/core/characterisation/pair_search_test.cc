@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/support/pair_search.h"
+#include "core/search/pair_search.h"
 
 #include <gtest/gtest.h>
 

@@ -9,10 +9,10 @@
 #include <functional>
 #include <utility>
 
+#include "core/reference/reference_integral.h"
+#include "core/search/fuzz.h"
 #include "core/support/evaluated.h"
-#include "core/support/fuzz.h"
 #include "core/support/random.h"
-#include "core/support/reference_integral.h"
 #include "core/support/sanitized.h"
 #include "volcontact/pair/interference.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/support/reference_integral.h"
+#include "core/reference/reference_integral.h"
 
 #include <gtest/gtest.h>
 
-#include "core/support/common_point.h"
-#include "core/support/contact_poses.h"
+#include "core/reference/common_point.h"
+#include "core/search/contact_poses.h"
 #include "core/support/csg_solids.h"
 #include "core/support/evaluated.h"
 

@@ -2,7 +2,7 @@
 // Overlaps of a rounded box: against closed forms, and against lines of other code.
 #include <gtest/gtest.h>
 
-#include "core/support/line_lattice.h"
+#include "core/reference/line_lattice.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact::rounded_box_pairs_test {

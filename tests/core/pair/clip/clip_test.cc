@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "core/support/column_oracle.h"
+#include "core/reference/column_oracle.h"
 #include "core/support/gradient.h"
 #include "core/support/matchers.h"
 #include "core/support/random_shapes.h"

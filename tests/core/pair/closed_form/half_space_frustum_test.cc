@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/closed_form/half_space_frustum.h"
 
+#include "core/reference/section_oracle.h"
 #include "core/support/half_space_checks.h"
-#include "core/support/section_oracle.h"
 
 namespace volcontact::half_space_frustum_test {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/support/disc_oracle.h"
+#include "core/reference/disc_oracle.h"
 #include "core/support/gradient.h"
 #include "core/support/matchers.h"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/support/reference_integral.h"
+#include "core/reference/reference_integral.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <map>
 #include <vector>
 
-#include "core/support/common_point.h"
+#include "core/reference/common_point.h"
 
 namespace volcontact::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/support/contact_poses.h"
+#include "core/search/contact_poses.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact::test {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/support/fuzz.h"
+#include "core/search/fuzz.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <limits>
 #include <tuple>
 
-#include "core/support/overlap_checks.h"
+#include "core/search/overlap_checks.h"
 
 namespace volcontact::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/support/contact_poses.h"
+#include "core/search/contact_poses.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact::test {

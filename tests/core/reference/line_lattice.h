@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/reference/reference_solid.h"
 #include "core/support/random.h"
-#include "core/support/reference_solid.h"
 
 namespace volcontact::test {
 

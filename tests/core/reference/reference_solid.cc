@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/support/reference_solid.h"
+#include "core/reference/reference_solid.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/support/search_solids.h"
+#include "core/search/search_solids.h"
 
 #include <algorithm>
 #include <cstdio>

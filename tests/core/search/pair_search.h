@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/support/search_cases.h"
+#include "core/search/search_cases.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact::test {

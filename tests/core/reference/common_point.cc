@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/support/common_point.h"
+#include "core/reference/common_point.h"
 
 #include <cmath>
 

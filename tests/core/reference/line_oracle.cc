@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/support/line_oracle.h"
+#include "core/reference/line_oracle.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/support/contact_poses.h"
+#include "core/search/contact_poses.h"
 
 #include <algorithm>
 

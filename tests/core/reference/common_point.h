@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/support/reference_solid.h"
+#include "core/reference/reference_solid.h"
 
 namespace volcontact::test {
 

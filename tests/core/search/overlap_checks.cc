@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/support/overlap_checks.h"
+#include "core/search/overlap_checks.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

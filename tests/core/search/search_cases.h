@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "core/search/search_solids.h"
 #include "core/support/random.h"
-#include "core/support/search_solids.h"
 
 namespace volcontact::test {
 

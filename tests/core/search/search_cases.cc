@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/support/search_cases.h"
+#include "core/search/search_cases.h"
 
 #include <algorithm>
 

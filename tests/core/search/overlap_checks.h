@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/support/contact_poses.h"
+#include "core/search/contact_poses.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact::test {

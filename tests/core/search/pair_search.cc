@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/support/pair_search.h"
+#include "core/search/pair_search.h"
 
 #include <algorithm>
 #include <ctime>
 
-#include "core/support/line_oracle.h"
+#include "core/reference/line_oracle.h"
 
 namespace volcontact::test {
 namespace {

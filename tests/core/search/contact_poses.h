@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/reference/reference_integral.h"
 #include "core/support/random.h"
-#include "core/support/reference_integral.h"
 
 namespace volcontact::test {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/support/implicit_solid.h"
+#include "core/reference/implicit_solid.h"
 #include "core/support/random.h"
 #include "volcontact/base/fields.h"
 

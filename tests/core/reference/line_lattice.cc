@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/support/line_lattice.h"
+#include "core/reference/line_lattice.h"
 
 namespace volcontact::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/support/implicit_solid.h"
+#include "core/reference/implicit_solid.h"
 #include "core/support/meshes.h"
 #include "volcontact/shape/shapes.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/support/implicit_solid.h"
+#include "core/reference/implicit_solid.h"
 
 #include <algorithm>
 #include <limits>
