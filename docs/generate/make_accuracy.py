@@ -60,8 +60,8 @@ gets the first of them only.
 
 The judge is an integral that shares no code with the engines: exact intervals of lines in three
 directions, nested Gauss quadrature between all changes of face
-([reference_integral.h](../tests/core/reference/reference_integral.h)). Composed solids are written as
-a sum of intersections first, so that no region can be overlooked. It knows V to about 1e-9 and
+([reference_integral.h](../tests/core/reference/reference_integral.h)). Composed solids are written
+as a sum of intersections first, so that no region can be overlooked. It knows V to about 1e-9 and
 areas to about 1e-6, less where surfaces are tangent. Smaller errors than these are its own. That
 closed forms and clipping are exact to rounding is tested in `tests/core/pair` and in
 [acceptance_test.cc](../tests/core/characterisation/acceptance_test.cc).

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws the figures of docs/studies from the rows of the two studies, and prints the numbers.
 
-./run volcontact study run mjcf_models/studies/NAME/study.toml --out build/studies/NAME   (both names)
+./run volcontact study run mjcf_models/studies/NAME/study.toml --out build/studies/NAME  # both
 ./run python docs/generate/make_studies.py
 """
 

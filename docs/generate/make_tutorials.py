@@ -9,9 +9,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import volcontact
-from volcontact.driving import Drive
 from volcontact.report.plots import plots_of_run
-from volcontact.simulation import simulate
+from volcontact.running.driving import Drive
+from volcontact.running.simulation import simulate
 
 PICTURE = Path(__file__).parents[1] / "tutorials" / "insertion.svg"
 TEMPLATE = Path(volcontact.__file__).parent / "templates" / "insertion"

@@ -6,8 +6,8 @@
 #include "bindings.h"
 
 // nanobind answers a wrong argument by listing its C++ signatures. Whatever is called here goes
-// through one function more, which asks volcontact.type_errors for a line that names the argument,
-// what it takes and what it got.
+// through one function more, which asks volcontact.messages.type_errors for a line that names the
+// argument, what it takes and what it got.
 
 namespace volcontact::python {
 namespace {
@@ -47,7 +47,7 @@ void explain(PyObject* callable, PyObject* const* args, size_t flagged, PyObject
       keywords[nb::handle(PyTuple_GET_ITEM(names, static_cast<Py_ssize_t>(i)))] =
           nb::handle(args[count + i]);
     }
-    const nb::object line = nb::module_::import_("volcontact.type_errors")
+    const nb::object line = nb::module_::import_("volcontact.messages.type_errors")
                                 .attr("explained")(nb::handle(is_init ? type->second : callable),
                                                    positional, keywords, error.value());
     PyErr_SetObject(PyExc_TypeError, line.ptr());

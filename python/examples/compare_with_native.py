@@ -4,7 +4,7 @@
 ./run python python/examples/compare_with_native.py
 """
 
-from volcontact.simulation import simulate
+from volcontact.running.simulation import simulate
 
 SCENE = """
 <mujoco>

@@ -42,12 +42,12 @@ from volcontact._volcontact import (
     series_restitution,
     series_stiffness,
 )
-from volcontact.audit import Audit
 from volcontact.convergence import Convergence, Estimate, converge
 from volcontact.fmu import export_fmu, export_scene_fmu, merge_fmus
 from volcontact.identify import identify
 from volcontact.own_laws import FrictionLaw, LawField, LawState, NormalLaw
-from volcontact.recorder import Recorder
+from volcontact.running.audit import Audit
+from volcontact.running.recorder import Recorder
 from volcontact.scene import Contact, attach, contact_forces, load
 from volcontact.study import Study, StudyError
 from volcontact.surface import SiteSurface

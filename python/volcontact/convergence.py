@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any, Literal
 import mujoco
 
 from volcontact.given_keys import Values
-from volcontact.recording import ContactKind, Recording
+from volcontact.running.recording import ContactKind, Recording
 
 if TYPE_CHECKING:
-    from volcontact.driving import Drive
     from volcontact.report.design_pose import DesignPose
+    from volcontact.running.driving import Drive
 
 __all__ = ["Convergence", "Estimate", "converge", "estimate"]
 
@@ -197,7 +197,7 @@ def converge(
         ValueError: the scene cannot be read or understood.
     """
     from volcontact.report.design_pose import read_design_pose
-    from volcontact.simulation import SimulationError, simulate
+    from volcontact.running.simulation import SimulationError, simulate
 
     if levels < 3:
         raise SimulationError(f"levels = {levels} must be 3 or more: an order takes three runs")
@@ -249,7 +249,7 @@ def _figures(
     run: Recording, design: DesignPose | None, quantities: Sequence[str]
 ) -> dict[str, tuple[str, float | None]]:
     from volcontact.report.key_figures import measured
-    from volcontact.simulation import SimulationError
+    from volcontact.running.simulation import SimulationError
 
     every = {
         name: (unit, value if value is not None and math.isfinite(value) else None)

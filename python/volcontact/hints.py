@@ -9,7 +9,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from volcontact.names import name_of
+from volcontact.messages.names import name_of
 
 SINKS = 0.02  # of a body's size: deeper than this at rest is worth a word [-]
 _LARGE = 5.0  # the least size of what moves, from which on it looks like millimetres [m]

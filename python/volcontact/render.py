@@ -129,8 +129,8 @@ class Renderer(Closing):
 
         Args:
             qpos: shape (nq,).
-            sites: structured array of `volcontact.recording.SITE`; drawn with force arrows, and
-                the moving bodies translucent. The arrow shows the force on the body that moves.
+            sites: of type `volcontact.running.recording.SITE`; drawn with force arrows, and the
+                moving bodies translucent. The arrow shows the force on the body that moves.
             surfaces: shape of each site, drawn as its patch within its translucent volume, which
                 is made thicker where it is too thin to be seen. Without, and under MuJoCo 2.2, a
                 disc of the area of the patch stands for them.

@@ -18,8 +18,8 @@ from volcontact._closing import Closing
 from volcontact.compiling import compile_scene
 from volcontact.given_keys import GivenKeys, Values
 from volcontact.lookout import Lookout
-from volcontact.names import name_of
-from volcontact.spelling import nearest
+from volcontact.messages.names import name_of
+from volcontact.messages.spelling import nearest
 from volcontact.surface import SiteSurface
 from volcontact.wrenches import wrench_on
 

@@ -15,7 +15,7 @@ import mujoco
 import numpy as np
 
 import volcontact as vc
-from volcontact.simulation import to_start
+from volcontact.running.simulation import to_start
 
 ROOT = Path(__file__).parents[2]
 SCENE = ROOT / "mjcf_models" / "battery_box" / "scene.xml"

@@ -25,7 +25,7 @@ import mujoco
 import numpy as np
 
 import volcontact as vc
-from volcontact.simulation import warnings_of
+from volcontact.running.simulation import warnings_of
 
 RESULT = Path(__file__).parent / "results" / "third_party.csv"
 PACKAGES = {

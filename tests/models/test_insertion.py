@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import volcontact as vc
-from volcontact.simulation import to_start
+from volcontact.running.simulation import to_start
 
 MODELS = Path(__file__).parents[2] / "mjcf_models"
 

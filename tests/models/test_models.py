@@ -15,7 +15,7 @@ import pytest
 
 import volcontact as vc
 from volcontact._mujoco_views import dense
-from volcontact.simulation import to_start
+from volcontact.running.simulation import to_start
 
 MODELS = Path(__file__).parents[2] / "mjcf_models"
 

@@ -18,7 +18,6 @@ from collections.abc import Iterator, Sequence
 import mujoco
 
 import volcontact
-from volcontact import extras
 from volcontact.cli import (
     bench,
     check,
@@ -36,6 +35,7 @@ from volcontact.cli import (
     view,
 )
 from volcontact.cli.terminal import Terminal
+from volcontact.messages import extras
 
 __all__ = ["main", "make_parser"]
 

@@ -13,8 +13,8 @@ import shtab
 if TYPE_CHECKING:
     from typing import TypeAlias
 
-    from volcontact.driving import Drive
     from volcontact.given_keys import Value
+    from volcontact.running.driving import Drive
 
     Subparsers: TypeAlias = argparse._SubParsersAction[argparse.ArgumentParser]
 
@@ -115,7 +115,7 @@ def add_keyframe(parser: argparse.ArgumentParser) -> None:
 
 def drive_of(arguments: argparse.Namespace) -> Drive:
     """What `add_drive` read."""
-    from volcontact.driving import Drive
+    from volcontact.running.driving import Drive
 
     names = [name for name, _ in arguments.ctrl]
     for name in names:

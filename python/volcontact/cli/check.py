@@ -61,8 +61,8 @@ def add_to(commands: Subparsers) -> None:
 
 def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     """Runs the command and returns the exit status."""
-    from volcontact.driving import to_keyframe
     from volcontact.hints import hints
+    from volcontact.running.driving import to_keyframe
 
     keys = {"material": dict(arguments.material), "options": dict(arguments.option)}
     model = volcontact.load(arguments.scene, **keys)
@@ -155,10 +155,10 @@ def _geom_name(model: mujoco.MjModel, geom: int) -> str:
 
 
 def _draw(arguments: argparse.Namespace, contact: volcontact.Contact, data: mujoco.MjData) -> None:
-    from volcontact.probes import recorded_sites
     from volcontact.render import camera_id
     from volcontact.report.pictures import png
     from volcontact.report.solids_picture import draw_solids
+    from volcontact.running.probes import recorded_sites
 
     if arguments.camera is not None:
         camera_id(contact.model, arguments.camera)

@@ -108,7 +108,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     from volcontact.cli.converge import error_of_step, print_estimates
     from volcontact.report import Comparison, Limits, files, fill_report
     from volcontact.report.design_pose import read_design_pose, read_peak_limits
-    from volcontact.simulation import simulate
+    from volcontact.running.simulation import simulate
 
     drive = drive_of(arguments)
     with contextlib.ExitStack() as stack:
@@ -170,7 +170,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
 
 def _renderer(arguments: argparse.Namespace) -> Renderer:
     from volcontact.render import Renderer, camera_id
-    from volcontact.simulation import native_model
+    from volcontact.running.simulation import native_model
 
     model = native_model(arguments.scene)
     if arguments.camera is not None:

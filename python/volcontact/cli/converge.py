@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from volcontact.cli.arguments import Subparsers
     from volcontact.cli.terminal import ProgressBars
     from volcontact.convergence import Convergence
-    from volcontact.recording import Recording
+    from volcontact.running.recording import Recording
 
 _EXAMPLES = """\
   volcontact converge scene.xml

@@ -19,7 +19,7 @@ import volcontact
 from volcontact import _adaptor, _volcontact
 from volcontact.cli.arguments import plain_command
 from volcontact.cli.terminal import Terminal
-from volcontact.extras import EXTRAS
+from volcontact.messages.extras import EXTRAS
 
 if TYPE_CHECKING:
     from volcontact.cli.arguments import Subparsers

@@ -132,7 +132,7 @@ def _of_metrics(metrics: volcontact.VolumeMetrics) -> dict[str, Any]:
 
 
 def _print_scene(scene: str, time: float | None, keyframe: str | None, terminal: Terminal) -> None:
-    from volcontact.driving import to_keyframe
+    from volcontact.running.driving import to_keyframe
 
     model = volcontact.load(scene)
     data = mujoco.MjData(model)

@@ -22,8 +22,8 @@ from volcontact.cli.terminal import Terminal
 from volcontact.report.units import digits, quantity
 
 if TYPE_CHECKING:
-    from volcontact.audit import Audit
     from volcontact.cli.arguments import Subparsers
+    from volcontact.running.audit import Audit
 
 _EXAMPLES = """\
   volcontact run scene.xml
@@ -95,7 +95,7 @@ def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     from volcontact.report import files
     from volcontact.report.comparison import run_summary
     from volcontact.report.design_pose import read_design_pose
-    from volcontact.simulation import simulate
+    from volcontact.running.simulation import simulate
 
     if arguments.plot and arguments.out is None:
         raise ValueError("--plot draws into the folder of --out DIR: name one")

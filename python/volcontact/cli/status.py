@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from volcontact.cli.terminal import Terminal
 
 if TYPE_CHECKING:
-    from volcontact.recording import Recording
+    from volcontact.running.recording import Recording
 
 TROUBLE = 3
 

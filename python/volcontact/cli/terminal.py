@@ -14,7 +14,7 @@ from rich.console import Console, ConsoleOptions, RenderableType
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 from rich.segment import Segment
 
-from volcontact.printable import printable
+from volcontact.messages.printable import printable
 
 _PATIENCE = 0.7  # a bar appears when the work has taken so long [s]
 

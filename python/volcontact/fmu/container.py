@@ -104,7 +104,7 @@ def of_scene(
     Raises:
         ValueError: a body is not there or named twice, or no two of them can touch.
     """
-    from volcontact.simulation import to_start
+    from volcontact.running.simulation import to_start
 
     model = load(scene, material=material, options=options)
     data = mujoco.MjData(model)

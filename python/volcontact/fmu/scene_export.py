@@ -77,7 +77,7 @@ def export_scene_fmu(
     check_choices("export_scene_fmu", fmi=fmi)
     if not sys.platform.startswith("linux"):
         raise RuntimeError("units of whole scenes are made on Linux")
-    from volcontact.simulation import to_start
+    from volcontact.running.simulation import to_start
 
     model = load(scene, material=material, options=options)
     if getattr(model, "nplugin", 0) > 0:

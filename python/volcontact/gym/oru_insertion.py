@@ -16,10 +16,10 @@ import numpy as np
 
 import volcontact as vc
 from volcontact.gym.scene_files import scene_file
-from volcontact.probes import native_sites, recorded_sites
 from volcontact.render import Renderer
-from volcontact.simulation import warnings_of
-from volcontact.watched import Kind, Watch, number
+from volcontact.running.probes import native_sites, recorded_sites
+from volcontact.running.simulation import warnings_of
+from volcontact.running.watched import Kind, Watch, number
 
 SCENE = "battery_insert_0g/scene.xml"
 CONTROL_PERIOD = 0.1  # [s]

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from volcontact.identify.estimators.search import Progress
     from volcontact.identify.run import Identified
-    from volcontact.identify.search import Progress
 
 __all__ = ["identify"]
 

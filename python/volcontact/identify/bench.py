@@ -16,10 +16,10 @@ from volcontact.identify.measurements import Trial
 from volcontact.identify.readers import level_of, make_reader
 from volcontact.identify.settings import Nuisance, Settings, StudyError
 from volcontact.identify.starts import disturbed, moved_joints, start_state
-from volcontact.simulation import native_model
+from volcontact.running.simulation import native_model
+from volcontact.running.watched import Watch
 from volcontact.study.mjcf import Document
 from volcontact.study.targets import LiveNumbers, changed_text, targets_of
-from volcontact.watched import Watch
 
 Values = dict[str, float]
 _ON_STEP = 1e-6  # part of a step within which a sample is at the step

@@ -13,7 +13,7 @@ import pyarrow as pa
 
 from volcontact.identify import rotations
 from volcontact.identify.settings import Frame, Measure, Settings, StudyError
-from volcontact.spelling import nearest
+from volcontact.messages.spelling import nearest
 
 _ORDER_SAMPLES = 5  # below these a wrong order of quaternions cannot be told
 

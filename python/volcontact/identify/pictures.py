@@ -9,9 +9,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from volcontact.identify import rotations
-from volcontact.identify.mcmc import Chain
+from volcontact.identify.estimators.mcmc import Chain
+from volcontact.identify.estimators.scales import Box
 from volcontact.identify.measurements import Trial
-from volcontact.identify.scales import Box
 from volcontact.identify.settings import Settings
 from volcontact.identify.units import SI
 from volcontact.report.palette import NATIVE, VOLUMETRIC

@@ -11,7 +11,7 @@ import numpy as np
 from volcontact.identify import rotations
 from volcontact.identify.settings import WIDTHS, Measure, StudyError
 from volcontact.identify.starts import free_joint
-from volcontact.spelling import nearest
+from volcontact.messages.spelling import nearest
 from volcontact.study.targets import joint_place
 
 

@@ -26,8 +26,8 @@ from volcontact.identify.settings import (
     Window,
 )
 from volcontact.identify.units import SIGMA_UNITS, UNITS
-from volcontact.spelling import nearest
-from volcontact.study.table import Table
+from volcontact.messages.spelling import nearest
+from volcontact.study.file.table import Table
 
 if sys.version_info >= (3, 11):
     import tomllib

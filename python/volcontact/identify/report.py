@@ -15,11 +15,11 @@ from matplotlib.figure import Figure
 from volcontact._files import appearing
 from volcontact.identify import pictures, scores
 from volcontact.identify.bench import Bench, Values
+from volcontact.identify.estimators.scales import Box
+from volcontact.identify.estimators.uncertainty import Known
 from volcontact.identify.measurements import Trial
-from volcontact.identify.scales import Box
 from volcontact.identify.settings import Settings
-from volcontact.identify.uncertainty import Known
-from volcontact.printable import printable
+from volcontact.messages.printable import printable
 from volcontact.report.svg import standing_alone
 
 _PAGE = Path(__file__).with_name("report.html.jinja")

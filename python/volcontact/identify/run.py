@@ -12,14 +12,15 @@ import mujoco
 import numpy as np
 
 from volcontact._files import appearing
-from volcontact.identify import least_squares, posterior, scores, uncertainty, words
+from volcontact.identify import scores, words
 from volcontact.identify.bench import Values
+from volcontact.identify.estimators import least_squares, posterior, uncertainty
+from volcontact.identify.estimators.scales import Box
+from volcontact.identify.estimators.search import Evaluations, Found, Progress, search, signature
+from volcontact.identify.estimators.uncertainty import Known
 from volcontact.identify.measurements import Trial, read_trials
 from volcontact.identify.pool import Pool
-from volcontact.identify.scales import Box
-from volcontact.identify.search import Evaluations, Found, Progress, search, signature
 from volcontact.identify.settings import Settings, StudyError
-from volcontact.identify.uncertainty import Known
 from volcontact.identify.windows import windowed
 
 RESULT, SCENE, REPORT = "identified.json", "identified.xml", "report.html"

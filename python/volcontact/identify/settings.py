@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from volcontact.study.settings import Input, StudyError
+from volcontact.study.file.settings import Input, StudyError
 
 __all__ = [
     "Estimator",

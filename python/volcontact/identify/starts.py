@@ -11,7 +11,7 @@ import numpy as np
 from volcontact.identify import rotations
 from volcontact.identify.measurements import Trial
 from volcontact.identify.settings import Measure, Nuisance, Settings, StudyError
-from volcontact.spelling import nearest
+from volcontact.messages.spelling import nearest
 from volcontact.study.targets import joint_place
 
 

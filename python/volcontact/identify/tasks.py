@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from volcontact.identify.bench import Bench, Values
-from volcontact.identify.costs import trial_cost
+from volcontact.identify.estimators.costs import trial_cost
 
 KINDS = ("costs", "errors", "raw", "predicted")
 

@@ -7,9 +7,9 @@ import math
 
 import numpy as np
 
-from volcontact.identify.scales import Box
+from volcontact.identify.estimators.scales import Box
+from volcontact.identify.estimators.uncertainty import Known
 from volcontact.identify.settings import Parameter, Settings
-from volcontact.identify.uncertainty import Known
 
 CORRELATED = 0.98  # of two parameters that only their combination is known of
 _WIDE = 0.5  # part of the range that an interval may fill

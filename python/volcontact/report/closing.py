@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from volcontact.recording import Recording
 from volcontact.report.comparison import Comparison, is_seated, peak
 from volcontact.report.design_pose import DesignPose, angle_between
 from volcontact.report.units import angle, digits, quantity, ratio
+from volcontact.running.recording import Recording
 
 _AT_REST = 1e-3  # [m/s]
 

@@ -10,9 +10,9 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from volcontact.convergence import Convergence
-from volcontact.outside_work import CHANNELS as OUTSIDE
-from volcontact.recording import Recording
 from volcontact.report.design_pose import DesignPose, angle_between
+from volcontact.running.outside_work import CHANNELS as OUTSIDE
+from volcontact.running.recording import Recording
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,11 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 
-from volcontact.outside_work import CHANNELS as OUTSIDE
-from volcontact.recording import CHANNELS, Recording
 from volcontact.report import palette
 from volcontact.report.comparison import Comparison
 from volcontact.report.series import POINTS, Series
+from volcontact.running.outside_work import CHANNELS as OUTSIDE
+from volcontact.running.recording import CHANNELS, Recording
 
 
 def draw_volumetric_energy(axes: Axes, comparison: Comparison) -> list[Series]:

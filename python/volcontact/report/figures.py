@@ -15,12 +15,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from volcontact.recording import Recording
 from volcontact.report import palette
 from volcontact.report.comparison import Comparison, offset_from
 from volcontact.report.energy_figures import draw_native_energy, draw_volumetric_energy
 from volcontact.report.series import POINTS, Series
 from volcontact.report.svg import INK, LINE, MUTED, inline, standing_alone
+from volcontact.running.recording import Recording
 
 _SIZE = (4.2, 2.8)  # inches: readable when shrunk to a phone
 _FORCE_FLOOR = 1.0  # [N], lowest value of the logarithmic axis

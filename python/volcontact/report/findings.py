@@ -9,8 +9,6 @@ from typing import Literal
 
 import numpy as np
 
-from volcontact.outside_work import CHANNELS as OUTSIDE
-from volcontact.recording import CHANNELS, Recording
 from volcontact.report.comparison import (
     Comparison,
     first_touch,
@@ -21,6 +19,8 @@ from volcontact.report.comparison import (
 )
 from volcontact.report.design_pose import DesignPose, angle_between
 from volcontact.report.units import angle, area, digits, nominal, quantity, ratio
+from volcontact.running.outside_work import CHANNELS as OUTSIDE
+from volcontact.running.recording import CHANNELS, Recording
 
 _AT_REST = 1e-3  # [m/s]
 _NO_WORK = 1e-12  # of a channel that is not told [J]

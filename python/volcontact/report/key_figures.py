@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from volcontact.recording import Recording
 from volcontact.report.comparison import Comparison, first_touch, is_seated, offset_from, peak
 from volcontact.report.design_pose import DesignPose
 from volcontact.report.units import angle, digits, quantity
+from volcontact.running.recording import Recording
 
 
 @dataclass(frozen=True)

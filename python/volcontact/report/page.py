@@ -12,8 +12,7 @@ import jinja2
 import numpy as np
 from markupsafe import Markup
 
-from volcontact.printable import printable
-from volcontact.recording import Frame, Recording
+from volcontact.messages.printable import printable
 from volcontact.report import palette, step_error
 from volcontact.report.comparison import Comparison
 from volcontact.report.description import tables
@@ -22,6 +21,7 @@ from volcontact.report.findings import findings
 from volcontact.report.key_figures import key_figures_side_by_side
 from volcontact.report.pictures import FramePair, png, reference_force
 from volcontact.report.units import area, nominal, quantity
+from volcontact.running.recording import Frame, Recording
 
 _PALETTE_COLORS = 200  # of the embedded pictures; the files in frames/ keep all
 

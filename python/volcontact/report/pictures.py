@@ -12,11 +12,11 @@ import matplotlib
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from volcontact.recording import Frame, Recording
 from volcontact.render import Renderer, SiteStyle
 from volcontact.report import palette
 from volcontact.report.comparison import Comparison
 from volcontact.report.film import write_film
+from volcontact.running.recording import Frame, Recording
 
 _BAR = 36  # height of the caption bar [pixel]
 _GAP = 4  # between the two pictures [pixel]

@@ -8,13 +8,13 @@ from collections.abc import Iterable, Iterator, Mapping
 import numpy as np
 from matplotlib.axes import Axes
 
-from volcontact.printable import drawn
-from volcontact.recording import Recording
+from volcontact.messages.printable import drawn
+from volcontact.messages.spelling import nearest
 from volcontact.report import palette
 from volcontact.report.figures import Curve, Plan, curve_of_plan, thin_rows
 from volcontact.report.series import Series
 from volcontact.report.table import columns_of
-from volcontact.spelling import nearest
+from volcontact.running.recording import Recording
 
 _MOST = 6  # curves of what a scene measures that are drawn unasked
 

@@ -11,7 +11,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from volcontact._mujoco_views import dense
-from volcontact.names import name_of
+from volcontact.messages.names import name_of
 from volcontact.render import Renderer, SiteStyle
 from volcontact.report.palette import MATERIALS, OTHER_MATERIALS, VOLUMETRIC, rgb
 from volcontact.report.solids_drawing import solids_of, surface
@@ -41,7 +41,7 @@ def draw_solids(
     Args:
         contact: of the scene.
         data: evaluated.
-        sites: structured array of `volcontact.recording.SITE`; with any, what moves is translucent.
+        sites: of type `volcontact.running.recording.SITE`; with any, what moves is translucent.
         width: of the picture [pixel].
         height: of the picture [pixel].
         camera: of the scene; None takes its first, or a view of all.

@@ -11,9 +11,9 @@ import pyarrow as pa
 import pyarrow.csv as csv
 import pyarrow.parquet as pq
 
-from volcontact.outside_work import CHANNELS as OUTSIDE
-from volcontact.printable import cell
-from volcontact.recording import CHANNELS, Recording
+from volcontact.messages.printable import cell
+from volcontact.running.outside_work import CHANNELS as OUTSIDE
+from volcontact.running.recording import CHANNELS, Recording
 
 _UNITS = {
     "time": "s",

@@ -8,7 +8,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from volcontact.study.settings import Settings, StudyError
+from volcontact.study.file.settings import Settings, StudyError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -40,7 +40,7 @@ class Study:
     def __init__(
         self, path: str | os.PathLike[str], *, trials: int | None = None, seed: int | None = None
     ) -> None:
-        from volcontact.study.reading import read_study
+        from volcontact.study.file.reading import read_study
 
         settings = read_study(path)
         sample = settings.sample

@@ -12,8 +12,8 @@ from collections.abc import Generator
 
 import numpy as np
 
+from volcontact.study.file.settings import Settings
 from volcontact.study.inputs import Quantiles
-from volcontact.study.settings import Settings
 
 Values = dict[str, np.ndarray]
 Steps = Generator[Values, np.ndarray, None]

@@ -20,7 +20,7 @@ import threading
 import time
 from typing import IO, Any, NamedTuple
 
-from volcontact.study.settings import Settings
+from volcontact.study.file.settings import Settings
 
 _HEAD = struct.Struct("<Q")
 _START_LIMIT = 300.0  # for Python, MuJoCo and the first model [s]

@@ -10,9 +10,9 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from volcontact.spelling import nearest
+from volcontact.messages.spelling import nearest
+from volcontact.study.file.settings import StudyError
 from volcontact.study.functions import Functions
-from volcontact.study.settings import StudyError
 
 POLICIES = ("force_guided",)
 Controller = Callable[[mujoco.MjData], None]

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from volcontact.study.file.settings import Settings
 from volcontact.study.inputs import Quantiles, signature_takes
-from volcontact.study.settings import Settings
 
 BLOCK = 256
 
@@ -114,7 +114,7 @@ class Design:
     def problem(self) -> dict[str, Any]:
         """The inputs as SALib names them: the unit cube."""
         if self._dimension != len(self._settings.inputs):
-            from volcontact.study.settings import StudyError
+            from volcontact.study.file.settings import StudyError
 
             raise StudyError(
                 f"[sample] method = {self._sample.method!r}: takes neither rotations nor inputs "

@@ -14,10 +14,10 @@ import pyarrow as pa
 
 from volcontact.study.child import Batch
 from volcontact.study.engines import Engine, make_engine
+from volcontact.study.file.reading import parse_study
+from volcontact.study.file.settings import Settings, StudyError
 from volcontact.study.plans import Plan, Round, row_values
-from volcontact.study.reading import parse_study
 from volcontact.study.results import MARKER, STUDY, Folder, provenance_of, schema_of, session
-from volcontact.study.settings import Settings, StudyError
 from volcontact.study.trial import Runner
 
 Progress = Callable[[int, int, dict[str, int]], None]

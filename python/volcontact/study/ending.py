@@ -10,11 +10,11 @@ import mujoco
 import numpy as np
 
 from volcontact._adaptor import RawEnergy, RawWatch, adaptor
-from volcontact.recording import CHANNELS
-from volcontact.simulation import warnings_of
+from volcontact.running.recording import CHANNELS
+from volcontact.running.simulation import warnings_of
+from volcontact.running.watched import Reading, Watch
+from volcontact.study.file.settings import Settings
 from volcontact.study.quantities import Quantities
-from volcontact.study.settings import Settings
-from volcontact.watched import Reading, Watch
 
 _FELT = ("peak_force", "peak_torque", "peak_site_force", "most_sites", "first_touch")  # neighbours
 _PLACE = RawWatch.peak_force.offset // 8

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from volcontact.study.child import Batch, BatchResult, end_children, run_batch
-from volcontact.study.settings import Settings, StudyError
+from volcontact.study.file.settings import Settings, StudyError
 
 ENGINES = ("serial", "processes", "ray", "dask")
 _LOST_WORKERS = 20  # of a Dask batch, until something must be wrong

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from volcontact.spelling import nearest
-from volcontact.study.settings import StudyError
+from volcontact.messages.spelling import nearest
+from volcontact.study.file.settings import StudyError
 
 ENVIRONMENTS = ("volcontact/ORUInsertion-v0",)
 _WHOLE = ("success", "pose", "jammed")  # one thing each, not to be mixed with the environment's

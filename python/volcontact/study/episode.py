@@ -9,8 +9,8 @@ from typing import Any
 
 import mujoco
 
+from volcontact.study.file.settings import Settings
 from volcontact.study.scene import Scene
-from volcontact.study.settings import Settings
 
 Watcher = Callable[[mujoco.MjModel, mujoco.MjData, Any], None]
 _LONGEST = 1000  # steps in one call, so that a signal is heard

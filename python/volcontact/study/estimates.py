@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from volcontact.study.designs import BLOCK
-from volcontact.study.settings import Settings
+from volcontact.study.file.settings import Settings
 
 if TYPE_CHECKING:
     import pyarrow as pa

@@ -9,8 +9,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from volcontact.spelling import nearest
-from volcontact.study.settings import StudyError
+from volcontact.messages.spelling import nearest
+from volcontact.study.file.settings import StudyError
 
 
 class Functions:

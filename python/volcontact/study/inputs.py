@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from volcontact.spelling import nearest
-from volcontact.study.settings import Input, Settings, StudyError
+from volcontact.messages.spelling import nearest
+from volcontact.study.file.settings import Input, Settings, StudyError
 
 CORRELATED = ("distribution",)
 _INSIDE = 1e-16  # distance that quantiles keep from 0 and 1

@@ -7,8 +7,8 @@ import copy
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-from volcontact.spelling import nearest
-from volcontact.study.settings import StudyError
+from volcontact.messages.spelling import nearest
+from volcontact.study.file.settings import StudyError
 
 
 class Document:

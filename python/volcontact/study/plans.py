@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from volcontact.study.designs import Design
-from volcontact.study.settings import ADAPTIVE, Settings
+from volcontact.study.file.settings import ADAPTIVE, Settings
 
 Values = dict[str, np.ndarray]
 

@@ -8,10 +8,10 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from volcontact.spelling import nearest
-from volcontact.study.settings import Condition, StudyError
+from volcontact.messages.spelling import nearest
+from volcontact.running.watched import Kind, Number, Range, number
+from volcontact.study.file.settings import Condition, StudyError
 from volcontact.study.targets import joint_place
-from volcontact.watched import Kind, Number, Range, number
 
 KINDS = (
     "time",

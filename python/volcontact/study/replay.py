@@ -17,14 +17,14 @@ import mujoco
 import numpy as np
 
 import volcontact
-from volcontact.probes import probe_of
-from volcontact.recorder import Recorder
-from volcontact.recording import ContactKind, Recording
-from volcontact.simulation import RunRecorder
+from volcontact.running.probes import probe_of
+from volcontact.running.recorder import Recorder
+from volcontact.running.recording import ContactKind, Recording
+from volcontact.running.simulation import RunRecorder
 from volcontact.study.driver import settings_of
+from volcontact.study.file.settings import Settings, StudyError
 from volcontact.study.results import Folder
 from volcontact.study.scene import Scene
-from volcontact.study.settings import Settings, StudyError
 from volcontact.study.trial import Runner
 from volcontact.view.history import Snapshot
 from volcontact.view.playback import Playback

@@ -15,14 +15,14 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from volcontact._files import appearing
-from volcontact.printable import printable
+from volcontact.messages.printable import printable
+from volcontact.messages.spelling import nearest
 from volcontact.report.svg import standing_alone
-from volcontact.spelling import nearest
 from volcontact.study import figures
 from volcontact.study.driver import settings_of
 from volcontact.study.estimates import rare_event, sensitivity, wilson
+from volcontact.study.file.settings import Settings, StudyError
 from volcontact.study.results import Folder
-from volcontact.study.settings import Settings, StudyError
 
 _PAGE = """\
 <!doctype html>

@@ -21,7 +21,7 @@ import pyarrow.parquet as pq
 
 import volcontact
 from volcontact._files import appearing
-from volcontact.study.settings import Settings, StudyError
+from volcontact.study.file.settings import Settings, StudyError
 
 STUDY, PROVENANCE, TRIALS = "study.toml", "provenance.json", "trials"
 LOCK, MARKER = ".lock", ".trial"  # held by the driver; the trial that a serial one runs

@@ -10,13 +10,13 @@ import numpy as np
 
 from volcontact import scene as volumetric_scene
 from volcontact.given_keys import GivenKeys
-from volcontact.simulation import native_model
-from volcontact.spelling import nearest
+from volcontact.messages.spelling import nearest
+from volcontact.running.simulation import native_model
+from volcontact.running.watched import Watch
 from volcontact.study.ending import Ending
+from volcontact.study.file.settings import Settings, StudyError
 from volcontact.study.quantities import Quantities, keyframe_id
-from volcontact.study.settings import Settings, StudyError
 from volcontact.study.targets import LiveNumbers, Target
-from volcontact.watched import Watch
 
 
 class Scene:

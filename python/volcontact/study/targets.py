@@ -17,9 +17,9 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from volcontact.spelling import nearest
+from volcontact.messages.spelling import nearest
+from volcontact.study.file.settings import Input, StudyError
 from volcontact.study.mjcf import Document, missing, with_value
-from volcontact.study.settings import Input, StudyError
 
 _STATES = ("qpos", "qvel", "act")
 # Attribute of an element -> array of the model. Nothing else is computed from these.

@@ -8,15 +8,15 @@ from typing import Any
 
 import mujoco
 
-from volcontact.recording import CHANNELS
-from volcontact.spelling import nearest
+from volcontact.messages.spelling import nearest
+from volcontact.running.recording import CHANNELS
 from volcontact.study.control import POLICIES, check_control, make_controller
 from volcontact.study.designs import trial_generator
 from volcontact.study.episode import Episode, Watcher
+from volcontact.study.file.settings import ADAPTIVE, Settings, StudyError
 from volcontact.study.functions import Functions
 from volcontact.study.mjcf import Document
 from volcontact.study.scene import Scene
-from volcontact.study.settings import ADAPTIVE, Settings, StudyError
 from volcontact.study.targets import changed_text, targets_of
 
 Row = dict[str, Any]

@@ -14,7 +14,7 @@ import mujoco
 import numpy as np
 
 from volcontact._closing import Closing
-from volcontact.extras import advice
+from volcontact.messages.extras import advice
 from volcontact.render import View, default_view
 from volcontact.report.palette import NATIVE, VOLUMETRIC, rgb
 from volcontact.view.controls import Controls

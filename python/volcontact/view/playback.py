@@ -9,8 +9,8 @@ from collections.abc import Callable, Sequence
 
 import mujoco
 
-from volcontact.driving import Drive, Driver
-from volcontact.recording import ContactKind
+from volcontact.running.driving import Drive, Driver
+from volcontact.running.recording import ContactKind
 from volcontact.scene import Contact, attach, load
 from volcontact.view.hand import Hand
 from volcontact.view.history import History, Snapshot

@@ -11,9 +11,9 @@ import mujoco
 import numpy as np
 
 from volcontact._closing import Closing
-from volcontact.driving import Drive, Driver
-from volcontact.probes import native_sites, recorded_sites
-from volcontact.recording import ContactKind
+from volcontact.running.driving import Drive, Driver
+from volcontact.running.probes import native_sites, recorded_sites
+from volcontact.running.recording import ContactKind
 from volcontact.scene import Contact, attach, load
 from volcontact.view.drawing import SiteDrawing, draw_sites
 from volcontact.view.hand import Hand
@@ -30,7 +30,7 @@ class Stage(Closing):
     Args:
         scene: path of an MJCF file, or MJCF text.
         contact: "volumetric" or "native", to begin with.
-        drive: where it starts, and its controls over time, as of `volcontact.driving.Drive`.
+        drive: where it starts, and its controls over time: a `volcontact.running.driving.Drive`.
 
     Attributes:
         model: of the scene.
@@ -151,7 +151,7 @@ class Stage(Closing):
                 self._show_state()
 
     def sites(self) -> np.ndarray:
-        """Contacts of the present state: structured array of `volcontact.recording.SITE`."""
+        """Contacts of the present state, of type `volcontact.running.recording.SITE`."""
         with self.lock:
             if self._contact is None:
                 return native_sites(self.model, self.data)

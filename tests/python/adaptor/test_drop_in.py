@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import volcontact as vc
-from volcontact.simulation import simulate
+from volcontact.running.simulation import simulate
 
 SCENE = """
 <mujoco model="theirs">

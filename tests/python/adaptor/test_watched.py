@@ -11,8 +11,8 @@ import pytest
 
 import volcontact as vc
 from volcontact._mujoco_views import dense
-from volcontact.probes import native_sites
-from volcontact.watched import Kind, Range, Watch, number, read
+from volcontact.running.probes import native_sites
+from volcontact.running.watched import Kind, Range, Watch, number, read
 
 SCENE = """\
 <mujoco>

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import volcontact as vc
-from volcontact.simulation import to_start
+from volcontact.running.simulation import to_start
 
 pytest.importorskip("fmpy", reason="FMPy is missing: pip install fmpy")
 from fmu_master import Exchange, Master, RigidBody

@@ -10,7 +10,7 @@ import pytest
 
 import volcontact as vc
 from volcontact.identify.bench import Bench
-from volcontact.identify.costs import trial_cost
+from volcontact.identify.estimators.costs import trial_cost
 from volcontact.identify.measurements import read_trials
 from volcontact.identify.reading import read_settings
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import volcontact as vc
-from volcontact.identify.mcmc import LENGTH, Request, walk
+from volcontact.identify.estimators.mcmc import LENGTH, Request, walk
 from volcontact.identify.reading import read_settings
 from volcontact.identify.run import run
 

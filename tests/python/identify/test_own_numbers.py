@@ -4,12 +4,12 @@
 import numpy as np
 from synthetic_tosses import FRAMES, NUISANCE, noisy, parameter, scene, tosses, write
 
-from volcontact.identify.least_squares import Residuals
+from volcontact.identify.estimators.least_squares import Residuals
+from volcontact.identify.estimators.own_numbers import settled, standing_out
+from volcontact.identify.estimators.scales import Box
 from volcontact.identify.measurements import read_trials
-from volcontact.identify.own_numbers import settled, standing_out
 from volcontact.identify.pool import Pool
 from volcontact.identify.reading import read_settings
-from volcontact.identify.scales import Box
 
 TRUE = {"stiffness": 5e8, "damping": 4.0, "friction": 0.18, "slip_speed": 0.01}
 

@@ -13,8 +13,8 @@ import pytest
 
 from volcontact.cli import main, make_parser, new
 from volcontact.cli.new import TEMPLATES
-from volcontact.driving import Drive
-from volcontact.simulation import simulate
+from volcontact.running.driving import Drive
+from volcontact.running.simulation import simulate
 from volcontact.typed_solids import SHAPES
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from volcontact.cli import main
-from volcontact.extras import EXTRAS
+from volcontact.messages.extras import EXTRAS
 
 ROOT = Path(__file__).parents[3]
 
@@ -48,7 +48,7 @@ def test_a_command_that_needs_an_extra_names_it(without, command, extra, capsys)
 
 
 def test_another_missing_module_is_not_hidden(monkeypatch):
-    monkeypatch.setitem(sys.modules, "volcontact.simulation", None)
+    monkeypatch.setitem(sys.modules, "volcontact.running.simulation", None)
     with pytest.raises(ModuleNotFoundError):
         main(["run", str(ROOT / "mjcf_models" / "static_cube" / "scene.xml")])
 

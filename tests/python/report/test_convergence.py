@@ -10,7 +10,7 @@ import pytest
 import volcontact as vc
 from volcontact.cli import main
 from volcontact.convergence import estimate
-from volcontact.simulation import SimulationError
+from volcontact.running.simulation import SimulationError
 
 STEPS = tuple(1e-3 / 2**level for level in range(5))
 # Pressed in by 1 mm, and let go without weight.
@@ -155,7 +155,7 @@ def test_runs_that_blow_up_are_told_and_have_no_figures(tmp_path, capsys):
 
 
 def test_tolerance_of_the_scene_is_the_one_that_is_divided(monkeypatch):
-    from volcontact import simulation
+    from volcontact.running import simulation
 
     asked = []
     simulate = simulation.simulate

@@ -9,8 +9,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from volcontact.recording import SITE
 from volcontact.render import Renderer, RenderError, SiteStyle, View, default_view
+from volcontact.running.recording import SITE
 from volcontact.surface import SiteSurface
 
 SCENE = """

@@ -72,9 +72,9 @@ def test_volume_of_the_shapes(peg, expected):
 
 
 def test_hole_is_open_in_the_picture():
-    from volcontact.probes import recorded_sites
     from volcontact.report.palette import MATERIALS, rgb
     from volcontact.report.solids_picture import draw_solids
+    from volcontact.running.probes import recorded_sites
 
     model = vc.load(SCENE.format(peg="sphere").replace('pos="0 0 0.3"', 'pos="0.3 0 0.3"'))
     data = mujoco.MjData(model)

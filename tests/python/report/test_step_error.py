@@ -12,7 +12,7 @@ import volcontact as vc
 from volcontact.cli import main
 from volcontact.convergence import blow_of
 from volcontact.report import step_error
-from volcontact.simulation import simulate
+from volcontact.running.simulation import simulate
 
 ROOT = Path(__file__).parents[3]
 # A block on a spring of contact: presses on it and lets go, or lies on it.

@@ -135,8 +135,8 @@ def test_history_forgets_its_oldest_where_memory_ends():
 
 
 def test_record_steps_as_simulate_does_and_is_driven():
-    from volcontact.driving import Drive
-    from volcontact.simulation import simulate
+    from volcontact.running.driving import Drive
+    from volcontact.running.simulation import simulate
 
     drive = Drive(keyframe="aside", controls={"push": 2.0})
     run = simulate(DRIVEN, duration=0.4, drive=drive, frame_interval=None)

@@ -10,7 +10,7 @@ import pytest
 
 import volcontact as vc
 from volcontact.cli import main
-from volcontact.simulation import simulate
+from volcontact.running.simulation import simulate
 
 MODELS = Path(__file__).resolve().parents[3] / "mjcf_models"
 

@@ -7,9 +7,9 @@ import mujoco
 import numpy as np
 import pytest
 
-from volcontact.control_table import ControlTable, read_controls
-from volcontact.driving import Drive
-from volcontact.simulation import simulate
+from volcontact.running.control_table import ControlTable, read_controls
+from volcontact.running.driving import Drive
+from volcontact.running.simulation import simulate
 
 MASS = 2.0
 SCENE = f"""

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import volcontact as vc
-from volcontact.simulation import simulate
+from volcontact.running.simulation import simulate
 
 GRAVITY, MASS = 9.81, 2.0
 SCENE = f"""

@@ -8,7 +8,7 @@ from html import escape
 import pytest
 
 from volcontact.cli import main
-from volcontact.printable import cell, printable
+from volcontact.messages.printable import cell, printable
 
 SCENE = """
 <mujoco>

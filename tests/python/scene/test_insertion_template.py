@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import volcontact
-from volcontact.driving import Drive
-from volcontact.simulation import simulate
+from volcontact.running.driving import Drive
+from volcontact.running.simulation import simulate
 
 FOLDER = Path(volcontact.__file__).parent / "templates" / "insertion"
 FRICTION = 0.47
@@ -26,7 +26,7 @@ def run(request):
 
 
 def volcontact_table(times, press):
-    from volcontact.control_table import ControlTable
+    from volcontact.running.control_table import ControlTable
 
     return ControlTable(times, {"press": press})
 

@@ -81,8 +81,8 @@ def test_a_body_that_begins_in_another_is_given_time_to_part():
 
 
 def test_a_run_tells_it_in_its_notes_alone():
-    from volcontact.driving import Drive
-    from volcontact.simulation import simulate
+    from volcontact.running.driving import Drive
+    from volcontact.running.simulation import simulate
 
     drive = Drive(controls={"left": 15, "right": 15})
     with warnings.catch_warnings():

@@ -5,11 +5,11 @@ import mujoco
 import numpy as np
 import pytest
 
-from volcontact.control_table import ControlTable
-from volcontact.driving import Drive
-from volcontact.outside_work import CHANNELS
 from volcontact.report.findings import findings
-from volcontact.simulation import simulate
+from volcontact.running.control_table import ControlTable
+from volcontact.running.driving import Drive
+from volcontact.running.outside_work import CHANNELS
+from volcontact.running.simulation import simulate
 
 HAS_IMPLICIT = hasattr(mujoco.mjtIntegrator, "mjINT_IMPLICITFAST")
 INTEGRATORS = ["Euler", "RK4", *(["implicit", "implicitfast"] if HAS_IMPLICIT else [])]

@@ -8,7 +8,7 @@ import pytest
 
 import volcontact as vc
 from volcontact._adaptor import SITE_DTYPE
-from volcontact.recorder import SITE_UNITS
+from volcontact.running.recorder import SITE_UNITS
 
 SCENE = """
 <mujoco>

@@ -5,8 +5,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from volcontact.recording import CHANNELS
-from volcontact.simulation import SimulationError, simulate
+from volcontact.running.recording import CHANNELS
+from volcontact.running.simulation import SimulationError, simulate
 
 GRAVITY = 9.81
 MASS = 1.0

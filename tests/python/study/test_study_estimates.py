@@ -15,7 +15,7 @@ import volcontact as vc
 from volcontact.study.adaptive import importance
 from volcontact.study.designs import Design
 from volcontact.study.estimates import first_order, rare_event, sensitivity, wilson
-from volcontact.study.reading import parse_study
+from volcontact.study.file.reading import parse_study
 
 RARE = 1e-5
 SCORE = 4.264890793922825  # of a standard normal, exceeded with probability 1e-5

@@ -9,8 +9,8 @@ from study_files import FUNCTION_STUDY, function_study
 
 import volcontact as vc
 from volcontact.study.designs import Design, trial_generator
-from volcontact.study.reading import read_study
-from volcontact.study.settings import StudyError
+from volcontact.study.file.reading import read_study
+from volcontact.study.file.settings import StudyError
 
 stats = pytest.importorskip("scipy.stats", reason="scipy is missing")
 MANY = np.arange(4000)

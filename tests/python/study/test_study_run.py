@@ -20,7 +20,7 @@ from study_files import FUNCTION_STUDY, SCENE_STUDY, bits, function_study, scene
 import volcontact as vc
 from volcontact.cli import main
 from volcontact.study.child import Batch, Child, end_children, run_batch
-from volcontact.study.reading import read_study
+from volcontact.study.file.reading import read_study
 from volcontact.study.results import Folder
 
 

@@ -15,9 +15,9 @@ from volcontact.gym import ForceGuided, OruInsertion
 from volcontact.gym.oru_insertion import SCENE as ORU_SCENE
 from volcontact.gym.oru_insertion import START
 from volcontact.gym.scene_files import scene_file
+from volcontact.study.file.reading import parse_study, read_study
+from volcontact.study.file.settings import Input
 from volcontact.study.mjcf import Document
-from volcontact.study.reading import parse_study, read_study
-from volcontact.study.settings import Input
 from volcontact.study.targets import LiveNumbers, changed_text, targets_of
 from volcontact.study.trial import Runner
 

@@ -5,12 +5,12 @@ import dataclasses
 
 import numpy as np
 
-from volcontact.recording import SITE, SITE_IN_RUN, Frame, Recording
 from volcontact.report import Comparison
 from volcontact.report.design_pose import DesignPose
 from volcontact.report.findings import findings
 from volcontact.report.pictures import FramePair
-from volcontact.signals import Signal
+from volcontact.running.recording import SITE, SITE_IN_RUN, Frame, Recording
+from volcontact.running.signals import Signal
 
 DESIGN = DesignPose(
     body="box",

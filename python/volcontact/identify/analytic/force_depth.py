@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from volcontact.identify import regression
+from volcontact.identify.estimators import regression
+from volcontact.identify.estimators.regression import Fit
 from volcontact.identify.push import Push
 from volcontact.identify.readings import LEVEL, Curve, Quantity, Reading
-from volcontact.identify.regression import Fit
 
 _TREND = 0.05  # of the force: what no volume law explains is told from here on
 _LAW_POWER = 0.02  # of 1: a power of the volume so near to 1 is that of the law

@@ -13,10 +13,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from volcontact.identify import regression
 from volcontact.identify.analytic import checks
+from volcontact.identify.estimators import regression
+from volcontact.identify.estimators.regression import Fit
 from volcontact.identify.readings import LEVEL, Curve, Quantity, Reading
-from volcontact.identify.regression import Fit
 
 _SLOW = 1e-5  # of A: below it the next term of the series is below rounding
 _HALVINGS = 80

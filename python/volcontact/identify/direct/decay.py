@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from volcontact.identify import regression
 from volcontact.identify.direct.sheets import Sheet, SheetError
+from volcontact.identify.estimators import regression
+from volcontact.identify.estimators.regression import Fit
 from volcontact.identify.readings import Curve
-from volcontact.identify.regression import Fit
 
 _LEAST = 3  # samples of a run
 _STOPPED = 0.02  # of the fastest rate: what follows is left out

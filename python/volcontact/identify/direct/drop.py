@@ -13,14 +13,14 @@ from collections.abc import Callable
 
 import numpy as np
 
-from volcontact.identify import regression
 from volcontact.identify.analytic.restitution import compared, damping_number, restitution_of
 from volcontact.identify.direct.sheets import Sheet, SheetError
 from volcontact.identify.direct.solids import STANDARD_GRAVITY, solids_of
+from volcontact.identify.estimators import regression
+from volcontact.identify.estimators.regression import Fit
 from volcontact.identify.impacts import Impacts
 from volcontact.identify.push import Push
 from volcontact.identify.readings import LEVEL, Curve, Quantity, Reading
-from volcontact.identify.regression import Fit
 
 _Law = Callable[[np.ndarray, float], float]  # numbers of the law, speed -> restitution
 _WEIGHTS = ("a", "mass", "stiffness")  # what the correction for the weight needs

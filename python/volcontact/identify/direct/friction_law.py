@@ -15,8 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from volcontact.identify import regression
-from volcontact.identify.regression import Fit
+from volcontact.identify.estimators import regression
+from volcontact.identify.estimators.regression import Fit
 
 _LEAST = (
     1.57  # least of x / (1 - exp(-x^2)) over x, times sigma_1 v_s: where the bound always rules

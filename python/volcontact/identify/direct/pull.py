@@ -17,8 +17,8 @@ from volcontact.identify.direct.friction_law import (
 )
 from volcontact.identify.direct.sheets import Sheet, SheetError
 from volcontact.identify.direct.solids import STANDARD_GRAVITY
+from volcontact.identify.estimators.regression import Fit
 from volcontact.identify.readings import LEVEL, Curve, Quantity, Reading
-from volcontact.identify.regression import Fit
 
 _NAMES = {
     "friction": "-",
@@ -105,7 +105,7 @@ def tilt(sheet: Sheet, *, level: float = LEVEL) -> Reading:
 
 def _one_rest(static: np.ndarray, kinetic: np.ndarray, level: float) -> Reading:
     """Means, where all rests are the same or not known."""
-    from volcontact.identify import regression
+    from volcontact.identify.estimators import regression
 
     values = {}
     findings = [
@@ -172,7 +172,7 @@ def _reading(
 
 def fit_kinetic(breakaways: Breakaways, slides: Slides) -> Fit:
     """Breakaways, and slides so fast that their friction is mu_C."""
-    from volcontact.identify import regression
+    from volcontact.identify.estimators import regression
 
     data = np.concatenate([breakaways.friction, slides.friction])
     ones = np.ones(len(slides.friction))

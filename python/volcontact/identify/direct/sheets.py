@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from volcontact.identify.units import SIGMA_UNITS, UNITS
-from volcontact.spelling import nearest
+from volcontact.messages.spelling import nearest
 
 _ANGLE = SIGMA_UNITS["orientation"]
 # By kind. The first of each is SI.

@@ -18,8 +18,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from volcontact.identify import regression
 from volcontact.identify.direct.sheets import Sheet, SheetError
+from volcontact.identify.estimators import regression
 from volcontact.identify.readings import LEVEL, Curve, Quantity, Reading
 
 _PERIODS = 1.5  # least of a loop

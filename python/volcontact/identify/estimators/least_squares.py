@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from volcontact.identify.costs import rho
-from volcontact.identify.own_numbers import settled
+from volcontact.identify.estimators.costs import rho
+from volcontact.identify.estimators.own_numbers import settled
+from volcontact.identify.estimators.scales import Box
+from volcontact.identify.estimators.search import Found, Progress, signature
 from volcontact.identify.pool import Pool
-from volcontact.identify.scales import Box
-from volcontact.identify.search import Found, Progress, signature
 from volcontact.identify.settings import Settings, StudyError
 
 _DENSE = 4e6  # numbers of a Jacobian that is kept whole

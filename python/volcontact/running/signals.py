@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from volcontact.names import name_of
+from volcontact.messages.names import name_of
 
 _LINEAR, _ANGULAR = int(mujoco.mjtJoint.mjJNT_SLIDE), int(mujoco.mjtJoint.mjJNT_HINGE)
 _SENSOR_UNITS = {

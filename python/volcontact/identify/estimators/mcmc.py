@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from volcontact._files import appearing
-from volcontact.identify.search import Progress
+from volcontact.identify.estimators.search import Progress
 from volcontact.identify.settings import StudyError
 
 LENGTH = 50  # autocorrelation times that a chain must last before it is believed

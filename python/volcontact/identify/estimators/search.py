@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from volcontact.identify.estimators.scales import Box
 from volcontact.identify.pool import Pool
-from volcontact.identify.scales import Box
 from volcontact.identify.settings import Settings, StudyError
 
 Progress = Callable[[int, int, str], None]

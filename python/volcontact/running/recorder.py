@@ -13,7 +13,7 @@ import numpy as np
 
 from volcontact._adaptor import SITE_DTYPE
 from volcontact._files import appearing_in
-from volcontact.audit import Audit, worst_step
+from volcontact.running.audit import Audit, worst_step
 from volcontact.scene import Channels, Contact
 
 SITE_UNITS = {

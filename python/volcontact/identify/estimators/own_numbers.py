@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from volcontact.identify.least_squares import Residuals
+    from volcontact.identify.estimators.least_squares import Residuals
 
 _HORIZONS = (0.3, 0.6, 1.0)  # parts of a trial that are fitted one after the other
 _MOST = 15  # iterations of each

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 import mujoco
 import numpy as np
 
-from volcontact.control_table import ControlTable, read_controls
-from volcontact.names import name_of
-from volcontact.spelling import nearest
+from volcontact.messages.names import name_of
+from volcontact.messages.spelling import nearest
+from volcontact.running.control_table import ControlTable, read_controls
 
 __all__ = ["ControlTable", "Drive", "Driver", "to_keyframe"]
 

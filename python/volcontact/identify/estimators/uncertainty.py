@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from volcontact.identify.least_squares import Fit, Residuals, noise, solve
-from volcontact.identify.mcmc import Chain
+from volcontact.identify.estimators.least_squares import Fit, Residuals, noise, solve
+from volcontact.identify.estimators.mcmc import Chain
+from volcontact.identify.estimators.scales import Box
+from volcontact.identify.estimators.search import Evaluations, Progress, total
 from volcontact.identify.pool import Pool
-from volcontact.identify.scales import Box
-from volcontact.identify.search import Evaluations, Progress, total
 from volcontact.identify.settings import Settings
 
 _CLOSE = 1e-6  # of the range: nearer points of a profile differ by rounding alone

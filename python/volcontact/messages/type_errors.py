@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from volcontact.spelling import nearest
+from volcontact.messages.spelling import nearest
 
 _SIGNATURE = re.compile(r"^\s*\d+\. (\w+)\((.*)\) -> ", re.MULTILINE)
 _SHAPE = re.compile(r"shape=\(([^)]*)\)")

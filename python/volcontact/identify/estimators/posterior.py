@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from volcontact.identify.costs import rho
-from volcontact.identify.least_squares import Fit, Residuals
-from volcontact.identify.mcmc import Chain, Request, walk
+from volcontact.identify.estimators.costs import rho
+from volcontact.identify.estimators.least_squares import Fit, Residuals
+from volcontact.identify.estimators.mcmc import Chain, Request, walk
+from volcontact.identify.estimators.scales import Box
+from volcontact.identify.estimators.search import Progress, signature
+from volcontact.identify.estimators.uncertainty import Known, correlation_of
 from volcontact.identify.pool import Pool
-from volcontact.identify.scales import Box
-from volcontact.identify.search import Progress, signature
 from volcontact.identify.settings import Settings
-from volcontact.identify.uncertainty import Known, correlation_of
 
 _LEAST = 1e-300  # sum of squares
 _UNKNOWN = 0.2  # spread of first walkers along what a fit does not tell, as a part of the range

@@ -12,8 +12,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from volcontact.audit import Audit, worst_step
-from volcontact.signals import Signal
+from volcontact.running.audit import Audit, worst_step
+from volcontact.running.signals import Signal
 from volcontact.surface import SiteSurface
 
 ContactKind = Literal["volumetric", "native"]
@@ -80,8 +80,8 @@ class Recording:
             shape (n,).
         driven: work of mocap bodies on the contacts since the start [J], shape (n,).
         outside_work: done since the start by what is neither volumetric contact nor a potential
-            [J], shape (n, 4), columns `volcontact.outside_work.CHANNELS`: actuators, dampers,
-            limits with friction of joints and equalities, contacts of MuJoCo's own.
+            [J], shape (n, 4), columns `volcontact.running.outside_work.CHANNELS`: actuators,
+            dampers, limits with friction of joints and equalities, contacts of MuJoCo's own.
         made: by the contacts in the step that ended there [J], shape (n,); `audit()` has the worst.
         contact_force: sum over the sites of the magnitude of their force [N], shape (n,).
         largest_site_force: [N], shape (n,).

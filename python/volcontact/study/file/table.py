@@ -7,8 +7,8 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
-from volcontact.spelling import nearest
-from volcontact.study.settings import Condition, StudyError
+from volcontact.messages.spelling import nearest
+from volcontact.study.file.settings import Condition, StudyError
 
 _REQUIRED = object()
 

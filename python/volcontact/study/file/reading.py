@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from volcontact.study.environments import with_environment
-from volcontact.study.inputs import CORRELATED, check_input, distribution_names
-from volcontact.study.settings import (
+from volcontact.study.file.settings import (
     ADAPTIVE,
     Correlation,
     End,
@@ -21,7 +20,8 @@ from volcontact.study.settings import (
     Settings,
     StudyError,
 )
-from volcontact.study.table import Table
+from volcontact.study.file.table import Table
+from volcontact.study.inputs import CORRELATED, check_input, distribution_names
 
 if sys.version_info >= (3, 11):
     import tomllib

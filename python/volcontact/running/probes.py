@@ -12,7 +12,7 @@ import numpy as np
 
 from volcontact import scene as volumetric_scene
 from volcontact.given_keys import GivenKeys
-from volcontact.recording import SITE, ContactKind
+from volcontact.running.recording import SITE, ContactKind
 from volcontact.surface import SiteSurface
 
 _COLUMNS = 12  # across a site; a picture of the whole scene shows no more
