@@ -17,7 +17,7 @@ import numpy as np
 
 import volcontact as vc
 from volcontact.render import Renderer
-from volcontact.simulation import to_start
+from volcontact.running.simulation import to_start
 
 MODELS = Path(__file__).parent
 

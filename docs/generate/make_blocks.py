@@ -12,8 +12,8 @@ import re
 from pathlib import Path
 
 from make_concepts import save
-from page_blocks import BLOCK
-from page_pictures import PICTURE
+from parts.page_blocks import BLOCK
+from parts.page_pictures import PICTURE
 
 DOCS = Path(__file__).parents[1]
 _BLOCK = re.compile(r"(<!-- (\w+): (.+?) -->)\n.*?(<!-- end -->)", re.DOTALL)

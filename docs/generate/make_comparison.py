@@ -10,7 +10,7 @@ from __future__ import annotations
 import statistics
 from pathlib import Path
 
-from performance_results import by_native, by_scene, digits, read, small, span
+from parts.performance_results import by_native, by_scene, digits, read, small, span
 
 PAGE = Path(__file__).parents[1] / "comparison.md"
 VALIDATION = Path(__file__).parents[1] / "validation.md"

@@ -12,11 +12,11 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
-from concepts_sections import INK, Distance, arrow, distance, draw_section, pose
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from performance_plots import STYLE
+from parts.concepts_sections import INK, Distance, arrow, distance, draw_section, pose
+from parts.performance_plots import STYLE
 
 import volcontact as vc
 from volcontact.report.palette import NATIVE, VOLUMETRIC

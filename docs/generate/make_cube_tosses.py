@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes docs/identification/cube_tosses.md: a real cube beside the scenes that were identified.
 
-    ./run python tests/benchmarks/cube_tosses.py tosses.parquet     # the fits
+    ./run python tests/benchmarks/field/cube_tosses.py tosses.parquet     # the fits
     ./run python docs/generate/make_cube_tosses.py tosses.parquet   # the page
 
 takes the whole set of tosses (mjcf_models/identification/cube_tosses/README.md) and runs those that
@@ -17,9 +17,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import cube_toss_data as data
 import mujoco
 import numpy as np
+from parts import cube_toss_data as data
 
 from volcontact.identify.bench import Bench
 from volcontact.identify.measurements import read_trials
@@ -29,7 +29,7 @@ from volcontact.identify.scores import table
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "mjcf_models" / "identification" / "cube_tosses"
 PAGE = ROOT / "docs" / "identification" / "cube_tosses.md"
-RESULTS = ROOT / "tests" / "benchmarks" / "results"
+RESULTS = ROOT / "tests" / "benchmarks" / "field" / "results"
 WIDTH = 0.1048  # nominal [m]
 RUNS = {
     "volumetric": ("study.toml", "identified.xml"),
@@ -67,7 +67,7 @@ interval of the difference by a bootstrap over tosses {low} to {high}. Volumetri
 100 tosses, one run of each, take {seconds} s of one core under volumetric contact and
 {native_seconds} s under native contact; the {evaluations} evaluations of a fit take {study_seconds} s of one core.
 
-Beside them Drake {drake} on the same tosses (`tests/benchmarks/cube_tosses_drake.py`), with geometry, inertia and friction of
+Beside them Drake {drake} on the same tosses (`tests/benchmarks/field/cube_tosses_drake.py`), with geometry, inertia and friction of
 `identified.xml`. Only its own two numbers were chosen, on {drake_fit} tosses of the fit from a grid of nine: less effort than above.
 
 | | stiffness | dissipation [s/m] | sum, mean (median) |
@@ -120,7 +120,7 @@ One number for both is a compromise; the fits find 0.18.
 ## What was tried
 
 Every fit that was run, with all its numbers; the two scenes above are those of the seeds that fit
-best. `tests/benchmarks/cube_tosses.py` runs them:
+best. `tests/benchmarks/field/cube_tosses.py` runs them:
 
 {variants}
 
@@ -203,7 +203,7 @@ def _page(runs: dict[str, Any], fits: list[dict[str, Any]], tosses: list[data.To
     settings, values = runs["volumetric"]["settings"], runs["volumetric"]["values"]
     ours, theirs = (_sums(runs[word]["table"]) for word in RUNS)
     share = len(settings.fit) / 100.0
-    sys.path.insert(0, str(ROOT / "tests" / "benchmarks"))
+    sys.path.insert(0, str(ROOT / "tests" / "benchmarks" / "field"))
     from cube_tosses import VARIANTS
 
     return _TEXT.format(

@@ -18,10 +18,10 @@ from pathlib import Path
 import make_blocks
 import mujoco
 import numpy as np
-from hosts_diagram import block_diagram
 from make_concepts import Drawn, save
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from parts.hosts_diagram import block_diagram
 
 from volcontact.report.palette import NATIVE, VOLUMETRIC
 

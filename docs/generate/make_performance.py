@@ -13,9 +13,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import matplotlib
-from performance_meshes import meshes
-from performance_plots import PLOT, STYLE
-from performance_results import (
+from parts.performance_meshes import meshes
+from parts.performance_plots import PLOT, STYLE
+from parts.performance_results import (
     ASKED,
     by_native,
     by_scene,

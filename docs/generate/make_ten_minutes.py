@@ -19,7 +19,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from ten_minutes_steps import INSTALL, OWN, PRESS, SLIPS, START, Slip, Step
+from parts.ten_minutes_steps import INSTALL, OWN, PRESS, SLIPS, START, Slip, Step
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "tutorials" / "ten_minutes.md"

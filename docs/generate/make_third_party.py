@@ -10,7 +10,7 @@ from __future__ import annotations
 import statistics
 from pathlib import Path
 
-from performance_results import read
+from parts.performance_results import read
 
 PAGE = Path(__file__).parents[1] / "third_party.md"
 STEPS, MATERIAL, OPTIONS = 2000, "stiffness = 1e9 N/m^3", "mesh=exact_or_hull"

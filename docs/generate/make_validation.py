@@ -16,16 +16,16 @@ import make_comparison
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure as Canvas
-from performance_plots import STYLE
-from validation_peers import number, peers
-from validation_tables import tippe_top, whole_runs
+from parts.performance_plots import STYLE
+from parts.validation_peers import number, peers
+from parts.validation_tables import tippe_top, whole_runs
 
 from volcontact.report.palette import NATIVE, VOLUMETRIC
 
 PAGE = Path(__file__).parents[1] / "validation.md"
 PLOTS = Path(__file__).parents[1] / "validation"
 CASES = Path(__file__).resolve().parents[2] / "tests" / "validation"
-sys.path.insert(0, str(CASES))
+sys.path[:0] = [str(CASES), str(CASES / "support")]
 
 from case import Bounds, Case, Figure, Plot  # noqa: E402 (the path comes first)
 

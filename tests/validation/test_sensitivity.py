@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What must not matter: engine, threads and release of MuJoCo. All scenes of the validation.
 
-Whole runs under all engines are kept in whole_runs.json. Made anew are those under the scene's own
-engine, on one thread and on two, those of other quick engines, and of the octree the first steps.
+Whole runs under all engines are kept in support/whole_runs.json. Made anew are those under the
+scene's own engine, on one thread and on two, those of other quick engines, and of the octree the
+first steps.
 """
 
 from __future__ import annotations

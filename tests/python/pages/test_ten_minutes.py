@@ -19,7 +19,7 @@ RECORD = ROOT / "tests" / "benchmarks" / "results" / "install.csv"
 
 
 def _steps():
-    path = ROOT / "docs" / "generate" / "ten_minutes_steps.py"
+    path = ROOT / "docs" / "generate" / "parts" / "ten_minutes_steps.py"
     spec = importlib.util.spec_from_file_location("ten_minutes_steps", path)
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module  # its dataclasses look there

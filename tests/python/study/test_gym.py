@@ -24,7 +24,7 @@ KINDS = ["volumetric", "native"]
 
 
 def benchmark() -> ModuleType:
-    path = ROOT / "tests" / "benchmarks" / "oru_insertion.py"
+    path = ROOT / "tests" / "benchmarks" / "field" / "oru_insertion.py"
     spec = importlib.util.spec_from_file_location("oru_insertion_benchmark", path)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures the scenes with meshes: convergence, jamming, time of a step. For docs/assembly.md.
 
-    ./run python tests/benchmarks/assembly.py
+    ./run python tests/benchmarks/field/assembly.py
 
 Four minutes. Times are processor times of one thread, the least of several turns.
 """
@@ -26,8 +26,8 @@ import numpy as np
 
 import volcontact as vc
 
-ROOT = Path(__file__).parents[2]
-RESULTS = ROOT / "tests" / "benchmarks" / "results"
+ROOT = Path(__file__).parents[3]
+RESULTS = Path(__file__).parent / "results"
 PEG = ROOT / "mjcf_models" / "peg_in_hole"
 GEARS = ROOT / "mjcf_models" / "gear_pair"
 

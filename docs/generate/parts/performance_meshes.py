@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from performance_results import by_scene, digits, is_ours, read, small, span
+from parts.performance_results import by_scene, digits, is_ours, read, small, span
 
 EQUAL = 1e-10  # asked of volume, centroid and inertia beside exact booleans, relative
 BUDGET = 0.1e6  # of one question of any kind [us]

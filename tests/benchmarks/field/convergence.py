@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the step costs in scenes of the project: writes results/convergence.json.
 
-./run python tests/benchmarks/convergence.py
+./run python tests/benchmarks/field/convergence.py
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import mujoco
 
 import volcontact as vc
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 RESULT = Path(__file__).parent / "results" / "convergence.json"
 # Scene, duration [s], runs.
 SCENES = (("battery_box", 2.0, 5), ("bouncing_ball", 2.0, 5), ("tippe_top", 0.3, 4))

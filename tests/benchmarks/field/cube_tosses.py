@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Identifies the real cube under several laws and seeds: writes results/cube_tosses.json.
 
-    ./run python tests/benchmarks/cube_tosses.py tosses.parquet [VARIANT[:SEED] ...]
+    ./run python tests/benchmarks/field/cube_tosses.py tosses.parquet [VARIANT[:SEED] ...]
 
 takes the whole set of tosses (mjcf_models/identification/cube_tosses/README.md). A fit that was
 interrupted goes on; one that is there already is left alone. Then docs/generate/make_cube_tosses.py
@@ -25,7 +25,7 @@ import numpy as np
 from volcontact.identify.reading import read_settings
 from volcontact.identify.run import run
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 FOLDER = ROOT / "mjcf_models" / "identification" / "cube_tosses"
 RESULT = Path(__file__).parent / "results" / "cube_tosses.json"
 BUILD = ROOT / "build" / "cube_tosses"

@@ -8,7 +8,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-RESULT = Path(__file__).parents[2] / "tests" / "benchmarks" / "results" / "hosts.json"
+RESULT = Path(__file__).parents[3] / "tests" / "benchmarks" / "results" / "hosts.json"
 SCENE = {"ball_in_cylinder": "ball in a cylinder", "tippe_top": "tippe-top"}
 FREE_FALL = 0.390596  # to the wall of the bore, sqrt(2 sqrt(0.9^2 - 0.5^2)/g) [s]
 

@@ -8,7 +8,7 @@ import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 
-RESULTS = Path(__file__).resolve().parents[2] / "tests" / "benchmarks" / "results"
+RESULTS = Path(__file__).resolve().parents[3] / "tests" / "benchmarks" / "results"
 
 
 @dataclass(frozen=True)
@@ -110,9 +110,9 @@ ASKED = (
 )
 
 
-def read(name: str) -> list[dict[str, str]]:
+def read(name: str, folder: Path = RESULTS) -> list[dict[str, str]]:
     """One table of the results, line by line."""
-    with (RESULTS / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+    with (folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 

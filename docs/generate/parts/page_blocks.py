@@ -8,12 +8,12 @@ import re
 from collections.abc import Callable
 
 import numpy as np
-from hosts_tables import host, hosts
 from make_accuracy import SPREADS, over, short
 from make_comparison import VALIDATION
 from make_components import CHOICE, FIELD, NAME, laws, number
 from make_mjcf_keys import default_material, default_text, quoted, table, words_after
-from performance_results import ASKED, in_cpp, is_ours, read, small, span, times_of
+from parts.hosts_tables import host, hosts
+from parts.performance_results import ASKED, in_cpp, is_ours, read, small, span, times_of
 
 import volcontact as vc
 

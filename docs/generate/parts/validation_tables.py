@@ -7,9 +7,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from validation_peers import number
+from parts.validation_peers import number
 
-CASES = Path(__file__).resolve().parents[2] / "tests" / "validation"
+CASES = Path(__file__).resolve().parents[3] / "tests" / "validation" / "support"
 EVENTS = {
     "upright": "upright",
     "touch": "stem touches",

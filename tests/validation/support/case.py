@@ -20,7 +20,7 @@ import numpy as np
 import volcontact as vc
 from volcontact._mujoco_views import dense
 
-MODELS = Path(__file__).parents[2] / "mjcf_models"
+MODELS = Path(__file__).parents[3] / "mjcf_models"
 GRAVITY = 9.81  # [m/s^2]
 # MuJoCo 2 combines the stages of its Runge-Kutta method so that bodies that turn are integrated to
 # second order, with any force.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How often 95 % intervals hold the truth: writes results/identify_coverage.json.
 
-    ./run python tests/benchmarks/identify_coverage.py [--until N] [--seconds S]
+    ./run python tests/benchmarks/field/identify_coverage.py [--until N] [--seconds S]
 
 Ten tosses of a cube with the noise of the real ones, identified again and again with other noise;
 their starts are looked for as well. Goes on where it was stopped.
@@ -17,7 +17,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests" / "python" / "support"))
 
 from synthetic_tosses import NUISANCE, noisy, parameter, scene, tosses, write  # noqa: E402

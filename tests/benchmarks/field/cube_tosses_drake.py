@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The real cube under Drake's contacts, point and hydroelastic: results/cube_tosses_drake.json.
 
-    ./run python tests/benchmarks/cube_tosses_drake.py tosses.parquet
+    ./run python tests/benchmarks/field/cube_tosses_drake.py tosses.parquet
 
 Geometry, inertia and friction are those of `identified.xml`; what is Drake's own, stiffness and
 dissipation, is chosen on some tosses of the fit from a grid, and judged on the tosses of the page.

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from matplotlib.figure import Figure
-from performance_results import ASKED, by_scene, in_cpp, is_ours, read, span, times_of
+from parts.performance_results import ASKED, by_scene, in_cpp, is_ours, read, span, times_of
 
 from volcontact.report.palette import NATIVE, UNEXPLAINED, VOLUMETRIC
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from performance_results import by_native, by_scene, medians, read
+from parts.performance_results import by_native, by_scene, medians, read
 
 if TYPE_CHECKING:
     from case import Case

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs many episodes of `volcontact/ORUInsertion-v0` and records how each ended.
 
-    ./run python tests/benchmarks/oru_insertion.py
+    ./run python tests/benchmarks/field/oru_insertion.py
 
 A thousand vectorised episodes of the scripted policy, a hundred under native contact, and some of
 random actions. Any warning, of Python, Gymnasium or MuJoCo, ends the run. It goes on where it was

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from concepts_sections import INK
 from make_concepts import Drawn
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
+from parts.concepts_sections import INK
 
 from volcontact.report.palette import NATIVE, VOLUMETRIC
 

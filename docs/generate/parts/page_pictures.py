@@ -8,11 +8,11 @@ from collections.abc import Callable
 from functools import partial
 
 import numpy as np
-from concepts_sections import INK, arrow, distance, draw_section, pose
 from make_accuracy import RESULTS
 from make_concepts import Drawn, bounce, draw_cells, draw_chords, draw_normals, draw_rays
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from parts.concepts_sections import INK, arrow, distance, draw_section, pose
 
 import volcontact as vc
 from volcontact.report.palette import NATIVE, VOLUMETRIC

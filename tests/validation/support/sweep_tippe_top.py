@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which stiffness, friction and start of the tippe-top come closest to the CSA paper's events.
 
-`./run python tests/validation/sweep_tippe_top.py` makes some hundred runs, in a quarter of an
-hour, and writes tippe_top.json, from which docs/validation.md has its tables.
+`./run python tests/validation/support/sweep_tippe_top.py` makes some hundred runs, in a quarter of
+an hour, and writes tippe_top.json, from which docs/validation.md has its tables.
 """
 
 from __future__ import annotations
@@ -10,10 +10,14 @@ from __future__ import annotations
 import itertools
 import json
 import math
+import sys
 from dataclasses import asdict, replace
 from pathlib import Path
 
 import mujoco
+
+sys.path.append(str(Path(__file__).parents[1]))  # where the cases are
+
 from test_tippe_top import PAPER, Setting, spin
 
 RESULTS = Path(__file__).with_name("tippe_top.json")

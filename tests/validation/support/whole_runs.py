@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the whole run of each scene comes to, whatever engine, threads and release make it.
 
-`./run python tests/validation/whole_runs.py [SCENE...]` makes the runs under every engine that
-serves their pairs, under two threads, and with masses changed by a rounding, and writes them to
-whole_runs.json; with MUJOCO=2.2.2 only those of that release. The octree takes its time: an hour.
+`./run python tests/validation/support/whole_runs.py [SCENE...]` makes the runs under every engine
+that serves their pairs, under two threads, and with masses changed by a rounding, and writes them
+to whole_runs.json; with MUJOCO=2.2.2 only those of that release. The octree takes an hour.
 """
 
 from __future__ import annotations
@@ -18,6 +18,12 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
+from case import Case, load, varied
+
+import volcontact as vc
+
+sys.path.append(str(Path(__file__).parents[1]))  # where the cases are
+
 import test_ball_in_cylinder
 import test_bouncing_ball
 import test_euler_disc
@@ -26,9 +32,6 @@ import test_painleve_rod
 import test_spinning_disc
 import test_tippe_top
 import test_tumbling_box
-from case import Case, load, varied
-
-import volcontact as vc
 
 RESULTS = Path(__file__).with_name("whole_runs.json")
 ENGINES = ("closed_form", "clip", "lines", "columns", "octree")
