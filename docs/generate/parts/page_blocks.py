@@ -111,7 +111,7 @@ def pairs(engine: str) -> str:
             others = "all others" if served == known else ", ".join(asked)
             alike.setdefault((", ".join(first), others if asked else ""), []).append(a)
     rows = [(", ".join(solids), *cells) for cells, solids in alike.items()]
-    return table(("solid", "`auto` takes it with", "serves also, when asked for, with"), rows)
+    return table(("solid", "`auto` uses it with", "on request also with"), rows)
 
 
 def accuracy(engine: str) -> str:
