@@ -74,26 +74,26 @@ def meshes(table: Callable[[tuple[str, ...], list[tuple[str, ...]]], str]) -> st
     equal = [_equal(case, rows) for case, rows in cases.items()]
     return (
         "## Triangle meshes\n\n"
-        "The same triangles at the same poses, in turns in one run (`mesh_benchmark.py`). Bumpy "
+        "The same triangles at the same poses, alternating in one run (`mesh_benchmark.py`). Bumpy "
         "balls of radius 1 m are sunk 1 % into each other and into the primitives, the box and the "
         "half-space at a face. The sphere has radius 1 m, the cylinder is 1 m thick and 1 m long. "
-        "Peg and plate are those of `mjcf_models/peg_in_hole`: 8 mm in 8.2 mm. Thousands of "
-        "triangles are those of each mesh. A worst case may take the 0.1 s of the budget of one "
-        "question.\n\n"
-        "![Times of other libraries by ours, meshes](performance/meshes.svg)\n\n"
-        + table(("asked", "", "measured", ""), asked)
+        "Peg and plate are those of `mjcf_models/peg_in_hole`: 8 mm in 8.2 mm. Numbers of "
+        "triangles are per mesh. A worst case may take 0.1 s, the budget of one "
+        "query.\n\n"
+        "![Times of other libraries relative to ours, meshes](performance/meshes.svg)\n\n"
+        + table(("target", "", "measured", ""), asked)
         + f"\n**Missed:** {'; '.join(missed) or 'none'}.\n\n"
-        "An answer may be worse than asked where the budget of its engine ends: its status is then "
-        "`approximate`, and its error is bounded.\n\n"
+        "A result may be less accurate than requested where the budget of its engine runs out: its "
+        "status is then `approximate`, and its error is bounded.\n\n"
         + GIVES
-        + "\nProcessor time of one query, and in brackets by that of volcontact. Building the "
-        "solids does not count. The slow ones see fewer of the poses: "
+        + "\nProcessor time of one query and, in brackets, its ratio to that of volcontact. "
+        "Building the solids does not count. Slow libraries are run on fewer poses: "
         "`tests/benchmarks/results/mesh_pairs.csv`.\n\n"
         + table(header, times)
-        + "\nLargest differences of our volume, centroid (by the cube root of the volume) and "
-        "inertia from those of the exact booleans, over the poses. Beside sphere and cylinder "
-        "stands the difference of our volume from a formula, and from a prism of 4096 sides, which "
-        "is itself off by 3e-5:\n\n"
+        + "\nLargest differences over the poses between our volume, centroid (relative to the cube "
+        "root of the volume) and inertia and those of the exact booleans. For the sphere and the "
+        "cylinder, our volume is compared with a formula and with a prism of 4096 sides, which is "
+        "itself off by 3e-5:\n\n"
         + table(("pair", "status", "overlaps", "manifold3d", "CGAL", "formula, prism"), equal)
         + f"\n**Contact found by others where there is none:** {_wrong(cases, apart=True)}.\n\n"
         f"**Contact not found by others:** {_wrong(cases, apart=False)}.\n"
