@@ -39,9 +39,9 @@ def measure() -> Case:
     case = Case(
         "Ball in a cylinder",
         "The first demonstration of the CSA paper: a ball of 0.1 m falls inside a horizontal "
-        "cylinder of 1 m, an exact bore. Free fall brings it to the wall; small swings of a ball "
-        "that rolls have T = 2 pi sqrt(7 (R - r)/(5 g)); rolling resistance and spin friction "
-        "bring it to rest.",
+        "cylinder of 1 m, an exact bore. Free fall brings it to the wall; small swings of a "
+        "rolling ball have the period T = 2 pi sqrt(7 (R - r)/(5 g)); rolling resistance and spin "
+        "friction bring it to rest.",
     )
     # Free fall to |centre| = R - r.
     fall = load("ball_in_cylinder/scene.xml", pair__ball__stiffness=1e8)

@@ -66,7 +66,7 @@ def measure() -> Case:
         "Bouncing ball",
         "A ball falls from 1 m and bounces with e = 0.8 at every speed. All bounces together last "
         "sqrt(2 h/g) (1 + e)/(1 - e) on a rigid floor: k_v = 1e15 N/m^3 here, since gravity acts "
-        "during a softer impact and takes from the restitution.",
+        "during a softer impact and lowers the restitution.",
     )
     launches, path = bounce(case)
     native, native_path = bounce(case, native=True)

@@ -137,11 +137,11 @@ def measure() -> Case:
     """Breakaway after long and short rests, and drift."""
     case = Case(
         "Bristles",
-        "A plate of 1 kg on bristles (1e5 N/m, critically damped, mu_C = 0.3, mu_S = 0.4, tau_dw "
-        "= 0.5 s). A slow ramp breaks it away at mu_S; after a short rest t a quick ramp does so "
-        "at mu_C + (mu_S - mu_C)(1 - exp(-t/tau_dw)), t with the ramp itself. Under vibration it "
-        "drifts as the equations of the law do, integrated separately. The balance of energy has "
-        "the work of the load.",
+        "A plate of 1 kg on bristles (1e5 N/m, critically damped, mu_C = 0.3, mu_S = 0.4, tau_dw = "
+        "0.5 s). A slow ramp breaks it away at mu_S; after a short rest t a quick ramp does so at "
+        "mu_C + (mu_S - mu_C)(1 - exp(-t/tau_dw)), t with the ramp itself. Under vibration it "
+        "drifts as the equations of the law do, integrated separately. The balance of energy "
+        "includes the work of the load.",
     )
     slow = (breakaway(0.0, 0.02, case), breakaway(0.0, 0.02, case, native=True))
     case.figures.append(Figure("slow ramp: friction over weight", "-", STATIC, 5e-3, *slow))

@@ -17,10 +17,10 @@ def measure() -> Case:
     """Work round loops of height and tilt, over the largest stored energy."""
     case = Case(
         "Closed loop",
-        "A box that dips its edge or corner into a half-space is led round a closed path of "
-        "height and tilt. The force k_v V at the centroid of the volume is conservative there, so "
-        "its work is zero, up to the error of summing it over 20000 points; at the centroid of "
-        "the footprint it would be 9 % of the stored energy, at the deepest point 17 %.",
+        "A box with its edge or corner in a half-space is moved along a closed path in height and "
+        "tilt. The force k_v V at the centroid of the volume is conservative there, so its work is "
+        "zero, up to the error of summing it over 20000 points; at the centroid of the footprint "
+        "it would be 9 % of the stored energy, at the deepest point 17 %.",
     )
     model = vc.ContactModel(
         pairs=[vc.Pair(vc.Box(half_sizes=(0.1, 0.08, 0.05)), vc.HalfSpace())],

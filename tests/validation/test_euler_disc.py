@@ -34,9 +34,9 @@ def measure() -> Case:
     """Rate of precession, and how steady it is."""
     case = Case(
         "Euler's disc",
-        "A thin disc that rolls on its edge with its centre at rest precesses at 4 g/(R sin a) = "
-        "W^2, a the tilt. The disc here has a thickness of 0.4 mm and starts without the "
-        "deflections of its steady state, so it nods a little.",
+        "A thin disc that rolls on its edge with its centre at rest precesses at W^2 = 4 g/(R sin "
+        "a), with a the tilt. The disc here is 0.4 mm thick and starts without the deflections of "
+        "its steady state, so it nods a little.",
     )
     run, native = roll(), roll(native=True)
     case.account(run)

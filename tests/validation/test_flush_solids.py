@@ -97,10 +97,10 @@ def measure() -> Case:
     """Impacts on seams, and motion over them."""
     case = Case(
         "Flush solids",
-        "A floor of boxes side by side is one solid: a ball that hits it on a seam, or on the "
-        "corner of four tiles, leaves as from one floor, without friction straight up; a block "
-        "slides as far as Coulomb's friction lets it, v0^2/(2 mu g), and does not turn; a ball "
-        "rolls on.",
+        "A floor of adjacent boxes acts as one solid: a ball that hits a seam, or the corner of "
+        "four tiles, leaves as from one floor, straight up without friction; a block slides as far "
+        "as Coulomb friction allows, v0^2/(2 mu g), and does not turn; a rolling ball keeps "
+        "rolling.",
     )
     for place, where in (("0 0.03", "a seam"), ("0 0", "a corner"), ("0.001 0.002", "by a corner")):
         for asked in (0.8, 1.0):

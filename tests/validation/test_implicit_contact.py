@@ -175,11 +175,11 @@ def measure(count: int = 4) -> Case:
     """Drops, rest, an arm that presses, and the battery box."""
     case = Case(
         "Implicit contact at 2 ms",
-        "A 12 kg cube on a floor, without damping, 1 to 1e6 times as stiff as an explicit step "
-        "of 2 ms holds, thrown at random; its energy is kinetic and gravitational. A two-link arm "
-        "whose servos press its hand on the floor, k_v = 1e11 N/m^3. The battery box with k_v = "
-        "1e10 N/m^3, aluminium on aluminium, seated at 2 and 5 ms, against 0.1 ms. Steps are "
-        "implicit in the contact by themselves (volcontact/option/implicit/auto).",
+        "A 12 kg cube on a floor, without damping, 1 to 1e6 times as stiff as an explicit step of "
+        "2 ms can handle, thrown at random; its energy is kinetic plus gravitational. A two-link "
+        "arm whose servos press its hand on the floor, k_v = 1e11 N/m^3. The battery box with k_v "
+        "= 1e10 N/m^3, aluminium on aluminium, seated at 2 and 5 ms, against 0.1 ms. Steps become "
+        "implicit in the contact forces automatically (volcontact/option/implicit/auto).",
     )
     native, _, _ = drops(1.0, 0.5, count, native=True)
     for factor in (1.0, 1e3, 1e6):

@@ -106,10 +106,10 @@ def measure() -> Case:
     """Creep, the angles at which sliding and slipping begin, and the slide itself."""
     case = Case(
         "Slope",
-        "A box on a slope. Below the tangent mu_S it stands with no creep at all, above it "
-        "slides; once it slides mu_C counts. A ball rolls up to the tangent 7/2 mu. The balance "
-        "of energy has the work of tilting the slope, in runs with Runge-Kutta's method: the "
-        "minutes at rest take Euler's steps of 1 ms.",
+        "A box on a slope. Up to the tangent mu_S it rests without any creep; above it slides, and "
+        "once it slides mu_C applies. A ball rolls up to the tangent 7/2 mu. The balance of energy "
+        "includes the work of tilting the slope, in runs with Runge-Kutta; the minutes at rest use "
+        "Euler steps of 1 ms.",
     )
     held = lean(0.9 * KINETIC, ramp=2.0, duration=70.0)
     native = lean(0.9 * KINETIC, ramp=2.0, duration=70.0, native=True)

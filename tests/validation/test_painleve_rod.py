@@ -65,10 +65,11 @@ def measure() -> Case:
     """Peak of the force with and without the paradox."""
     case = Case(
         "Painleve's rod",
-        "A rod of half length 1 m slides on its lower end, leaning against its motion. From mu = "
-        "4/3 on there are poses in which no force keeps a rigid rod from sinking in: friction "
-        "tips it into the floor faster than the normal force lifts it. An elastic contact passes "
-        "through: the force grows within milliseconds until the end sticks, a tangential impact.",
+        "A rod of half length 1 m slides on its lower end, leaning against its motion. For mu > "
+        "4/3 there are poses in which no force can keep a rigid rod from penetrating the floor: "
+        "friction tips it into the floor faster than the normal force lifts it. An elastic contact "
+        "passes through: the force grows within milliseconds until the end sticks, a tangential "
+        "impact.",
     )
     run, calm = slide(5.0 / 3.0), slide(1.0)
     case.account(run, calm)

@@ -83,8 +83,8 @@ def measure() -> Case:
         "Peg on a chamfer and at a wall",
         "A peg held by a lateral spring K_x is pushed down. On a chamfer at the angle a to the "
         "axis the insertion force grows as K_x z tan(a) tan(a + atan mu); where it touches the "
-        "wall of the hole in one point, with its spring bent by e, it is mu K_x e. The holder is "
-        "as heavy as to keep its speed; its work is part of the balance of energy.",
+        "wall of the hole at one point, with its spring deflected by e, the force is mu K_x e. The "
+        "holder is heavy enough to keep its speed; its work is part of the balance of energy.",
     )
     curves = []
     for angle in (45.0, 30.0):

@@ -111,12 +111,12 @@ def measure() -> Case:
     """A closed loop and three seconds of tumbling, under both formulations."""
     case = Case(
         "Boxes on boxes",
-        "A box is led round the corner of another one, and falls on a grate of bars that have "
-        "their edges up, between walls, without friction or damping. The formulation "
-        "potential, a wrench that is the gradient of int min(p_A, p_B) dV, is conservative there; "
-        "k_v V along the area vector, the formulation gonthier, is not. "
-        "For round solids the energy is a sum over eight levels whose gradient is exact, as far as "
-        "the metrics of lines are; a cylinder takes part in the fall as well.",
+        "A box is moved around the corner of another one, and falls on a grate of bars with their "
+        "edges up, between walls, without friction or damping. The formulation potential, a wrench "
+        "that is the gradient of int min(p_A, p_B) dV, is conservative there; k_v V along the area "
+        "vector, the formulation gonthier, is not. For round solids the energy is a sum over eight "
+        "levels whose gradient is as exact as the metrics of lines; a cylinder falls on the grate "
+        "as well.",
     )
     case.figures += [
         Bounds(

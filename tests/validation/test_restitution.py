@@ -90,9 +90,9 @@ def measure() -> Case:
     """All impacts."""
     case = Case(
         "Restitution",
-        "A ball hits a floor without gravity. The restitution e follows from the damping a and "
-        "the impact speed alone, whatever the stiffness, the shape and the mass; and a "
-        "restitution that is asked for is had at every speed.",
+        "A ball hits a floor without gravity. The restitution e follows from the damping a and the "
+        "impact speed alone, not from the stiffness, the shape or the mass; a prescribed "
+        "restitution holds at every speed.",
     )
     own = rebound("damping", 0.0, 0.7, case, native=True)  # whatever the damping
     for product, expected in TABLE.items():

@@ -94,12 +94,13 @@ def measure() -> Case:
     """Period of the first swing, loss of the first impact."""
     case = Case(
         "Rocking block",
-        "A block of 0.2 x 0.4 m rocks on its edges, let go at a fifth of the tilt at which it "
-        "would fall. Housner's period, 0.483351 s, is for small angles; here it is that of the "
-        "whole equation, 0.489450 s. His loss, a rate of 0.7 of that before, is for a block that "
-        "hits the floor with its new edge alone. One that stands on two narrow feet comes near "
-        "it: the impulse is in the middle of the foot. With a flat base the pressure travels "
-        "across the elastic bed from the old edge to the new one, and the block keeps more.",
+        "A block of 0.2 x 0.4 m rocks on its edges, released at a fifth of the tilt at which it "
+        "would fall over. Housner's period, 0.483351 s, is for small angles; the expected value is "
+        "that of the full equation, 0.489450 s. His loss, an angular rate of 0.7 times that before "
+        "the impact, is for a block that hits the floor only with its new edge. A block on two "
+        "narrow feet comes close to that: the impulse acts in the middle of the foot. With a flat "
+        "base the pressure travels across the elastic bed from the old edge to the new one, and "
+        "the block keeps more.",
     )
     fall = rock(FLAT, 1e10, 10.0, 2.5e-6, 0.1235)
     native = rock(FLAT, 1e10, 10.0, 1e-4, 0.62, native=True)

@@ -35,16 +35,16 @@ def measure() -> Case:
     """Whole runs as they were kept."""
     case = Case(
         "Engines, threads and releases",
-        "Whole runs of every scene under every engine that serves its pairs, and on MuJoCo 2.2.2: "
-        "the largest difference of any result from that of the scene's own engine on the newest "
-        "release, over what its case allows. Between one thread and two no bit differs. Beside it "
-        "stands what a rounding makes, all masses larger by 1e-14: where this is as large, the "
-        "motion is chaotic and no engine can do better. The octree runs at its default tolerance, "
-        "a thousandth of the volume, and for the ball in the cylinder at 5e-5: by default its "
-        "normal is tilted by 4e-5, and down such a slope a ball that rolls creeps at 0.3 mm/s, for "
-        "as long as the run goes on. "
-        "Energy is not compared: the octree moves the tumbling box alike, but its account of "
-        "elastic energy leaves out columns that end early, and closes to 8 %.",
+        "Complete runs of every scene with every engine that supports its pairs, and on MuJoCo "
+        "2.2.2. The figure is the largest difference of any result from that of the scene's own "
+        "engine on the newest release, relative to the tolerance of its case. Between one thread "
+        "and two not a single bit differs. For comparison, the rows called rounding show the "
+        "effect of increasing all masses by 1e-14: where this is as large, the motion is chaotic "
+        "and no engine can do better. The octree runs at its default tolerance, a thousandth of "
+        "the volume, and for the ball in the cylinder at 5e-5: by default its normal is tilted by "
+        "4e-5, and down such a slope a rolling ball creeps at 0.3 mm/s for the rest of the run. "
+        "Energy is not compared: with the octree the tumbling box moves in the same way, but the "
+        "account of elastic energy leaves out columns that end early, and balances only to 8 %.",
     )
     for scene, record in json.loads(RESULTS.read_text()).items():
         for name, values in record["runs"].items():

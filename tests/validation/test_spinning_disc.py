@@ -47,9 +47,9 @@ def measure() -> Case:
     """Three couplings, and a second spin for the exact one."""
     case = Case(
         "Disc that slides and spins",
-        "A flat disc slides at 1 m/s and spins at 20 rad/s. Friction integrated over its patch "
-        "lets it slide on further than plain Coulomb friction would, and ends both at once with v "
-        "= 0.653 R w; the ellipsoid is an approximation of that.",
+        "A flat disc slides at 1 m/s and spins at 20 rad/s. With friction integrated over its "
+        "patch it slides further than with plain Coulomb friction, and both motions end together "
+        "with v = 0.653 R w; the ellipsoid approximates that.",
     )
     native, native_fast = slide("none", native=True), slide("none", 40.0, native=True)
     own = rest(native.rows, spins=True), native.rows[-1, 3]  # whatever the coupling

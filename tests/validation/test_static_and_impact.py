@@ -84,12 +84,12 @@ def measure() -> Case:
     """Depths, frequency, impact times."""
     case = Case(
         "Rest and impact",
-        "A body of 1 kg sinks until k_v V is its weight. With k_v = E/R, the layer as thick as "
+        "A body of 1 kg sinks until k_v V equals its weight. With k_v = E/R, a layer as thick as "
         "the radius, a ball has F = pi E x^2 and a cylinder on its face pi E R x, the table of "
         "Drake's documentation (E = 1e7 Pa). An impact lasts c h/v, h the greatest depth: c = pi "
         "for a flat face, whose force is linear, 2.94328 for a lying cylinder, whose force grows "
-        "with the power 3/2 as Hertz's, and 2.80436 for a shallow cap, quadratic in depth. Native "
-        "contact takes its depth from the solver's parameters, whatever the material.",
+        "with the power 3/2 like Hertz's, and 2.80436 for a shallow cap, quadratic in depth. "
+        "Native contact takes its depth from the solver's parameters, whatever the material.",
     )
     soft = 1e7 / 0.05  # E/R
     case.figures += [

@@ -122,9 +122,9 @@ def measure() -> Case:
     """All that is held."""
     case = Case(
         "Sticking",
-        "The default material, no key set. A gripper holds a cube of 200 g with 10 N at a friction "
-        "of 0.6; a cube stands on a slope of nine tenths of the cone for ten minutes; a cube rides "
-        "on a turntable at 3 rad/s, 0.2 m from its axis. Steps of 2 ms.",
+        "The default material, without any keys. A gripper holds a cube of 200 g with 10 N at a "
+        "friction of 0.6; a cube rests on a slope at nine tenths of the friction cone for ten "
+        "minutes; a cube rides on a turntable at 3 rad/s, 0.2 m from its axis. Steps of 2 ms.",
     )
 
     def held(name: str, value: float, native: float) -> None:

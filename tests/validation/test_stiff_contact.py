@@ -44,11 +44,11 @@ def measure() -> Case:
     """The limit by bisection."""
     case = Case(
         "Stiff contact at 2 ms",
-        "A force that is given to the step, as every contact force is without implicit "
-        "treatment, bears K h^2/m < 4, K = k_v A the stiffness of the patch: the table is a cube "
-        "of 1 kg on its face. Stiffer contact needs a shorter step, or one that is linearly "
-        "implicit in the contact. Native contact rests at any time step, on the stiffness of its "
-        "solver, which depends on the step: the depth is in the table.",
+        "An explicitly integrated force, as every contact force is without implicit treatment, is "
+        "stable for K h^2/m < 4, with K = k_v A the stiffness of the patch. The table is for a "
+        "cube of 1 kg on its face. Stiffer contact needs a shorter step, or one that is linearly "
+        "implicit in the contact forces. Native contact rests at any time step, on the stiffness "
+        "of its solver, which depends on the step: the depth is in the table.",
     )
     low, high = 1.0, 8.0
     for _ in range(12):

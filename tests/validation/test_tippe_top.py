@@ -103,10 +103,10 @@ def measure() -> Case:
     case = Case(
         "Tippe-top",
         "A top of two spheres, data of [LeineGlocker2003], starts at 180 rad/s and a tilt of 0.1 "
-        "rad. It rises, turns over onto its stem and stands until friction has taken its spin: "
-        "the second demonstration of the CSA paper, which has upright at 0.15 s, the stem's touch "
-        "at 1.7 s and the fall at about 4 s, but no parameters. What turns it over is the "
-        "Contensou effect: without coupling of sliding and spin it never does.",
+        "rad. It rises, turns over onto its stem and stands until friction has stopped its spin. "
+        "This is the second demonstration of the CSA paper, where the top is upright at 0.15 s, "
+        "the stem touches at 1.7 s and the top falls at about 4 s; the paper gives no parameters. "
+        "The Contensou effect turns it over: without coupling of sliding and spin it never turns.",
     )
     top = spin()
     native = spin(native=True)

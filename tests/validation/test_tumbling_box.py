@@ -28,9 +28,9 @@ def measure() -> Case:
     case = Case(
         "Tumbling box",
         "A box falls on its corners for 3 s without friction or damping. The force k_v V at the "
-        "centroid of the volume is conservative against a plane, so what is lost or gained is the "
-        "error of the integrator, here of Runge-Kutta's fourth order. On MuJoCo 2.2.2 that method "
-        "is of second order for a body that turns, with any force.",
+        "centroid of the volume is conservative against a plane, so any loss or gain is the error "
+        "of the integrator, here fourth-order Runge-Kutta. On MuJoCo 2.2.2 that method is of "
+        "second order for a rotating body, with any force.",
     )
     errors, curves = [], []
     for step in (2e-4, 1e-4, 5e-5):
