@@ -480,8 +480,8 @@ It is checked in both orders that all numbers are finite; V is at most that of e
 add up; the area vector is no longer than the areas; V is within `volume_error` of the reference, to
 the accuracy of the latter (*beyond the bound*; *wrong volume* if it is off by more than
 {short(WRONG)} of V and the status is `ok`); centroid and area vector agree with the reference. In
-every tenth case the pose is changed slightly: the increment of V must lie between those predicted by
-S and T at both ends. *Slow* is a call of more than 2 s of processor time.
+every tenth case the pose is changed slightly: the increment of V must lie between those predicted
+by S and T at both ends. *Slow* is a call of more than 2 s of processor time.
 
 """
     header = [
@@ -539,8 +539,8 @@ def _meshes(search: dict[str, Any]) -> str:
 `tests/benchmarks/search_meshes.py` of {search["date"]}: bumpy balls, gears, rings, stepped bores,
 boxes, prisms and hulls with each other, half of them flush, coaxial or nearly so, compared with
 manifold3d. {search["cases"]} cases, {search["overlapping"]} of them overlapping, the slowest
-{_seconds(search["slowest"])}. V must be within its claimed error and 1e-9 of the smaller solid, both
-orders must agree, and sites must add up: {faults or "no failure"}.
+{_seconds(search["slowest"])}. V must be within its claimed error and 1e-9 of the smaller solid,
+both orders must agree, and sites must add up: {faults or "no failure"}.
 """
 
 

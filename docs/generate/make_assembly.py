@@ -99,9 +99,9 @@ clearance of 10 and 100 um per side. With fewer chords, corners hit chords or mi
 """
 _OFF = """\
 **What is weak.** "Steps off" counts the steps with contact in which the volume is off by more than
-5 % of what `volcontact.interference` gives at the same pose. A step has a smaller budget for a pair of meshes
-than a single query: beyond it, 32 by 32 columns are sampled, which can miss a
-contact as thin as this. Paths with many such steps say nothing about the mesh. This happens with
+5 % of what `volcontact.interference` gives at the same pose. A step has a smaller budget for a pair
+of meshes than a single query: beyond it, 32 by 32 columns are sampled, which can miss a contact as
+thin as this. Paths with many such steps say nothing about the mesh. This happens with
 """
 
 
@@ -243,8 +243,8 @@ def _steps() -> str:
     return f"""\
 ## Time of a step
 
-The peg is held by two walls, in a direction in which no corners of peg and hole meet. The target for
-meshes of 20 thousand triangles in the hole of 8.2 mm was less than {span(ASKED)}: {verdict}.
+The peg is held by two walls, in a direction in which no corners of peg and hole meet. The target
+for meshes of 20 thousand triangles in the hole of 8.2 mm was less than {span(ASKED)}: {verdict}.
 
 {table}"""
 

@@ -71,7 +71,7 @@ def behaviour() -> str:
     start = section.index("| what |")
     table = section[start : section.index("\n\n", start)]
     note = (
-        "Figures of the others are for their releases at the time; for the cases and our figures see\n"
+        "Figures of the others are for their releases at the time; cases and our figures:\n"
         "[validation.md](validation.md#beside-other-engines).\n\n"
     )
     return "## Results for the same motion\n\n" + note + table + "\n"

@@ -17,7 +17,7 @@ Values = Mapping[str, Value]
 
 _OPTION = "volcontact/option/"
 # Keys whose value is a number, of a material and of the options.
-_NUMBERS = {*core.units_of_law_fields(), "tolerance", "threads", "exit_speed"}
+NUMBERS = {*core.units_of_law_fields(), "tolerance", "threads", "exit_speed"}
 
 
 class GivenKeys:
@@ -80,7 +80,7 @@ def _keys(what: str, stem: str, values: Values) -> list[tuple[str, list[float]]]
     keys = []
     for name, value in values.items():
         if isinstance(value, str):
-            _require_word(f"{what}[{name!r}]", value, is_number=name in _NUMBERS)
+            _require_word(f"{what}[{name!r}]", value, is_number=name in NUMBERS)
             keys.append((f"{stem}{name}/{value}", [1.0]))
             continue
         numbers = np.atleast_1d(value)

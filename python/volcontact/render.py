@@ -120,7 +120,7 @@ class Renderer(Closing):
         qpos: np.ndarray,
         *,
         sites: np.ndarray | None = None,
-        surfaces: Sequence[SiteSurface] = (),
+        surfaces: Sequence[SiteSurface | None] = (),
         style: SiteStyle | None = None,
         view: View | str | None = None,
         mocap: tuple[np.ndarray, np.ndarray] | None = None,

@@ -282,6 +282,8 @@ class Contact(Closing):
                 raise TypeError(
                     f"{name} takes a whole number, got {type(value).__name__} {value!r}"
                 )
+        if count == 0:
+            raise ValueError(f"site = {site}: nothing touches, so there are no sites")
         if not 0 <= site < count:
             raise ValueError(
                 f"site = {site} must be from 0 to {count - 1}: there are {count} sites"

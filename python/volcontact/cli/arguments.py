@@ -154,6 +154,10 @@ def key(text: str) -> tuple[str, Value]:
     try:
         return name, float(value)
     except ValueError:
+        from volcontact.given_keys import NUMBERS
+
+        if name in NUMBERS:
+            raise argparse.ArgumentTypeError(f"{name} takes a number, got {value!r}") from None
         return name, value
 
 

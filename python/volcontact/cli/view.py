@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`volcontact view`: a scene live, with contact patches and forces."""
+"""`volcontact view`: a scene live, or a recorded run, with contact patches and forces."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ _EXAMPLES = """\
   volcontact view scene.xml --speed 0.1 --paused
   volcontact view scene.xml --keyframe above --ctrl push=5
   volcontact view scene.xml --record 2 --clip fall.mp4    two seconds, to look through and to keep
+  volcontact view results                              what run or compare wrote with --out
   volcontact view scene.xml --browser                  on a machine without a display
   volcontact view scene.xml --browser --host 0.0.0.0 --port 9000
 """
@@ -29,10 +30,25 @@ def add_to(commands: Subparsers) -> None:
     parser = plain_command(
         commands,
         "view",
-        "step a scene live and draw its overlaps, patches and forces",
+        "step a scene live, or show a recorded run, with its overlaps, patches and forces",
         _EXAMPLES,
     )
-    add_file(parser, "scene", metavar="SCENE", type=scene, help="MJCF file")
+    add_file(
+        parser,
+        "scene",
+        metavar="SCENE",
+        type=scene_or_folder,
+        help="MJCF file, or the folder that run or compare wrote with --out: its run is shown "
+        "without stepping",
+    )
+    add_file(
+        parser,
+        "--scene",
+        dest="scene_of_folder",
+        metavar="FILE",
+        type=scene,
+        help="of a folder: its scene, where that has moved",
+    )
     parser.add_argument(
         "--browser",
         action="store_true",
@@ -41,8 +57,7 @@ def add_to(commands: Subparsers) -> None:
     parser.add_argument(
         "--contact",
         choices=("volumetric", "native"),
-        default="volumetric",
-        help="kind of contact to begin with (default: %(default)s)",
+        help="kind of contact to begin with, or which run of a folder (default: volumetric)",
     )
     parser.add_argument(
         "--speed",
@@ -90,6 +105,19 @@ def clip(text: str) -> Path:
     return path
 
 
+def scene_or_folder(text: str) -> str:
+    """Reads the path of a scene, or of a folder that holds a recorded run."""
+    if not Path(text).is_dir():
+        return scene(text)
+    from volcontact.report import files
+
+    if not Path(text, files.TRAJECTORY).is_file():
+        raise argparse.ArgumentTypeError(
+            f"{text} holds no {files.TRAJECTORY}: `volcontact run SCENE --out {text}` makes one"
+        )
+    return text
+
+
 def execute(arguments: argparse.Namespace, terminal: Terminal) -> int:
     """Runs the command and returns the exit status."""
     from volcontact.view import browser, window
@@ -123,17 +151,40 @@ def _stage(arguments: argparse.Namespace, terminal: Terminal) -> Stage:
     from volcontact.view import Stage
     from volcontact.view.playback import record
 
-    drive = drive_of(arguments)
+    if Path(arguments.scene).is_dir():
+        return _recorded(arguments)
+    if arguments.scene_of_folder is not None:
+        raise ValueError(f"--scene is for a folder, and {arguments.scene} is a scene: leave it out")
+    drive, contact = drive_of(arguments), arguments.contact or "volumetric"
     if arguments.record is None:
-        return Stage(arguments.scene, contact=arguments.contact, drive=drive)
+        return Stage(arguments.scene, contact=contact, drive=drive)
     with terminal.progress() as bars:
         return record(
             arguments.scene,
             arguments.record,
-            contact=arguments.contact,
+            contact=contact,
             drive=drive,
             progress=bars.task("recording"),
         )
+
+
+def _recorded(arguments: argparse.Namespace) -> Stage:
+    from volcontact.view.recorded import open_recorded
+
+    given = {
+        "--record": arguments.record,
+        "--keyframe": arguments.keyframe,
+        "--ctrl": arguments.ctrl or None,
+        "--controls": arguments.controls,
+    }
+    for name, value in given.items():
+        if value is not None:
+            raise ValueError(
+                f"{name} drives a scene, and {arguments.scene} is a recorded run: leave it out"
+            )
+    return open_recorded(
+        arguments.scene, contact=arguments.contact, scene=arguments.scene_of_folder
+    )
 
 
 def _write_clip(stage: Stage, path: Path, terminal: Terminal) -> None:

@@ -23,6 +23,7 @@ from volcontact.running.outside_work import CHANNELS as OUTSIDE
 from volcontact.running.recording import CHANNELS, Recording
 
 _AT_REST = 1e-3  # [m/s]
+_SAME = 1e-9  # poses that are told as one [m], [rad]
 _NO_WORK = 1e-12  # of a channel that is not told [J]
 _RISE = 1e-6  # of an energy that is worth a word [J], and of its range [-]
 _NATIVE = OUTSIDE.index("native")
@@ -128,6 +129,10 @@ def _final_pose(comparison: Comparison) -> Iterator[Finding]:
     body = int(np.argmax(np.linalg.norm(shift, axis=1)))
     turn = float(angle_between(a.quaternion[-1, body], b.quaternion[-1, body]))
     x, y, z = shift[body]
+    if float(np.linalg.norm(shift[body])) < _SAME and turn < _SAME:
+        text = f"The {_plain(a.bodies[body])} ends in the same pose in both runs."
+        yield Finding("Final pose", text)
+        return
     height = "as high as"
     if abs(z) >= 1e-6:
         height = f"{quantity(abs(z), 'm')} {'higher' if z > 0.0 else 'lower'} than"

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +12,10 @@ import pyarrow as pa
 import pyarrow.csv as csv
 import pyarrow.parquet as pq
 
-from volcontact.messages.printable import cell
-from volcontact.running.outside_work import CHANNELS as OUTSIDE
-from volcontact.running.recording import CHANNELS, Recording
+from volcontact.outside_work import CHANNELS as OUTSIDE
+from volcontact.printable import cell
+from volcontact.recording import CHANNELS, Recording
+from volcontact.report import files
 
 _UNITS = {
     "time": "s",
@@ -51,7 +53,8 @@ def write_table(runs: tuple[Recording, ...], path: Path) -> None:
 
     Every column carries its unit in the field metadata. `qpos` and `qvel` are list columns. Beside
     it comes the same as CSV, with a column a component and units in the heads, and for both the
-    contact sites, as `sites.parquet` and `sites.csv`: one row per run, instant and site.
+    contact sites, as `sites.parquet` and `sites.csv`: one row per run, instant and site. The
+    metadata of the Parquet file names the scene, for `volcontact view`.
 
     Args:
         runs: whose bodies are the same.
@@ -59,7 +62,7 @@ def write_table(runs: tuple[Recording, ...], path: Path) -> None:
     """
     instants = pa.concat_tables([_table(run) for run in runs])
     sites = pa.concat_tables([_site_table(run) for run in runs])
-    for table, file in ((instants, path), (sites, path.with_name("sites.parquet"))):
+    for table, file in ((instants, path), (sites, path.with_name(files.SITES))):
         pq.write_table(table, file, compression="zstd")
         csv.write_csv(_flat(table), file.with_suffix(".csv"))
 
@@ -142,7 +145,7 @@ def _table(run: Recording) -> pa.Table:
             pa.field(name, array.type, metadata={"unit": unit})
             for name, (array, unit) in columns.items()
         ],
-        metadata={"bodies": json.dumps(run.bodies)},
+        metadata={"bodies": json.dumps(run.bodies), "origin": json.dumps(asdict(run.origin))},
     )
     return pa.table([array for array, _ in columns.values()], schema=schema)
 

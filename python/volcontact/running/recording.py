@@ -7,7 +7,8 @@ those of `time[i]`, at the beginning of step i. The last row is the state after 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
@@ -52,6 +53,23 @@ class Frame:
     time: float
     sites: np.ndarray
     surfaces: tuple[SiteSurface, ...] = ()
+
+
+@dataclass(frozen=True)
+class Origin:
+    """What a run was made from, so that it can be shown again.
+
+    Attributes:
+        scene: full path of the file; None where it was MJCF text or a model.
+        material: that was given besides.
+        options: likewise.
+        keyframe: name of that it started at; None is that called `start`, if there is one.
+    """
+
+    scene: str | None = None
+    material: Mapping[str, float | str] = field(default_factory=dict)
+    options: Mapping[str, float | str] = field(default_factory=dict)
+    keyframe: str | None = None
 
 
 @dataclass(frozen=True)
@@ -103,6 +121,7 @@ class Recording:
         notes: what was left as it is and hardly meant, as keyframes and actuators not used.
         description: what volcontact understood of the scene; {} under native contact.
         weight: of all that moves [N]; 0 without gravity.
+        origin: what the run was made from.
     """
 
     contact: ContactKind
@@ -141,6 +160,7 @@ class Recording:
     signals: dict[str, Signal]
     wrench_on: dict[str, np.ndarray]
     notes: tuple[str, ...] = ()
+    origin: Origin = Origin()
 
     @property
     def steps(self) -> int:

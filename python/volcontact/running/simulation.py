@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import copy
+import dataclasses
 import os
 import re
 import time as clock
@@ -18,12 +19,11 @@ from volcontact._mujoco_views import dense
 from volcontact.compiling import require_scene
 from volcontact.given_keys import GivenKeys, Values
 from volcontact.hints import sunk
-from volcontact.messages.names import name_of
-from volcontact.running.driving import Drive, Driver, to_keyframe
-from volcontact.running.outside_work import OutsideWork
-from volcontact.running.probes import Probe, probe
-from volcontact.running.recording import CHANNELS, SITE, SITE_IN_RUN, ContactKind, Frame, Recording
-from volcontact.running.signals import SignalReader
+from volcontact.names import name_of
+from volcontact.outside_work import OutsideWork
+from volcontact.probes import Probe, probe
+from volcontact.recording import CHANNELS, SITE, SITE_IN_RUN, ContactKind, Frame, Origin, Recording
+from volcontact.signals import SignalReader
 from volcontact.wrenches import wrenches_on_bodies
 
 Progress = Callable[[int, int], None]
@@ -106,7 +106,8 @@ def simulate(
         recorder.finish(data)
         if progress is not None:
             progress(steps, steps)
-        return recorder.recording(contact, reader.description)
+        made = recorder.recording(contact, reader.description)
+        return dataclasses.replace(made, origin=_origin(scene, keys, drive))
 
 
 def to_start(model: mujoco.MjModel, data: mujoco.MjData) -> None:
@@ -134,6 +135,16 @@ def warnings_of(data: mujoco.MjData) -> dict[str, int]:
     """MuJoCo's warning counters that are not 0, by name (without the mjWARN_ prefix)."""
     counts = data.warning.number.tolist()
     return {_WARNING_NAMES.get(i, f"warning {i}"): n for i, n in enumerate(counts) if n}
+
+
+def _origin(
+    scene: str | os.PathLike[str] | mujoco.MjModel, keys: GivenKeys, drive: Drive | None
+) -> Origin:
+    path = None
+    if not isinstance(scene, mujoco.MjModel) and not os.fspath(scene).lstrip().startswith("<"):
+        path = os.path.abspath(scene)
+    keyframe = None if drive is None else drive.keyframe
+    return Origin(path, dict(keys.material or {}), dict(keys.options or {}), keyframe)
 
 
 def _model_to_run(

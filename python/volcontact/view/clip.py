@@ -9,6 +9,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
+from volcontact.recording import ContactKind
 from volcontact.render import Renderer, SiteStyle, View
 from volcontact.report.palette import RUN_COLORS, rgb
 from volcontact.running.probes import probe_of
@@ -18,6 +19,7 @@ from volcontact.view.stage import Stage
 
 RATE = 30.0  # pictures a second
 _SIZE = (960, 640)  # [pixel]
+_COLUMNS = 12  # across a site
 
 
 def write_clip(
@@ -78,16 +80,15 @@ def _pictures(
     model, data = stage.model, mujoco.MjData(stage.model)
     width, height = size
     kind: ContactKind = stage.contact
-    probe = probe_of(model, stage.attached)
     with Renderer(model, width=width, height=height) as renderer:
         for i, time in enumerate(times):
             stage.history[stage.history.at(float(time))].put_into(data)
             mujoco.mj_forward(model, data)
-            sites = probe.sites(data)
+            sites, surfaces = stage.contacts_of(data, resolution=_COLUMNS)
             yield renderer.draw(
                 data.qpos,
                 sites=sites,
-                surfaces=probe.surfaces(data),
+                surfaces=surfaces,
                 style=SiteStyle(rgb(RUN_COLORS[kind]), reference_force(model, sites)),
                 view=view,
                 mocap=(data.mocap_pos, data.mocap_quat),

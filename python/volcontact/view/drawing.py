@@ -50,7 +50,7 @@ class SiteDrawing:
 def draw_sites(
     model: mujoco.MjModel,
     sites: np.ndarray,
-    surfaces: Sequence[SiteSurface] = (),
+    surfaces: Sequence[SiteSurface | None] = (),
     *,
     stretch: float | None = None,
 ) -> list[SiteDrawing]:
@@ -58,8 +58,8 @@ def draw_sites(
 
     Args:
         model: that they belong to.
-        sites: structured array of `volcontact.running.recording.SITE`.
-        surfaces: of each of them; none for native contacts.
+        sites: structured array of `volcontact.recording.SITE`.
+        surfaces: of each of them, None where it has no shape; none for native contacts.
         stretch: how many times thicker bodies are drawn; None makes each thick enough to be seen.
     """
     reference = reference_force(model, sites)

@@ -17,6 +17,7 @@ from volcontact.view.history import History, Snapshot
 from volcontact.view.stage import Stage
 
 _PICTURE = 1.0 / 120.0  # between two states that are kept [s]
+_FEWEST = 600  # states that are kept of a short run, where it has so many
 
 
 def record(
@@ -48,7 +49,7 @@ def record(
         mujoco.mj_forward(model, data)
         snapshots = [Snapshot(data)]
         steps = max(1, round(seconds / float(model.opt.timestep)))
-        every = max(1, round(_PICTURE / float(model.opt.timestep)))
+        every = stride(steps, float(model.opt.timestep))
         for i in range(1, steps + 1):
             driver.write(data)
             mujoco.mj_step(model, data)
@@ -61,6 +62,16 @@ def record(
         if attached is not None:
             attached.close()
         raise
+
+
+def stride(steps: int, timestep: float) -> int:
+    """How many steps lie between two states to look at; a short run keeps all of them.
+
+    Args:
+        steps: of the run.
+        timestep: [s].
+    """
+    return max(1, min(round(_PICTURE / timestep), steps // _FEWEST))
 
 
 class Playback(Stage):

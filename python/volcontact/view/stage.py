@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 import threading
 import time
+from collections.abc import Sequence
 
 import mujoco
 import numpy as np
@@ -15,6 +16,7 @@ from volcontact.running.driving import Drive, Driver
 from volcontact.running.probes import native_sites, recorded_sites
 from volcontact.running.recording import ContactKind
 from volcontact.scene import Contact, attach, load
+from volcontact.surface import SiteSurface
 from volcontact.view.drawing import SiteDrawing, draw_sites
 from volcontact.view.hand import Hand
 from volcontact.view.history import History, Snapshot
@@ -72,11 +74,6 @@ class Stage(Closing):
     def contact(self) -> ContactKind:
         """Which contact acts now."""
         return "native" if self._contact is None else "volumetric"
-
-    @property
-    def attached(self) -> Contact | None:
-        """The volumetric contact that acts now, or None."""
-        return self._contact
 
     def set_contact(self, kind: ContactKind) -> None:
         """Changes the contact; the motion goes on from the present state."""
@@ -150,24 +147,31 @@ class Stage(Closing):
             if self.data.time != begin:
                 self._show_state()
 
-    def sites(self) -> np.ndarray:
-        """Contacts of the present state, of type `volcontact.running.recording.SITE`."""
-        with self.lock:
-            if self._contact is None:
-                return native_sites(self.model, self.data)
-            return recorded_sites(self._contact.sites(self.data))
+    def contacts_of(
+        self, data: mujoco.MjData, *, resolution: int = 16
+    ) -> tuple[np.ndarray, Sequence[SiteSurface | None]]:
+        """The contacts of evaluated data of the model.
+
+        Args:
+            data: to read.
+            resolution: of the shapes: columns across a site.
+
+        Returns:
+            A structured array of `volcontact.recording.SITE`, and the shape of each of them; under
+            native contact there are no shapes.
+        """
+        if self._contact is None:
+            return native_sites(self.model, data), ()
+        found = self._contact.sites(data)
+        return recorded_sites(found), [
+            self._contact.surface(data, i, resolution=resolution) for i in range(len(found))
+        ]
 
     def drawings(self, *, stretch: float | None = None, resolution: int = 16) -> list[SiteDrawing]:
         """What to draw of the present contacts: see `draw_sites`."""
         with self.lock:
-            if self._contact is None:
-                return draw_sites(self.model, native_sites(self.model, self.data))
-            found = self._contact.sites(self.data)
-            surfaces = [
-                self._contact.surface(self.data, i, resolution=resolution)
-                for i in range(len(found))
-            ]
-            return draw_sites(self.model, recorded_sites(found), surfaces, stretch=stretch)
+            sites, surfaces = self.contacts_of(self.data, resolution=resolution)
+            return draw_sites(self.model, sites, surfaces, stretch=stretch)
 
     def close(self) -> None:
         """Detaches the scene. May be called twice."""

@@ -69,6 +69,11 @@ def test_material_and_option_act_without_a_key_in_the_file(scene, capsys):
     with pytest.raises(SystemExit):
         main(["run", scene, "--material", "stiffness"])
     assert "must be NAME=VALUE" in capsys.readouterr().err
+    for wrong in ("stiffness=hard", "friction=1,2"):
+        with pytest.raises(SystemExit):
+            main(["run", scene, "--material", wrong])
+        name, value = wrong.split("=")
+        assert f"{name} takes a number, got '{value}'" in capsys.readouterr().err
     assert main(["run", scene, "--material", "stifness=1"]) == 1
     assert "did you mean" in capsys.readouterr().err
 

@@ -65,6 +65,18 @@ def test_wrong_numbers_are_named(scene, site, options, message):
         contact.surface(data, site, **options)
 
 
+def test_where_nothing_touches_no_site_has_a_surface():
+    model = vc.load(
+        "<mujoco><worldbody><geom size='1'/><body pos='0 0 9'><freejoint/>"
+        "<geom size='1'/></body></worldbody></mujoco>"
+    )
+    data = mujoco.MjData(model)
+    with vc.attach(model) as contact:
+        mujoco.mj_forward(model, data)
+        with pytest.raises(ValueError, match="site = 0: nothing touches"):
+            contact.surface(data, 0)
+
+
 @pytest.mark.parametrize("stretch", [0.0, -1.0, float("nan")])
 def test_stretch_is_above_zero(scene, stretch):
     contact, data = scene
