@@ -169,8 +169,8 @@ def cross(session: nox.Session) -> None:
 
 @command
 def release(session: nox.Session) -> None:
-    """What is left to do before a version is given away; changes nothing."""
-    releasing.release()
+    """What is left to do before a version is given away; ARGS as 0.2.0: writes that version."""
+    releasing.release(*session.posargs[:1])
 
 
 @command
