@@ -10,7 +10,6 @@ the processor would.
 from __future__ import annotations
 
 import argparse
-import csv
 import json
 import os
 import shutil
@@ -78,7 +77,7 @@ def main() -> int:
         rows += [try_wheel(out, system, wheel, native.release_of(each)) for each in adaptors]
     if not rows:
         sys.exit(f"make_aarch64_wheels: none of {', '.join(SUITES)} is among --pythons: none tried")
-    write_rows([row for row in rows if row is not None])
+    native.write_table([row for row in rows if row is not None])
     return 0
 
 
@@ -139,13 +138,6 @@ def there(system: Path, *arguments: object) -> str:
     surroundings = {"HOME": "/home", "PATH": "/usr/local/bin:/usr/bin:/bin", "LANG": "C.UTF-8"}
     surroundings["MUJOCO_GL"] = "disabled"  # what draws starts programs, which are not emulated
     return native.run(*python, *arguments, env=surroundings)
-
-
-def write_rows(rows: list[dict[str, object]]) -> None:
-    """Puts them into the record in place of those of this machine."""
-    with native.TABLE.open(encoding="utf-8") as file:
-        kept = [row for row in csv.DictReader(file) if not row["platform"].endswith(MACHINE)]
-    native.write_table([*kept, *rows])
 
 
 if __name__ == "__main__":
