@@ -50,7 +50,7 @@ COPIES = (
 
 
 def release(version: str | None = None) -> None:
-    """Writes the version, where one is given, and prints the list; stops where something is to do."""
+    """Writes the version, where one is given; prints the list, and stops where it has to do."""
     if version is not None:
         write_version(ROOT, version)
     items = list(checklist(ROOT))
@@ -118,7 +118,7 @@ def version_of(root: Path) -> str | None:
 
 
 def write_version(root: Path, version: str) -> None:
-    """Into pyproject.toml and the copies; what is unreleased in the changelog becomes its section."""
+    """Into pyproject.toml and the copies; what is unreleased in the changelog gets its heading."""
     if not re.fullmatch(r"\d+\.\d+\.\d+", version):
         stop(f"release: {version!r} is not a version such as 0.2.0")
     for copy in (Copy("pyproject.toml", _SOURCE, str), *COPIES):

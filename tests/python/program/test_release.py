@@ -71,7 +71,8 @@ def test_version_is_written_by_hand_nowhere_else(releasing):
 
 def test_a_new_version_is_written_everywhere(releasing, checkout):
     log = checkout / "CHANGELOG.md"
-    log.write_text(log.read_text().replace("## Unreleased\n", "## Unreleased\n\n### Fixed\n\n- It.\n"))
+    begun = "## Unreleased\n\n### Fixed\n\n- It.\n"
+    log.write_text(log.read_text().replace("## Unreleased\n", begun))
     releasing.write_version(checkout, "1.12.3")
     git(checkout, "-c", "user.name=a", "-c", "user.email=a@b", "commit", "-q", "-a", "-m", "1.12.3")
     assert left(releasing, checkout) == []
@@ -85,7 +86,7 @@ def test_a_new_version_is_written_everywhere(releasing, checkout):
 
 
 def test_what_is_no_version_is_not_written(releasing, checkout):
-    with pytest.raises(Exception, match="'next' is not a version such as 0.2.0"):
+    with pytest.raises(Exception, match=r"'next' is not a version such as 0\.2\.0"):
         releasing.write_version(checkout, "next")
     assert left(releasing, checkout) == []
 
@@ -98,7 +99,7 @@ def test_nothing_is_left_where_all_is_done(releasing, checkout):
     ("name", "old", "new", "what"),
     [
         ("CITATION.cff", "version: 0.1.0", "version: 0.0.9", "CITATION.cff has version 0.0.9"),
-        ("plugin/c_api/volcontact.h", "VC_VERSION 100", "VC_VERSION 200", "volcontact.h has version 200"),
+        ("plugin/c_api/volcontact.h", "VC_VERSION 100", "VC_VERSION 200", "has version 200"),
         ("CHANGELOG.md", "## 0.1.0 - 2026-12-01", "## 0.1.0", "has a section 0.1.0 with its date"),
         ("CHANGELOG.md", "### Added", "### New", "the parts of CHANGELOG.md have the usual names"),
     ],
