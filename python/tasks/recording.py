@@ -159,7 +159,6 @@ def wheels(arguments: list[str]) -> None:
         other_python = None if f"python{version}" in pythons else from_newer_debian(version)
         if other_python is not None:
             pythons = {other_python.name: other_python} | pythons
-    newest = [prepared("newest").version if r == "newest" else r for r in MATRIX]
     script, other = "make_wheels.py", ["--other", "3.5.0"]
     if "--machine=aarch64" in arguments:
         need_system("g++-aarch64-linux-gnu", "mmdebstrap", "qemu-user-static")
@@ -167,7 +166,7 @@ def wheels(arguments: list[str]) -> None:
         arguments = [each for each in arguments if not each.startswith("--machine")]
     run(
         python, ROOT / "python" / script, "--eigen", TOOLS / "eigen", *other,
-        "--releases", *newest, "--pythons", *reversed(pythons.values()), *arguments,
+        "--releases", *MATRIX, "--pythons", *reversed(pythons.values()), *arguments,
     )  # fmt: skip
 
 
