@@ -161,7 +161,7 @@ def wheels(session: nox.Session) -> None:
 
 @command
 def cross(session: nox.Session) -> None:
-    """Core, C container and their tests elsewhere, emulated: ARGS as x86_64-windows-gnu."""
+    """Core and C container elsewhere, emulated: ARGS as x86_64-windows-gnu, aarch64-macos."""
     system.need_system()
     machine, *rest = session.posargs or [""]
     crossing.cross(machine, rest)
@@ -169,8 +169,8 @@ def cross(session: nox.Session) -> None:
 
 @command
 def release(session: nox.Session) -> None:
-    """What is left to do before a version is given away; changes nothing."""
-    releasing.release()
+    """What is left to do before a version is given away; ARGS as 0.2.0: writes that version."""
+    releasing.release(*session.posargs[:1])
 
 
 @command

@@ -263,11 +263,20 @@ def try_wheel(
 
 
 def write_table(rows: list[dict[str, object]]) -> None:
-    """Writes the record."""
+    """Puts them into the record in place of those of the same wheels; others stay."""
+    made = {_wheel_of(row) for row in rows}
+    with TABLE.open(encoding="utf-8") as file:
+        kept = [row for row in csv.DictReader(file) if _wheel_of(row) not in made]
     with TABLE.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
         writer.writeheader()
-        writer.writerows(rows)
+        writer.writerows(sorted([*kept, *rows], key=_wheel_of, reverse=True))
+
+
+def _wheel_of(row: dict[str, object]) -> tuple[str, int]:
+    """Machine and CPython of a row; as ("x86_64", 13)."""
+    _, _, _, machine = str(row["platform"]).split("_", 3)  # after manylinux_2_35
+    return machine, int(str(row["python"]).removeprefix("cp3"))
 
 
 if __name__ == "__main__":

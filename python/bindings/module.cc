@@ -34,5 +34,6 @@ NB_MODULE(_volcontact, m) {
         "results are the same to the last bit");
   m.def("most_threads", &omp_get_max_threads,
         "How many threads an evaluation may use: the processors, or OMP_NUM_THREADS");
+  m.def("version", [] { return VOLCONTACT_VERSION; }, "Of the package, as in its pyproject.toml");
   volcontact::python::speak_plainly(m);
 }

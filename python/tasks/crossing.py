@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`./run cross MACHINE`: the core and the C container on another machine or system, emulated."""
+"""`./run cross MACHINE`: the core and the C container on another machine or system.
+
+Their tests run in emulation. Nothing here runs programs of macOS: there they are compiled alone.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tasks.building import build, configure
-from tasks.shell import BUILD, ROOT, TOOLS, Stopped, run, say, stop
+from tasks.shell import BUILD, ROOT, TOOLS, VENVS, Stopped, run, say, stop
 from tasks.system import need_system
 
 
@@ -39,29 +42,72 @@ _GOOGLETEST = Path("/usr/src/googletest")  # as apt has it
 _TESTS = ("volcontact_core_tests", "volcontact_c_api_tests")
 
 
+MACOS = "aarch64-macos"
+
+
 def cross(machine: str, arguments: list[str]) -> None:
     """Compiles core, C container and their tests, and runs these; arguments are GoogleTest's."""
+    if machine == MACOS:
+        _macos_tools(VENVS / "macos")
+        _configure(machine)
+        build(BUILD / "cross" / machine, "volcontact_core", "volcontact_c")
+        say(f"{machine}: core and C container are compiled; nothing here runs them")
+        return
     if machine not in MACHINES:
-        stop(f"cross: {machine!r} is not among: {', '.join(MACHINES)}")
+        stop(f"cross: {machine!r} is not among: {', '.join([*MACHINES, MACOS])}")
     need_system("googletest", *MACHINES[machine].packages)
-    toolchain = ROOT / "python" / "toolchains" / f"{machine}.cmake"
     tree = BUILD / "cross" / machine
-    tests = _googletest(tree / "googletest", toolchain)
-    configure(
-        tree,
-        CMAKE_BUILD_TYPE="Release",
-        CMAKE_TOOLCHAIN_FILE=f"{toolchain}",
+    tests = _googletest(tree / "googletest", _toolchain(machine))
+    _configure(
+        machine,
         CMAKE_FIND_ROOT_PATH=f"{tests}",
         CMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE="PRE_TEST",
-        Eigen3_ROOT=f"{TOOLS / 'eigen'}",
         GTest_DIR=f"{tests / 'lib' / 'cmake' / 'GTest'}",
-        VOLCONTACT_CGAL="OFF",
-        VOLCONTACT_MUJOCO="OFF",
         VOLCONTACT_TESTS="ON",
     )
     build(tree, *_TESTS)
     _run_tests(MACHINES[machine], tree, arguments)
     say(f"{machine}: the tests of the core and of the C container passed, in emulation")
+
+
+def _toolchain(machine: str) -> Path:
+    return ROOT / "python" / "toolchains" / f"{machine}.cmake"
+
+
+def _configure(machine: str, **settings: str) -> None:
+    configure(
+        BUILD / "cross" / machine,
+        CMAKE_BUILD_TYPE="Release",
+        CMAKE_TOOLCHAIN_FILE=f"{_toolchain(machine)}",
+        Eigen3_ROOT=f"{TOOLS / 'eigen'}",
+        VOLCONTACT_CGAL="OFF",
+        VOLCONTACT_MUJOCO="OFF",
+        **settings,
+    )
+
+
+def _macos_tools(place: Path) -> None:
+    """What python/toolchains/aarch64-macos.cmake names: zig as a compiler, and LLVM's OpenMP."""
+    if (place / ".ready").exists():
+        return
+    run("uv", "venv", "-q", "--clear", place)
+    python = place / "bin" / "python"
+    run("uv", "pip", "install", "-q", "--python", python, "ziglang")
+    run(
+        "uv", "pip", "install", "-q", "--python", python, "--no-deps", "--only-binary", ":all:",
+        "--python-platform", "aarch64-apple-darwin", "--target", place / "openmp", "cmeel-libomp",
+    )  # fmt: skip
+    target = f"-target {MACOS}"
+    for name, words in {
+        "C": f"cc {target}",
+        "CXX": f"c++ {target}",
+        "ar": "ar",
+        "ranlib": "ranlib",
+    }.items():
+        program = place / "bin" / name
+        program.write_text(f'#!/bin/sh\nexec "{python}" -m ziglang {words} "$@"\n')
+        program.chmod(0o755)
+    (place / ".ready").touch()
 
 
 def _run_tests(machine: Machine, tree: Path, arguments: list[str]) -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 from tasks.building import build, configure
 from tasks.cgal import NoCgal, build_cgal, link_cgal
 from tasks.environments import BASELINE, Environment, NoPython, located, prepared
-from tasks.interpreters import all_interpreters
+from tasks.interpreters import VERSIONS, all_interpreters, from_newer_debian
 from tasks.shell import BUILD, RESULTS, ROOT, TOOLS, Stopped, output_of, run, say
 from tasks.sites import tool_environment
 from tasks.system import need_system
@@ -153,8 +153,12 @@ def wheels(arguments: list[str]) -> None:
     The other release shows that what is not in a wheel is compiled at first use.
     """
     python = tool_environment("wheels")
+    need_system("mmdebstrap", "patchelf")
     pythons = {path.name: path for path in reversed(list(all_interpreters()))}
-    newest = [prepared("newest").version if r == "newest" else r for r in MATRIX]
+    for version in sorted(VERSIONS):
+        other_python = None if f"python{version}" in pythons else from_newer_debian(version)
+        if other_python is not None:
+            pythons = {other_python.name: other_python} | pythons
     script, other = "make_wheels.py", ["--other", "3.5.0"]
     if "--machine=aarch64" in arguments:
         need_system("g++-aarch64-linux-gnu", "mmdebstrap", "qemu-user-static")
@@ -162,7 +166,7 @@ def wheels(arguments: list[str]) -> None:
         arguments = [each for each in arguments if not each.startswith("--machine")]
     run(
         python, ROOT / "python" / script, "--eigen", TOOLS / "eigen", *other,
-        "--releases", *newest, "--pythons", *reversed(pythons.values()), *arguments,
+        "--releases", *MATRIX, "--pythons", *reversed(pythons.values()), *arguments,
     )  # fmt: skip
 
 

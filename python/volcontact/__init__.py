@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Volumetric contact for MuJoCo: exact interference volumes, real patches, true forces."""
 
+from volcontact import _volcontact
 from volcontact._volcontact import (
     Box,
     Bristle,
@@ -52,7 +53,7 @@ from volcontact.scene import Contact, attach, contact_forces, load
 from volcontact.study import Study, StudyError
 from volcontact.surface import SiteSurface
 
-__version__ = "0.1.0"
+__version__ = _volcontact.version()
 
 __all__ = [
     "Audit",

@@ -1371,3 +1371,6 @@ def most_threads() -> int:
     """
     How many threads an evaluation may use: the processors, or OMP_NUM_THREADS
     """
+
+def version() -> str:
+    """Of the package, as in its pyproject.toml"""

@@ -6,7 +6,7 @@
 namespace volcontact {
 namespace {
 
-constexpr int kNone = MechanismTrees::kNone;
+constexpr int kNowhere = MechanismTrees::kNone;
 
 }  // namespace
 
@@ -18,7 +18,8 @@ void ContactIslands::link(std::span<const ContactPlace> places,
   pairs_.clear();
   for (const ContactPlace& place : places) {
     const auto& [a, b] = ends_.emplace_back(tree_of(place.body_a), tree_of(place.body_b));
-    if (a != kNone || b != kNone) pairs_.emplace_back(a == kNone ? b : a, b == kNone ? a : b);
+    if (a != kNowhere || b != kNowhere)
+      pairs_.emplace_back(a == kNowhere ? b : a, b == kNowhere ? a : b);
   }
   for (const auto& [a, b] : joined) {
     const int tree_a = trees_->tree_of_dof[size(a)], tree_b = trees_->tree_of_dof[size(b)];
@@ -74,10 +75,10 @@ void ContactIslands::add_island(int tree) {
 void ContactIslands::sort_places() {
   const auto island_of = [&](const std::pair<int, int>& ends) {
     const int tree = std::max(ends.first, ends.second);
-    return tree == kNone ? kNone : island_of_[size(tree)];
+    return tree == kNowhere ? kNowhere : island_of_[size(tree)];
   };
   for (const auto& ends : ends_) {
-    if (const int island = island_of(ends); island != kNone) ++islands_[size(island)].places_end;
+    if (const int island = island_of(ends); island != kNowhere) ++islands_[size(island)].places_end;
   }
   int count = 0;
   next_.clear();
@@ -89,7 +90,7 @@ void ContactIslands::sort_places() {
   ordered_places_.resize(size(count));
   for (std::size_t i = 0; i < ends_.size(); ++i) {
     const int island = island_of(ends_[i]);
-    if (island != kNone) ordered_places_[size(next_[size(island)]++)] = static_cast<int>(i);
+    if (island != kNowhere) ordered_places_[size(next_[size(island)]++)] = static_cast<int>(i);
   }
 }
 
@@ -101,7 +102,7 @@ void ContactIslands::build(const MechanismTrees& trees, std::span<const ContactP
   ordered_trees_.clear();
   const std::size_t count = trees.trees.size();
   seen_.assign(count, 0);
-  island_of_.assign(count, kNone);
+  island_of_.assign(count, kNowhere);
   rank_.assign(count, 0);
   for (int tree = 0; tree < static_cast<int>(count); ++tree) {
     const bool alone = link_begin_[size(tree)] == link_begin_[size(tree) + 1];
@@ -122,7 +123,7 @@ std::span<const DofRange> ContactIslands::trees(int island) const {
 
 std::pair<int, int> ContactIslands::trees_of(int place) const {
   const auto [a, b] = ends_[size(place)];
-  return {a == kNone ? kNone : rank_[size(a)], b == kNone ? kNone : rank_[size(b)]};
+  return {a == kNowhere ? kNowhere : rank_[size(a)], b == kNowhere ? kNowhere : rank_[size(b)]};
 }
 
 }  // namespace volcontact

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The list of `./run release` sees what is not done."""
 
+import datetime
 import importlib
 import shutil
 import subprocess
@@ -9,8 +10,10 @@ from pathlib import Path
 
 import pytest
 
+import volcontact as vc
+
 ROOT = Path(__file__).parents[3]
-VERSIONED = ("pyproject.toml", "CMakeLists.txt", "CITATION.cff", "python/volcontact/__init__.py")
+VERSIONED = ("pyproject.toml", "CITATION.cff", "plugin/c_api/volcontact.h")
 
 
 @pytest.fixture
@@ -49,7 +52,43 @@ def left(releasing, checkout):
 
 def test_version_is_the_same_everywhere(releasing):
     items = [item for item in releasing.checklist(ROOT) if "has version" in item.what]
-    assert len(items) == 4 and all(item.done for item in items)
+    assert len(items) == 3 and all(item.done for item in items)
+
+
+def test_package_has_the_version_of_its_project(releasing):
+    assert vc.__version__ == releasing.version_of(ROOT)
+
+
+def test_version_is_written_by_hand_nowhere_else(releasing):
+    version = releasing.version_of(ROOT)
+    files = subprocess.run(
+        ["git", "-C", ROOT, "grep", "-lwF", version, "--", "*.cmake", "*CMakeLists.txt", "*.py",
+         "*.h", "*.cc", "*.in", "*.cff", "*.toml", ":!tests"],
+        capture_output=True, text=True, check=True,
+    ).stdout.split()  # fmt: skip
+    assert files == ["CITATION.cff", "pyproject.toml"]
+
+
+def test_a_new_version_is_written_everywhere(releasing, checkout):
+    log = checkout / "CHANGELOG.md"
+    begun = "## Unreleased\n\n### Fixed\n\n- It.\n"
+    log.write_text(log.read_text().replace("## Unreleased\n", begun))
+    releasing.write_version(checkout, "1.12.3")
+    git(checkout, "-c", "user.name=a", "-c", "user.email=a@b", "commit", "-q", "-a", "-m", "1.12.3")
+    assert left(releasing, checkout) == []
+    assert releasing.version_of(checkout) == "1.12.3"
+    assert "\nversion: 1.12.3\n" in (checkout / "CITATION.cff").read_text()
+    header = (checkout / "plugin/c_api/volcontact.h").read_text()
+    assert "\n#define VC_VERSION 11203\n" in header
+    unreleased, new, old = log.read_text().partition("# Changelog\n")[2].split("\n## ")[1:]
+    assert unreleased.strip() == "Unreleased" and old.startswith("0.1.0 - ")
+    assert new.startswith(f"1.12.3 - {datetime.date.today()}\n\n### Fixed\n\n- It.")
+
+
+def test_what_is_no_version_is_not_written(releasing, checkout):
+    with pytest.raises(Exception, match=r"'next' is not a version such as 0\.2\.0"):
+        releasing.write_version(checkout, "next")
+    assert left(releasing, checkout) == []
 
 
 def test_nothing_is_left_where_all_is_done(releasing, checkout):
@@ -60,7 +99,7 @@ def test_nothing_is_left_where_all_is_done(releasing, checkout):
     ("name", "old", "new", "what"),
     [
         ("CITATION.cff", "version: 0.1.0", "version: 0.0.9", "CITATION.cff has version 0.0.9"),
-        ("CMakeLists.txt", "VERSION 0.1.0", "VERSION 0.2.0", "CMakeLists.txt has version 0.2.0"),
+        ("plugin/c_api/volcontact.h", "VC_VERSION 100", "VC_VERSION 200", "has version 200"),
         ("CHANGELOG.md", "## 0.1.0 - 2026-12-01", "## 0.1.0", "has a section 0.1.0 with its date"),
         ("CHANGELOG.md", "### Added", "### New", "the parts of CHANGELOG.md have the usual names"),
     ],

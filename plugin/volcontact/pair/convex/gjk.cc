@@ -193,8 +193,7 @@ bool find_common_point(const Support& support, const Vec3& first, Vec3& point) {
       return common_point();
     }
     count = keep_used(corners, count, nearest);
-    std::copy(nearest.weights, nearest.weights + 4, weights);
-    std::remove(weights, weights + 4, 0.0);
+    std::remove_copy(nearest.weights, nearest.weights + 4, weights, 0.0);
     v = nearest.place;
   }
   return common_point();
