@@ -55,9 +55,12 @@ by solids and ratio of masses:
 Trees of bodies with all joints, limits, springs, equalities, tendons, actuators and integrators,
 random materials, {steps} steps. In every step the work of contact and the growth of what it stores
 are added: a sum above zero was made. A scene fails when that is ever more than 1e-3 of the kinetic
-and elastic energy there was, when a force is not a finite number, or MuJoCo warns. A scene that
-MuJoCo warns of with its own contact counts as no failure. Of {all} scenes {cells} were run, and
-{failed} fail. By integrator:
+and elastic energy there was, when a force is not a finite number, or MuJoCo warns. That MuJoCo
+warns is no failure where it does so with its own contact, or without any: from the last state in
+which nothing is more than twice as fast as with native contact, and only if contact has given
+nothing to the motion until then. {alone} warn without any contact: springs too stiff for the step,
+which stay still until something moves them, and which native contact does not touch. Of {all}
+scenes {cells} were run, and {failed} fail. By integrator:
 """,
     "models_of_others": """\
 ## Models of others
@@ -91,10 +94,17 @@ def render() -> str:
         part = module(name)
         failed = sum(not is_sound(part, row) for row in rows)
         words = {"cells": len(rows), "failed": failed, "steps": getattr(part, "STEPS", "")}
+        words["alone"] = sum(row.get("alone") == "1" for row in rows)
         words["all"] = sum(1 for _ in part.cases()) if "{all}" in TEXTS[name] else ""
-        text += "\n" + TEXTS[name].format(**words)
+        text += "\n" + TEXTS[name].format(**words) + states(rows)
         text += "\n" + tables[name](rows)
     return text
+
+
+def states(rows: list[Row]) -> str:
+    """Of which commits the rows are."""
+    names = sorted({row.get("state") or "" for row in rows} - {""})
+    return f"Measured at {', '.join(names)}.\n" if names else ""
 
 
 def grid(name: str, rows: list[Row], down: str, across: str, corner: str) -> str:

@@ -109,7 +109,7 @@ def run(
     ):
         runs = [pool.submit(examined, part.NAME, case) for case in missing]
         for number, ended in enumerate(concurrent.futures.as_completed(runs), 1):
-            row = ended.result()
+            row = ended.result() | {"state": path.parent.name}
             file.write(json.dumps(row) + "\n")
             file.flush()
             done[key_of(part, row)] = row
@@ -140,7 +140,7 @@ def write(part: ModuleType, rows: list[dict[str, Any]]) -> None:
     path = RESULTS / f"campaign_{part.NAME}.csv"
     with path.open("w", encoding="utf-8", newline="") as table:
         writer = csv.DictWriter(
-            table, (*part.COLUMNS, "error"), lineterminator="\n", extrasaction="ignore"
+            table, (*part.COLUMNS, "error", "state"), lineterminator="\n", extrasaction="ignore"
         )
         writer.writeheader()
         for row in rows:
