@@ -64,8 +64,10 @@ MuJoCo warns of with its own contact counts as no failure. Of {all} scenes {cell
 
 As the packages ship them, each at its own step, random controls and starts, k_v 1e7 to 1e10 N/m³. A
 case fails when MuJoCo warns more than with native contact, a force is not a finite number, or the
-fastest joint is more than twice as fast as with native contact. {cells} cases were run, and
-{failed} fail. *Ratio*: of the fastest joint speeds, the worst of all.
+fastest joint is more than twice as fast as with native contact, and than with the same contact at a
+tenth of the step. {cells} cases of {models} models were run, and {failed} fail. *Ratio*: of the
+fastest joint speeds, to the faster of the two, the worst of all; the second is looked at only where
+the first does not do.
 """,
 }
 
@@ -91,6 +93,7 @@ def render() -> str:
         part = module(name)
         failed = sum(not is_sound(part, row) for row in rows)
         words = {"cells": len(rows), "failed": failed, "steps": getattr(part, "STEPS", "")}
+        words["models"] = len({tuple(row[key] for key in part.KEYS[:2]) for row in rows})
         words["all"] = sum(1 for _ in part.cases()) if "{all}" in TEXTS[name] else ""
         text += "\n" + TEXTS[name].format(**words)
         text += "\n" + tables[name](rows)
