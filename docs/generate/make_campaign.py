@@ -67,8 +67,10 @@ scenes {cells} were run, and {failed} fail. By integrator:
 
 As the packages ship them, each at its own step, random controls and starts, k_v 1e7 to 1e10 N/m³. A
 case fails when MuJoCo warns more than with native contact, a force is not a finite number, or the
-fastest joint is more than twice as fast as with native contact. {cells} cases were run, and
-{failed} fail. *Ratio*: of the fastest joint speeds, the worst of all.
+fastest joint is more than twice as fast as with native contact, and than with the same contact at a
+tenth of the step. {cells} cases of {models} models were run, and {failed} fail. *Ratio*: of the
+fastest joint speeds, to the faster of the two, the worst of all; the second is looked at only where
+the first does not do.
 """,
 }
 
@@ -95,6 +97,7 @@ def render() -> str:
         failed = sum(not is_sound(part, row) for row in rows)
         words = {"cells": len(rows), "failed": failed, "steps": getattr(part, "STEPS", "")}
         words["alone"] = sum(row.get("alone") == "1" for row in rows)
+        words["models"] = len({tuple(row[key] for key in part.KEYS[:2]) for row in rows})
         words["all"] = sum(1 for _ in part.cases()) if "{all}" in TEXTS[name] else ""
         text += "\n" + TEXTS[name].format(**words) + states(rows)
         text += "\n" + tables[name](rows)

@@ -63,8 +63,11 @@ void solve_implicit(const SceneContact& contact, const mjModel* m, mjData* d,
   const auto parts = m->opt.integrator == mjINT_RK4                    ? ImplicitParts::kHeld
                      : contact.options().implicit == Implicit::kAlways ? ImplicitParts::kAll
                                                                        : ImplicitParts::kStiff;
-  scratch.constraints.read(m, d);
-  const MujocoMechanism mechanism(m, d, contact.trees());
+  const mjData* ahead = look_ahead(m, d);
+  scratch.metric.read(m, ahead);
+  scratch.metric.shift(scratch.known);
+  scratch.constraints.read(m, d, ahead, scratch.metric);
+  const MujocoMechanism mechanism(m, d, contact.trees(), scratch.metric);
   implicit.solve(mechanism, scratch.constraints, parts, scratch.known.data());
   for (const int pair : scratch.order) total_up(scratch.reports[static_cast<std::size_t>(pair)]);
   for (std::size_t k = 0; k < scratch.energies.size(); ++k) {

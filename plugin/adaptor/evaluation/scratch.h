@@ -36,7 +36,8 @@ struct EvaluationScratch {
   ThreadChoices choices;
   BodyForces forces;
   ImplicitStep implicit;
-  NativeConstraints constraints;     ///< that it takes in
+  StepMetric metric;                 ///< and what it takes in: what MuJoCo does implicitly,
+  NativeConstraints constraints;     ///< and its constraints
   double dissipated = 0.0;           ///< by the contacts up to the evaluation before [J]
   std::vector<PairEnergy> energies;  ///< of the pairs in `near`
   std::vector<double> user_qfrc, user_xfrc, known, row;

@@ -4,6 +4,7 @@
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -91,6 +92,51 @@ inline bool solves_with_step_matrix([[maybe_unused]] const mjModel* m) {
 #endif
 }
 
+/// Whether `discrete` may add more to that matrix than the damping of the degrees of freedom.
+inline bool adds_to_step_matrix(const mjModel* m) {
+  return m->nu > 0 || m->ntendon > 0 || m->opt.density > 0.0 || m->opt.viscosity > 0.0 ||
+         std::any_of(m->jnt_stiffness, m->jnt_stiffness + m->njnt, [](double k) { return k != 0.0; });
+}
+
+/// What the matrix of `discrete` has beside the mass matrix, by degrees of freedom: on the diagonal,
+/// for fluids where the mass matrix has entries (null without), and the stiffness k h whose product
+/// with the velocity goes off the forces. All null where there is nothing.
+struct StepDiagonal {
+  const mjtNum* added = nullptr;
+  const mjtNum* fluid = nullptr;
+  const mjtNum* stiffness = nullptr;
+};
+inline StepDiagonal step_diagonal([[maybe_unused]] const mjData* d) {
+#if mjVERSION_HEADER >= 3013000
+  if (d->efm_active != 0) return {d->efm_diag, d->efm_fluid, d->efm_ck};
+#endif
+  return {};
+}
+
+/// And besides, for tendons and actuators: calls use(scale, stiffness, dofs, numbers) where the
+/// matrix has scale * J' J, with J of these degrees of freedom, and the forces -stiffness * J' J v.
+template <typename Use>
+void for_each_step_row([[maybe_unused]] const mjModel* m, [[maybe_unused]] const mjData* d,
+                       [[maybe_unused]] Use use) {
+#if mjVERSION_HEADER >= 3013000
+  if (d->efm_active == 0) return;
+  const auto part = [](const auto* of, int begin, int count) {
+    return std::span(of + begin, static_cast<std::size_t>(count));
+  };
+  for (int i = 0; i < d->nefmT; ++i) {
+    const int id = d->efm_tid[i], begin = m->ten_J_rowadr[id], count = m->ten_J_rownnz[id];
+    use(d->efm_ts[i], d->efm_tk[i], part(m->ten_J_colind, begin, count),
+        part(d->ten_J, begin, count));
+  }
+  for (int i = 0; i < d->nefmA; ++i) {
+    const int id = m->actuator_outadr[d->efm_aid[i]];
+    const int begin = d->moment_rowadr[id], count = d->moment_rownnz[id];
+    use(d->efm_as[i], d->efm_ak[i], part(d->moment_colind, begin, count),
+        part(d->actuator_moment, begin, count));
+  }
+#endif
+}
+
 /// What the integrator takes implicitly of the forces by velocities.
 enum class Damping { kNone, kOfJoints, kAllSymmetric, kAll };
 
@@ -126,25 +172,36 @@ void for_row_of_damping(const mjModel* m, const mjData* d, Damping damping, int 
   }
 }
 
-/// The matrix that `implicitfast` divides by for a body that flies alone, where it knows one, into
-/// `out`, 6 x 6; after `make_damping`.
+/// The matrix that `implicitfast` and `discrete` divide by for a body that flies alone, where they
+/// know one, into `out`, 6 x 6; after `make_damping`.
 inline bool matrix_of_free_body(const mjModel* m, const mjData* d, Damping damping, int joint,
                                 double* out) {
-  return damping == Damping::kAllSymmetric && !solves_with_step_matrix(m) &&
-         m->jnt_type[joint] == mjJNT_FREE && mjd_freeMhat &&
+  return damping == Damping::kAllSymmetric && m->jnt_type[joint] == mjJNT_FREE && mjd_freeMhat &&
          mjd_freeMhat(m, d, joint, m->opt.timestep, out) != 0;
+}
+
+/// Calls use(k, address) for degree of freedom i and each k that carries it, with where the mass
+/// matrix has M_ik.
+template <typename Use>
+void for_entry_of_mass(const mjModel* m, int i, Use use) {
+#if mjVERSION_HEADER < 3009000
+  int address = m->dof_Madr[i];
+  for (int k = i; k >= 0; k = m->dof_parentid[k]) use(k, address++);
+#else
+  const int begin = m->M_rowadr[i], end = begin + m->M_rownnz[i];
+  for (int address = begin; address < end; ++address) use(m->M_colind[address], address);
+#endif
 }
 
 /// Calls use(k, M_ik) for degree of freedom i, and for each k that carries it.
 template <typename Use>
 void for_row_of_mass(const mjModel* m, const mjData* d, int i, Use use) {
 #if mjVERSION_HEADER < 3009000
-  int address = m->dof_Madr[i];
-  for (int k = i; k >= 0; k = m->dof_parentid[k]) use(k, d->qM[address++]);
+  const mjtNum* numbers = d->qM;
 #else
-  const int begin = m->M_rowadr[i], end = begin + m->M_rownnz[i];
-  for (int address = begin; address < end; ++address) use(m->M_colind[address], d->M[address]);
+  const mjtNum* numbers = d->M;
 #endif
+  for_entry_of_mass(m, i, [&](int k, int address) { use(k, numbers[address]); });
 }
 
 /// Calls use(k, J_ik) for row i of the Jacobian of MuJoCo's constraints; zeros may be left out.

@@ -50,20 +50,27 @@ class Copy {
 bool is_looking_ahead() { return looks_ahead; }
 void stop_looking_ahead() { looks_ahead = false; }
 
-bool complete_constraints([[maybe_unused]] const mjModel* m, [[maybe_unused]] mjData* d) {
+const mjData* look_ahead([[maybe_unused]] const mjModel* m, [[maybe_unused]] const mjData* d) {
 #if mjVERSION_HEADER >= 3013000
-  if (!solves_with_step_matrix(m) || d->nefc == 0) return true;
+  if (!solves_with_step_matrix(m) || (d->nefc == 0 && !adds_to_step_matrix(m))) return nullptr;
   static thread_local Copy copy;
   mjData* ahead = copy.of(m, d);
   looks_ahead = true;
   mj_forwardSkip(m, ahead, mjSTAGE_NONE, 1);
   looks_ahead = false;
+  return ahead;
+#else
+  return nullptr;
+#endif
+}
+
+bool complete_constraints(mjData* d, const mjData* ahead) {
+  if (!ahead) return true;
   if (ahead->nefc != d->nefc) return false;
   const auto count = static_cast<std::size_t>(d->nefc);
   std::copy_n(ahead->efc_D, count, d->efc_D);
   std::copy_n(ahead->efc_R, count, d->efc_R);
   std::copy_n(ahead->efc_KBIP, 4 * count, d->efc_KBIP);
-#endif
   return true;
 }
 

@@ -39,8 +39,9 @@ double fall_of(const mjModel* m) {
   return m->opt.timestep * Eigen::Map<const Vec3>(m->opt.gravity).norm();
 }
 
-MujocoMechanism::MujocoMechanism(const mjModel* m, mjData* d, const MechanismTrees& of_model)
-    : m_(m), d_(d), damping_(make_damping(m, d)) {
+MujocoMechanism::MujocoMechanism(const mjModel* m, mjData* d, const MechanismTrees& of_model,
+                                 const StepMetric& metric)
+    : m_(m), d_(d), metric_(metric), damping_(make_damping(m, d)) {
   trees = &of_model;
   step = m->opt.timestep;
   fall = fall_of(m);
@@ -59,12 +60,7 @@ void MujocoMechanism::mass(std::span<const int> dofs, std::vector<DofEntry>& out
 }
 
 void MujocoMechanism::damping(std::span<const int> dofs, std::vector<DofEntry>& out) const {
-  for (const int dof : dofs) {
-    for_row_of_damping(m_, d_, damping_, dof, [&](int other, double b) {
-      out.push_back({dof, other, step * b});
-      if (damping_ == Damping::kAllSymmetric) out.push_back({other, dof, step * b});
-    });
-  }
+  for (const int dof : dofs) dampen(dof, out);
   if (damping_ != Damping::kAllSymmetric) return;
   for (const int dof : dofs) {
     const DofRange& tree = trees->trees[size(trees->tree_of_dof[size(dof)])];
@@ -72,9 +68,27 @@ void MujocoMechanism::damping(std::span<const int> dofs, std::vector<DofEntry>& 
   }
 }
 
+void MujocoMechanism::dampen(int dof, std::vector<DofEntry>& out) const {
+  const auto put = [&](int other, double value) {
+    out.push_back({dof, other, value});
+    if (damping_ == Damping::kAllSymmetric) out.push_back({other, dof, value});
+  };
+  if (!metric_.is_known()) {
+    for_row_of_damping(m_, d_, damping_, dof, [&](int other, double b) { put(other, step * b); });
+    return;
+  }
+  if (!metric_.fluid()) return put(dof, metric_.diagonal(dof));
+  for_entry_of_mass(m_, dof, [&](int other, int address) {
+    put(other, metric_.fluid()[address] + (other == dof ? metric_.diagonal(dof) : 0.0));
+  });
+}
+
 // In place of the damping of a body that flies alone, where the integrator has a matrix for it.
 void MujocoMechanism::fly(int dof, std::vector<DofEntry>& out) const {
   double matrix[36], mass[36] = {};
+  for (int i = 0; i < 6; ++i) {
+    if (metric_.is_held(dof + i)) return;
+  }
   if (!matrix_of_free_body(m_, d_, damping_, m_->dof_jntid[dof], matrix)) return;
   for (int i = 0; i < 6; ++i) {
     for_row_of_mass(m_, d_, dof + i, [&](int other, double value) {

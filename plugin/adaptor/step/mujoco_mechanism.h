@@ -2,6 +2,7 @@
 #pragma once
 
 #include "adaptor/mujoco/mujoco_compat.h"
+#include "adaptor/step/step_metric.h"
 #include "volcontact/step/mechanism.h"
 
 namespace volcontact::adaptor {
@@ -15,18 +16,22 @@ double fall_of(const mjModel* m);
 /// The bodies of a model at the positions and velocities that are current in its data.
 class MujocoMechanism final : public Mechanism {
  public:
-  /// Overwrites mjData.qDeriv, as the integrator will. `of_model`: its trees, which stay.
-  MujocoMechanism(const mjModel* m, mjData* d, const MechanismTrees& of_model);
+  /// Overwrites mjData.qDeriv, as the integrator will. `of_model`: its trees, and `metric`, which
+  /// stay.
+  MujocoMechanism(const mjModel* m, mjData* d, const MechanismTrees& of_model,
+                  const StepMetric& metric);
 
   void mass(std::span<const int> dofs, std::vector<DofEntry>& out) const override;
   void damping(std::span<const int> dofs, std::vector<DofEntry>& out) const override;
   bool constraints_see_damping() const override { return solves_with_step_matrix(m_); }
 
  private:
+  void dampen(int dof, std::vector<DofEntry>& out) const;
   void fly(int dof, std::vector<DofEntry>& out) const;
 
   const mjModel* m_;
   const mjData* d_;
+  const StepMetric& metric_;
   Damping damping_;
 };
 

@@ -5,33 +5,78 @@
 
 namespace volcontact::adaptor {
 
-void NativeConstraints::read(const mjModel* m, mjData* d) {
+void NativeConstraints::read(const mjModel* m, mjData* d, const mjData* ahead,
+                             const StepMetric& metric) {
   m_ = m;
   d_ = d;
+  metric_ = &metric;
   begin_rows();
-  const int count = static_cast<int>(d->nefc);
-  if (count == 0 || !complete_constraints(m, d)) return;
-  mj_referenceConstraint(m, d);
-  for (int i = 0; i < count; ++i) {
+  count_ = complete_constraints(d, ahead) ? static_cast<int>(d->nefc) : 0;
+  side_.assign(size(count_), 0);
+  if (count_ > 0) mj_referenceConstraint(m, d);
+  for (int i = 0; i < count_; ++i) {
     for_row_of_constraint(m, d, i, [&](int dof, double value) {
       if (value != 0.0) add_entry(dof, value);
     });
-    const std::span<const Entry> row = end_row(d->efc_aref[i]);
-    for (std::size_t k = 1; k < row.size(); ++k) {
-      if (m->dof_bodyid[row[k].dof] == m->dof_bodyid[row[k - 1].dof]) continue;
-      join(row[k - 1].dof, row[k].dof);
+    end_joining_row(m, d->efc_aref[i]);
+  }
+  for (const StepMetric::Row& row : metric.rows()) {
+    for (const StepMetric::Entry& entry : metric.entries(row)) {
+      if (entry.value != 0.0) add_entry(entry.dof, entry.value);
     }
+    end_joining_row(m, 0.0);
+  }
+}
+
+void NativeConstraints::end_joining_row(const mjModel* m, double reference) {
+  const std::span<const Entry> row = end_row(reference);
+  for (std::size_t k = 1; k < row.size(); ++k) {
+    if (m->dof_bodyid[row[k].dof] == m->dof_bodyid[row[k - 1].dof]) continue;
+    join(row[k - 1].dof, row[k].dof);
   }
 }
 
 void NativeConstraints::respond(std::span<const int> rows, std::span<const double> violation) {
-  mj_constraintUpdate(m_, d_, violation.data(), nullptr, 1);
+  if (count_ > 0) mj_constraintUpdate(m_, d_, violation.data(), nullptr, 1);
   for (const int i : rows) {
+    if (i >= count_) {
+      const double scale = metric_->rows()[size(i - count_)].scale;
+      set_response(i, -scale * violation[size(i)], scale);
+      continue;
+    }
+    if (slips_not(i)) {
+      hold(i, violation[size(i)]);
+      continue;
+    }
     const int state = d_->efc_state[i];
     set_response(i, d_->efc_force[i], state == mjCNSTRSTATE_QUADRATIC ? d_->efc_D[i] : 0.0);
     if (state != mjCNSTRSTATE_CONE) continue;
     const mjContact& contact = d_->contact[d_->efc_id[i]];
     if (contact.efc_address == i) add_cone(i, contact.dim, contact.H);
+  }
+}
+
+// Dry friction of a joint or tendon that MuJoCo makes stiff after its solver has converged.
+bool NativeConstraints::slips_not(int row) const {
+  const int type = d_->efc_type[row];
+  return m_->opt.noslip_iterations > 0 &&
+         (type == mjCNSTR_FRICTION_DOF || type == mjCNSTR_FRICTION_TENDON);
+}
+
+// As much as it takes to hold, up to what there is. The force is so steep that Newton's method would
+// go from one side to the other for ever; it is tried whether it holds in between.
+void NativeConstraints::hold(int row, double violation) {
+  constexpr double kStiff = 1e4;
+  const double most = d_->efc_frictionloss[row], slope = kStiff * d_->efc_D[row];
+  const double force = -slope * violation;
+  const int side = force > most ? 1 : force < -most ? -1 : 0;
+  int& before = side_[size(row)];
+  const bool slips = side != 0 && side * before >= 0;
+  before = slips ? side : 0;
+  if (slips) {
+    set_response(row, side * most, 0.0);
+  } else {
+    set_response(row, force, slope);
   }
 }
 

@@ -54,9 +54,56 @@ MatrixXd mass_matrix(const ModelPointer& m, const DataPointer& d) {
   return out;
 }
 
-// h B of M + h B, which the integrator divides by: from the forces, which are at most quadratic in
-// the velocities, so that central differences are exact.
-MatrixXd implicit_damping(const ModelPointer& m, const DataPointer& d) {
+bool is_discrete([[maybe_unused]] const ModelPointer& m) {
+#if mjVERSION_HEADER >= 3013000
+  return m->opt.integrator == mjINT_DISCRETE;
+#else
+  return false;
+#endif
+}
+
+// Bodies that fly alone: under `discrete` only where no constraint acts on them.
+bool flies(const ModelPointer& m, const DataPointer& d, int dof) {
+  const int first = dof < 6 ? 0 : 6;
+  if (dof >= 12) return false;
+  if (!is_discrete(m)) return true;
+  for (int i = 0; i < d->nefc; ++i) {
+    for (int k = first; k < first + 6; ++k) {
+      if (d->efc_J[i * m->nv + k] != 0.0) return false;
+    }
+  }
+  return true;
+}
+
+// Of passive forces and actuators, less the bias if wished: minus the derivative by the velocities,
+// or by the positions of the joints, from central differences, which are exact: the forces are at
+// most quadratic in velocities, and linear in the joints' positions.
+enum class By { kVelocities, kPositions };
+MatrixXd slope(const ModelPointer& m, const DataPointer& d, By by, auto with_bias) {
+  const int nv = static_cast<int>(m->nv);
+  MatrixXd out = MatrixXd::Zero(nv, nv);
+  const auto forces = [&](double& at, double more, bool biased) {
+    const double before = std::exchange(at, at + more);
+    mj_fwdPosition(m.get(), d.get());
+    mj_fwdVelocity(m.get(), d.get());
+    mj_fwdActuation(m.get(), d.get());
+    VectorXd sum(nv);
+    for (int i = 0; i < nv; ++i) {
+      sum[i] = d->qfrc_passive[i] + d->qfrc_actuator[i] - (biased ? d->qfrc_bias[i] : 0.0);
+    }
+    at = before;
+    return sum;
+  };
+  for (int k = by == By::kVelocities ? 0 : 12; k < nv; ++k) {
+    double& at = by == By::kVelocities ? d->qvel[k] : d->qpos[k + 2];
+    out.col(k) = -0.5 * (forces(at, 1.0, with_bias(k)) - forces(at, -1.0, with_bias(k)));
+  }
+  mj_forward(m.get(), d.get());
+  return out;
+}
+
+// h B of M + h B, which the integrator divides by; `end`: after the step.
+MatrixXd implicit_damping(const ModelPointer& m, const DataPointer& d, const DataPointer& end) {
   const int nv = static_cast<int>(m->nv);
   const double h = m->opt.timestep;
   MatrixXd out = MatrixXd::Zero(nv, nv);
@@ -64,26 +111,12 @@ MatrixXd implicit_damping(const ModelPointer& m, const DataPointer& d) {
     for (int i = 0; i < nv; ++i) out(i, i) = h * m->dof_damping[i];
     return out;
   }
-  const auto forces = [&](int dof, double by, bool with_bias) {
-    const double speed = std::exchange(d->qvel[dof], d->qvel[dof] + by);
-    mj_fwdVelocity(m.get(), d.get());
-    mj_fwdActuation(m.get(), d.get());
-    VectorXd sum(nv);
-    for (int i = 0; i < nv; ++i) {
-      sum[i] = d->qfrc_passive[i] + d->qfrc_actuator[i] - (with_bias ? d->qfrc_bias[i] : 0.0);
-    }
-    d->qvel[dof] = speed;
-    return sum;
-  };
-  for (int k = 0; k < nv; ++k) {
-    bool with_bias = m->opt.integrator == mjINT_IMPLICIT;
+  return h * slope(m, d, By::kVelocities, [&](int k) {
 #if mjVERSION_HEADER >= 3011000
-    with_bias = with_bias || k < 12;  // bodies that fly alone
+           if (flies(m, end, k)) return true;
 #endif
-    out.col(k) = -0.5 * h * (forces(k, 1.0, with_bias) - forces(k, -1.0, with_bias));
-  }
-  mj_forward(m.get(), d.get());
-  return out;
+           return m->opt.integrator == mjINT_IMPLICIT;
+         });
 }
 
 struct Scene {
@@ -99,7 +132,8 @@ struct Scene {
 class DenseStep : public ::testing::TestWithParam<Scene> {};
 
 // (M + h B + h J' C J) dv = h (t + J' (e - C u) + Jc' f), with J, M, B and t had from MuJoCo
-// without volcontact, and the forces f of its constraints from what its solver found.
+// without volcontact, and the forces f of its constraints from what its solver found. `discrete`
+// has h B + h^2 K of springs and servos, too, and t - h K v.
 TEST_P(DenseStep, IsWhatMuJoCoDoes) {
   constexpr double kTolerance = 1e-10;
   const Scene& scene = GetParam();
@@ -119,7 +153,6 @@ TEST_P(DenseStep, IsWhatMuJoCoDoes) {
     mj_forward(plain.get(), free.get());
     const int nv = static_cast<int>(m->nv);
     const double h = m->opt.timestep;
-    MatrixXd left = mass_matrix(plain, free) + implicit_damping(plain, free);
     VectorXd right = VectorXd::Zero(nv);
     for (int body = 1; body < m->nbody; ++body) {
       mj_applyFT(plain.get(), free.get(), free->xfrc_applied + 6 * body,
@@ -131,6 +164,12 @@ TEST_P(DenseStep, IsWhatMuJoCoDoes) {
     for (int i = 0; i < nv; ++i) {
       right[i] += free->qfrc_passive[i] - free->qfrc_bias[i] + free->qfrc_actuator[i] +
                   free->qfrc_applied[i] + d->qfrc_constraint[i];
+    }
+    MatrixXd left = mass_matrix(plain, free) + implicit_damping(plain, free, d);
+    if (is_discrete(m)) {
+      const MatrixXd springs = slope(plain, free, By::kPositions, [](int) { return false; });
+      left += h * h * springs;
+      right -= h * springs * before;
     }
     if (std::any_of(d->efc_force, d->efc_force + d->nefc, [](double f) { return f != 0.0; })) {
       ++constrained;
@@ -187,6 +226,14 @@ const std::string kNative =
 const std::string kFast =
     mjVERSION_HEADER < 233 ? "integrator=\"implicit\"" : "integrator=\"implicitfast\"";
 
+const std::string kSprings = "stiffness=\"4000\"";
+const std::string kSpringServos =
+    "<tendon><fixed name=\"wire\" stiffness=\"9000\" damping=\"30\"><joint joint=\"lift\" "
+    "coef=\"1\"/><joint joint=\"elbow\" coef=\"-.5\"/></fixed></tendon><actuator>"
+    "<position joint=\"elbow\" kp=\"3000\" kv=\"20\"/><position tendon=\"wire\" kp=\"5000\"/>"
+    "</actuator>";
+const std::string kDiscrete = "integrator=\"discrete\"";
+
 INSTANTIATE_TEST_SUITE_P(
     Scenes, DenseStep,
     ::testing::Values(
@@ -207,6 +254,21 @@ INSTANTIATE_TEST_SUITE_P(
         Scene{"NativeDamped", "", 3.0, "bristle", "applied", kLimits, kNative + kJoined},
         Scene{"NativeElliptic", "cone=\"elliptic\"", 3.0, "bristle", "applied", "", kNative}),
     [](const auto& run) { return std::string(run.param.name); });
+
+#if mjVERSION_HEADER >= 3013000
+INSTANTIATE_TEST_SUITE_P(
+    Discrete, DenseStep,
+    ::testing::Values(
+        Scene{"Plain", kDiscrete.c_str(), 0.0, "bristle", "applied"},
+        Scene{"Damped", kDiscrete.c_str(), 3.0, "regularized_coulomb", "passive"},
+        Scene{"Springs", kDiscrete.c_str(), 0.0, "bristle", "applied", kSprings},
+        Scene{"Servos", kDiscrete.c_str(), 3.0, "bristle", "xfrc", "", kSpringServos},
+        Scene{"SpringsServos", kDiscrete.c_str(), 3.0, "bristle", "applied", kSprings,
+              kSpringServos},
+        Scene{"LimitsServos", kDiscrete.c_str(), 3.0, "bristle", "applied", kLimits + " " + kSprings,
+              kJoined + kSpringServos}),
+    [](const auto& run) { return std::string(run.param.name); });
+#endif
 
 }  // namespace
 }  // namespace volcontact::adaptor::dense_step_test

@@ -63,7 +63,8 @@ TEST_P(BothForms, ForForcesAndForVelocitiesAgree) {
   islands.build(trees, places);
   ASSERT_EQ(islands.count(), 1);
   ContactSpace space;
-  const MujocoMechanism mechanism(m.get(), d.get(), trees);
+  const StepMetric none;
+  const MujocoMechanism mechanism(m.get(), d.get(), trees, none);
   space.build(mechanism, places, islands, 0, known.data());
   space.constrain(NoConstraints());
   ContactEquations equations;

@@ -60,7 +60,8 @@ TEST(MujocoMechanism, MotionsAndMassesAreThoseOfMuJoCo) {
   const ModelPointer m = testing::compile(std::string("<mujoco>") + kBodies + "</mujoco>");
   const DataPointer d = moving(m);
   const MechanismTrees trees = trees_of(m.get());
-  const MujocoMechanism mechanism(m.get(), d.get(), trees);
+  const StepMetric none;
+  const MujocoMechanism mechanism(m.get(), d.get(), trees, none);
   EXPECT_EQ(mechanism.step, m->opt.timestep);
   EXPECT_NEAR(mechanism.fall, 9.81 * m->opt.timestep, 1e-15);
   const int hand = 4;
@@ -116,7 +117,8 @@ TEST(MujocoMechanism, TurningAccelerationIsThatOfThePoint) {
   double point[3];
   mju_mulMatVec(point, d->xmat + 9 * limb, local.data(), 3, 3);
   mju_addTo3(point, d->xpos + 3 * limb);
-  const MujocoMechanism mechanism(m.get(), d.get(), trees);
+  const StepMetric none;
+  const MujocoMechanism mechanism(m.get(), d.get(), trees, none);
   const Vec3 found = turning_acceleration(mechanism, limb, Vec3(point[0], point[1], point[2]));
   constexpr double kTime = 1e-5;
   const Vec3 expected = (velocity(kTime) - velocity(-kTime)) / (2.0 * kTime);

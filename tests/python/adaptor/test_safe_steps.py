@@ -134,28 +134,6 @@ def test_exit_speed_is_an_option():
     assert heights[0] < heights[-1]
 
 
-@pytest.mark.skipif(not hasattr(mujoco.mjtIntegrator, "mjINT_DISCRETE"), reason="no `discrete`")
-def test_discrete_integrator_knows_native_constraints():
-    """A box with friction in its joint and a limit rests on stiff contact, the same each time."""
-    body = (
-        '<body pos="0 0 .1001"><joint type="slide" axis="0 0 1" range="-.0005 1" '
-        'frictionloss=".5"/><geom type="box" size=".1 .1 .1" mass="8"/></body>'
-    )
-    model = scene(body, 2e-3, 9.81, 'integrator="discrete"')
-    ends = set()
-    data = mujoco.MjData(model)
-    with vc.attach(model, material={"stiffness": 1e9, "damping": 1, "friction": 0.5}) as contact:
-        for _ in range(3):
-            mujoco.mj_resetData(model, data)
-            data.qvel[0] = -1.0
-            for _ in range(300):
-                mujoco.mj_step(model, data)
-            ends.add((data.qpos[0], data.qvel[0]))
-            assert contact.dropped(data) == 0
-            assert contact.sites(data)["normal_force"].sum() == pytest.approx(8 * 9.81, rel=1e-2)
-    assert len(ends) == 1
-
-
 @pytest.mark.parametrize("flag", ["contact", "constraint"])
 def test_a_model_that_has_no_contact_is_left_without(flag):
     body = '<body pos="0 0 .09"><freejoint/><geom type="box" size=".1 .1 .1" mass="2"/></body>'
