@@ -59,6 +59,9 @@ def main() -> int:
     out: Path = arguments.out.resolve()
     out.mkdir(parents=True, exist_ok=True)
 
+    # The same for every Python, whatever that was compiled with; so all share a compiler cache.
+    for name, program in (("CC", "cc"), ("CXX", "c++")):
+        os.environ.setdefault(name, shutil.which(program) or program)
     source = make_source(out)
     eigen = near(source, arguments.eigen)
     raw = [make_raw_wheel(out, source, python, eigen) for python in arguments.pythons]
