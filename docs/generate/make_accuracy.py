@@ -468,8 +468,8 @@ No two cases have the same solids, except that twenty in a row share a composed 
     text += _table(["family", "solids", "poses"], _FAMILIES)
     text += f"""
 The reference shares no code with the engines
-([line_oracle.h](../tests/core/reference/line_oracle.h)). It represents a solid by a function that is
-negative inside; lines in three skew directions are cut at the roots of its polynomials, and the
+([line_oracle.h](../tests/core/reference/line_oracle.h)). It represents a solid by a function that
+is negative inside; lines in three skew directions are cut at the roots of its polynomials, and the
 sign between two roots tells what is inside. An even lattice of 4181 lines per direction is summed;
 if that does not confirm the result, seven times as many are, and so on. The spread between the
 directions is its uncertainty. One case in twenty is examined more closely from the start, one in

@@ -85,7 +85,7 @@ degrees from there on. These few tosses dominate the means over whole tosses.
 
 ## What the data alone show
 
-Found by `docs/generate/cube_toss_data.py` from the measured motions, without a fit.
+Found by `docs/generate/parts/cube_toss_data.py` from the measured motions, without a fit.
 
 **The cube is not balanced.** In flight the centre of mass moves on a parabola. Seen from the centre
 of the faces it lies at {centre} mm in the cube's frame (residuals {flight_noise} um); the fit of

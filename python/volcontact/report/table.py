@@ -12,10 +12,10 @@ import pyarrow as pa
 import pyarrow.csv as csv
 import pyarrow.parquet as pq
 
-from volcontact.outside_work import CHANNELS as OUTSIDE
-from volcontact.printable import cell
-from volcontact.recording import CHANNELS, Recording
+from volcontact.messages.printable import cell
 from volcontact.report import files
+from volcontact.running.outside_work import CHANNELS as OUTSIDE
+from volcontact.running.recording import CHANNELS, Recording
 
 _UNITS = {
     "time": "s",
@@ -145,7 +145,10 @@ def _table(run: Recording) -> pa.Table:
             pa.field(name, array.type, metadata={"unit": unit})
             for name, (array, unit) in columns.items()
         ],
-        metadata={"bodies": json.dumps(run.bodies), "origin": json.dumps(asdict(run.origin))},
+        metadata={
+            "bodies": json.dumps(run.bodies),
+            "origin": json.dumps(asdict(run.origin), default=lambda v: np.asarray(v).tolist()),
+        },
     )
     return pa.table([array for array, _ in columns.values()], schema=schema)
 

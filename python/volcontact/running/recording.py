@@ -13,6 +13,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from volcontact.given_keys import Value
 from volcontact.running.audit import Audit, worst_step
 from volcontact.running.signals import Signal
 from volcontact.surface import SiteSurface
@@ -67,8 +68,8 @@ class Origin:
     """
 
     scene: str | None = None
-    material: Mapping[str, float | str] = field(default_factory=dict)
-    options: Mapping[str, float | str] = field(default_factory=dict)
+    material: Mapping[str, Value] = field(default_factory=dict)
+    options: Mapping[str, Value] = field(default_factory=dict)
     keyframe: str | None = None
 
 

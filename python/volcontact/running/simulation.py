@@ -19,11 +19,20 @@ from volcontact._mujoco_views import dense
 from volcontact.compiling import require_scene
 from volcontact.given_keys import GivenKeys, Values
 from volcontact.hints import sunk
-from volcontact.names import name_of
-from volcontact.outside_work import OutsideWork
-from volcontact.probes import Probe, probe
-from volcontact.recording import CHANNELS, SITE, SITE_IN_RUN, ContactKind, Frame, Origin, Recording
-from volcontact.signals import SignalReader
+from volcontact.messages.names import name_of
+from volcontact.running.driving import Drive, Driver, to_keyframe
+from volcontact.running.outside_work import OutsideWork
+from volcontact.running.probes import Probe, probe
+from volcontact.running.recording import (
+    CHANNELS,
+    SITE,
+    SITE_IN_RUN,
+    ContactKind,
+    Frame,
+    Origin,
+    Recording,
+)
+from volcontact.running.signals import SignalReader
 from volcontact.wrenches import wrenches_on_bodies
 
 Progress = Callable[[int, int], None]

@@ -9,10 +9,8 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-from volcontact.recording import ContactKind
 from volcontact.render import Renderer, SiteStyle, View
 from volcontact.report.palette import RUN_COLORS, rgb
-from volcontact.running.probes import probe_of
 from volcontact.running.recording import ContactKind
 from volcontact.view.drawing import reference_force
 from volcontact.view.stage import Stage

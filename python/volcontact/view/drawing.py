@@ -58,7 +58,7 @@ def draw_sites(
 
     Args:
         model: that they belong to.
-        sites: structured array of `volcontact.recording.SITE`.
+        sites: structured array of `volcontact.running.recording.SITE`.
         surfaces: of each of them, None where it has no shape; none for native contacts.
         stretch: how many times thicker bodies are drawn; None makes each thick enough to be seen.
     """

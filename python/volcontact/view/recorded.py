@@ -12,11 +12,11 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from volcontact.driving import to_keyframe
-from volcontact.names import name_of
-from volcontact.probes import recorded_sites
-from volcontact.recording import SITE, ContactKind
+from volcontact.messages.names import name_of
 from volcontact.report import files
+from volcontact.running.driving import to_keyframe
+from volcontact.running.probes import recorded_sites
+from volcontact.running.recording import SITE, ContactKind
 from volcontact.scene import Contact, attach, load
 from volcontact.surface import SiteSurface
 from volcontact.view.history import Snapshot
@@ -86,7 +86,7 @@ class RecordedRun(Playback):
         model: of the run.
         contact: of the model, attached; None under native contact. `close` detaches it.
         snapshots: in the order of their times, at least one.
-        sites: that were recorded, by time: structured arrays of `volcontact.recording.SITE`.
+        sites: that were recorded, by time: arrays of `volcontact.running.recording.SITE`.
     """
 
     def __init__(

@@ -157,7 +157,7 @@ class Stage(Closing):
             resolution: of the shapes: columns across a site.
 
         Returns:
-            A structured array of `volcontact.recording.SITE`, and the shape of each of them; under
+            An array of `volcontact.running.recording.SITE`, and the shape of each of them; under
             native contact there are no shapes.
         """
         if self._contact is None:

@@ -11,8 +11,8 @@ from view_pages import BLUE, happens, like, needs_browser, page, shot
 from view_windows import has_window, picture_of_window
 
 from volcontact.cli import main
-from volcontact.driving import Drive
-from volcontact.simulation import simulate
+from volcontact.running.driving import Drive
+from volcontact.running.simulation import simulate
 from volcontact.view.playback import stride
 from volcontact.view.recorded import open_recorded
 
