@@ -73,7 +73,7 @@ void solve_implicit(const SceneContact& contact, const mjModel* m, mjData* d,
   for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
     if (!implicit.is_pair_solved(k)) continue;
     scratch.energies[k].solve(implicit.work(k), implicit.friction_work(k),
-                              implicit.released_at_most(k), implicit.slack(k));
+                              implicit.released_at_most(k), implicit.lent(k));
     scratch.held[k] = 1;
   }
 }

@@ -120,7 +120,8 @@ bool foresee_work(const SceneContact& contact, const mjModel* m, mjData* d,
       };
       const Twist of_a = of(geoms.a), of_b = of(geoms.b);
       add_work(sites[i], {of_a.angular - of_b.angular, of_a.linear - of_b.linear}, step, limit);
-      lend(contact, m, geoms, sites[i], limit);
+      const double gained = step * (of_a.linear - of_b.linear).dot(sites[i].normal);
+      lend(contact, m, geoms, sites[i], gained - sites[i].approach_speed, limit);
     }
     // Friction has no part in what a slow exit may release.
     const double own = std::max(0.0, limit.at_any_speed() - limit.normal_work);

@@ -35,7 +35,7 @@ ExplicitShare share_of(const SceneContact& contact, const mjModel* m, std::size_
   const double along = inverse_mass(m, scratch.pair(k).geoms).along;
   WorkLimit limit = limit_of(contact, m, k, scratch);
   for (const SiteReport& site : scratch.reports[k].sites) {
-    lend(contact, m, scratch.pair(k).geoms, site, limit);
+    lend(contact, m, scratch.pair(k).geoms, site, -site.approach_speed, limit);
   }
   const double slow = std::exchange(limit.slow, 0.0);
   const auto share_now = [&] {
@@ -79,7 +79,7 @@ WorkLimit limit_of(const SceneContact& contact, const mjModel* m, std::size_t k,
 }
 
 void lend(const SceneContact& contact, const mjModel* m, const GeomPair& geoms,
-          const SiteReport& site, WorkLimit& limit) {
+          const SiteReport& site, double parting, WorkLimit& limit) {
   const MechanismTrees& trees = contact.trees();
   double mass = 0.0;  // of what hangs on the two
   for (const int geom : {geoms.a, geoms.b}) {
@@ -88,7 +88,7 @@ void lend(const SceneContact& contact, const mjModel* m, const GeomPair& geoms,
   }
   const double h = m->opt.timestep;
   const double fall = h * std::abs(site.normal.dot(Eigen::Map<const Vec3>(m->opt.gravity)));
-  limit.lend(h * site.normal_force, mass, fall);
+  limit.lend(h * site.normal_force, mass, fall, parting);
 }
 
 bool may_overdraw(const SceneContact& contact, const mjModel* m, std::size_t k,
@@ -182,7 +182,7 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m, EvaluationScr
     energy.rubbed = now.bristle;
     energy.force = share * now.force;
     energy.power = share * now.power;
-    energy.slow = released_at_most;
+    energy.slow = slowly ? released_at_most : 0.0;
     if (share == 1.0) continue;
     limited = true;
     scratch.held[k] = 1;

@@ -17,9 +17,10 @@ double read_energies(const SceneContact& contact, const double* committed, doubl
 WorkLimit limit_of(const SceneContact& contact, const mjModel* m, std::size_t k,
                    const EvaluationScratch& scratch);
 
-/// Lends to a pair of geoms what gravity does while the explicit force of a site acts.
+/// Lends to a pair of geoms what gravity does while the explicit force of a site acts that parts at
+/// that speed.
 void lend(const SceneContact& contact, const mjModel* m, const GeomPair& geoms,
-          const SiteReport& site, WorkLimit& limit);
+          const SiteReport& site, double parting, WorkLimit& limit);
 
 /// Whether the explicit forces of a pair may do more work than it holds: as if on a ball, which
 /// gives way by turning, too.

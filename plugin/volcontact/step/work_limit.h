@@ -28,9 +28,9 @@ struct PairEnergy {
   double most = 0.0;    ///< largest `stored` of this touch [J]
   double rubbed = 0.0;  ///< put into bristles by sliding, and not given back [J]
   // Of an explicit step, whose work is known at its end: force, and its power at the begin.
-  double force = 0.0;  ///< f_n of all sites [N]
-  double power = 0.0;  ///< sum of f_n v_n, > 0 while approaching [W]
-  double slow = 0.0;   ///< what it may release in the step [J]
+  double force = 0.0;   ///< f_n of all sites [N]
+  double power = 0.0;   ///< sum of f_n v_n, > 0 while approaching [W]
+  double slow = 0.0;    ///< what it may release in the step [J]
   double unpaid = 0.0;  ///< what the law held at the begin and no motion had put in [J]
 
   bool is_solved = false;  ///< by an implicit step, whose work is in already; not kept
@@ -86,7 +86,8 @@ struct PairEnergy {
       stored = std::min(0.0, stored + std::max(0.0, rubbed - now.bristle));
     }
     bristle = was_solved() ? std::min(rubbed, now.bristle) : now.bristle;
-    if (!was_solved()) put(may_have_waited && work > 0.0 ? work / 6.0 : work, kMostOwed * most);
+    if (!was_solved())
+      put(may_have_waited && work > 0.0 ? work / 6.0 : work, 0.0, kMostOwed * most);
     force = power = slow = 0.0;
     rubbed = std::min(rubbed, now.bristle);
     if (!now.is_within) keep_within(now.elastic + ahead);
@@ -105,8 +106,8 @@ struct PairEnergy {
                               kRoom * elapsed * power_at_most;
   }
 
-  /// The end of a step whose method is exact enough: what the law holds more, or less, was put in by
-  /// motion, or given back.
+  /// The end of a step whose method is exact enough: what the law holds more, or less, was put in
+  /// by motion, or given back.
   void follow(double elapsed, const Now& now) noexcept {
     const double explained = stored + found + 0.5 * elapsed * (power + now.power);
     found = std::min(found, now.elastic);
@@ -136,14 +137,14 @@ struct PairEnergy {
   }
 
   /// An implicit step that does `work` on the bodies, of which friction does `friction_work`, and
-  /// may release that much. What other forces do meanwhile, `slack`, is lent.
+  /// may release that much. `lent`: what it may do more, and owes.
   void solve(double work, double friction_work = 0.0, double may_release = 0.0,
-             double slack = 0.0) noexcept {
+             double lent = 0.0) noexcept {
     is_solved = true;
     force = power = unpaid = 0.0;
     slow = may_release;
     rubbed = std::max(0.0, rubbed - friction_work);
-    put(-work, std::max(kOverdraft * most, slack));  // once, and not in every step anew
+    put(-work, lent, lent);  // once, and not in every step anew
     slow = 0.0;
   }
 
@@ -167,15 +168,16 @@ struct PairEnergy {
     return *this;
   }
 
-  /// Work done on the contact. What it gives back at a slow exit was found; the rest of that had
-  /// been dissipated, and is so no more. Steps may owe what they err by; what is owed stays.
-  void put(double work, double owed = 0.0) noexcept {
+  /// Work done on the contact. What it gives back at a slow exit was found; the rest of that,
+  /// beyond what is lent, had been dissipated, and is so no more. Steps may owe what they err by;
+  /// what is owed stays.
+  void put(double work, double lent, double owed) noexcept {
     const double least = std::min(-owed, stored);
     stored += work;
     const double given = std::clamp(-stored, 0.0, found);
     stored += given;
     found -= given;
-    const double freed = std::clamp(std::min(-stored, -work - given), 0.0, slow);
+    const double freed = std::clamp(std::min(-lent - stored, -work - given), 0.0, slow);
     stored += freed;
     released += freed;
     stored = std::max(stored, least);
@@ -203,7 +205,7 @@ struct WorkLimit {
   double normal_work = 0.0;    ///< of the normal forces on the bodies over the step [J]
   double friction_work = 0.0;  ///< of friction [J]
   double from_free = 0.0;      ///< of the normal forces, from the motion without contact [J]
-  double slack = 0.0;  ///< lent: what other forces do meanwhile, which a step cannot tell [J]
+  double slack = 0.0;  ///< what other forces do meanwhile, which a finite step cannot tell [J]
   double exit = 0.0;   ///< fastest parting at the end of the step [m/s]
 
   bool pushes = false;  ///< whether a normal force of the pair acts
@@ -215,8 +217,8 @@ struct WorkLimit {
   Tried low, high;
   bool is_high_known = false;
 
-  /// `dissipated`: by all contacts of the scene so far [J]; `moving`: kinetic energy that the bodies
-  /// will have along the contact when they part, of which with what is stored a part may be
+  /// `dissipated`: by all contacts of the scene so far [J]; `moving`: kinetic energy that the
+  /// bodies will have along the contact when they part, of which with what is stored a part may be
   /// overdrawn [J].
   static WorkLimit of(const PairEnergy& energy, double dissipated, double exit_speed,
                       double moving = HUGE_VAL) noexcept {
@@ -230,10 +232,11 @@ struct WorkLimit {
     return limit;
   }
 
-  /// Lends, to an `impulse`, what gravity does meanwhile where it changes the speed along it by `fall`:
-  /// no more than to the weight of what may rest on the contact.
-  void lend(double impulse, double mass, double fall) noexcept {
-    slack += 0.5 * std::clamp(impulse, 0.0, mass * fall) * fall;
+  /// Lends, to an `impulse`, what gravity does meanwhile where it changes the speed along it by
+  /// `fall`: no more than to the weight of what may rest on the contact, and nothing to what parts
+  /// faster.
+  void lend(double impulse, double mass, double fall, double parting) noexcept {
+    if (parting <= fall) slack += 0.5 * std::clamp(impulse, 0.0, mass * fall) * fall;
   }
 
   /// No more a step than bodies of that inverse mass need to get as fast as that, and to be lifted
@@ -244,7 +247,8 @@ struct WorkLimit {
   }
 
   double released_at_most() const noexcept { return exit <= exit_speed ? slow : 0.0; }
-  double at_any_speed() const noexcept { return stored + std::max(overdraft, slack); }
+  double lent() const noexcept { return std::max(overdraft, slack); }
+  double at_any_speed() const noexcept { return stored + lent(); }
   double allowed() const noexcept { return at_any_speed() + released_at_most(); }
   /// What friction gives beyond what its bristles hold; what it dissipates pays for nothing.
   double drawn_by_friction() const noexcept { return std::max(0.0, friction_work - rubbed); }
@@ -312,12 +316,12 @@ struct WorkLimit {
   }
 };
 
-/// What the stages of a Runge-Kutta step do too much where a touch ends within it: the first has the
-/// force of the begin and a sixth of the step, whatever is stored [J]. Of elastic forces that hold
-/// `energy` and grow by `stiffness`, as a power of the depth, at the parting speed `parting`; with
-/// damping a `share` of them acts.
-inline double end_excess(double energy, double force, double stiffness, double share, double parting,
-                         double step) noexcept {
+/// What the stages of a Runge-Kutta step do too much where a touch ends within it: the first has
+/// the force of the begin and a sixth of the step, whatever is stored [J]. Of elastic forces that
+/// hold `energy` and grow by `stiffness`, as a power of the depth, at the parting speed `parting`;
+/// with damping a `share` of them acts.
+inline double end_excess(double energy, double force, double stiffness, double share,
+                         double parting, double step) noexcept {
   if (!(force > 0.0 && parting > 0.0)) return 0.0;
   constexpr double kLeast = 0.5, kMost = 0.9;  // of an edge-on face, and nearly a jump
   const double ratio = std::clamp(stiffness * energy / (force * force), kLeast, kMost);

@@ -96,13 +96,13 @@ TEST(PairEnergy, WhatWasUnpaidStaysSo) {
   EXPECT_NEAR(energy.stored, 0.3, 1e-15);
 }
 
-// What was dissipated pays before anything is owed, and only for what is given in this step.
+// What was dissipated pays for what is given in this step beyond what is lent.
 TEST(PairEnergy, SlowExitReleasesBeforeItOwes) {
   PairEnergy energy;
   energy.stored = energy.most = 1.0;
-  energy.solve(1.25, 0.0, 0.5);
-  EXPECT_EQ(energy.stored, 0.0);
-  EXPECT_EQ(energy.released, 0.25);
+  energy.solve(1.25, 0.0, 0.5, 0.125);
+  EXPECT_EQ(energy.stored, -0.125);
+  EXPECT_EQ(energy.released, 0.125);
   energy.stored = -0.5;
   energy.released = 0.0;
   energy.solve(0.125, 0.0, 0.5);
@@ -116,9 +116,9 @@ TEST(PairEnergy, WhatIsLentIsLentOnce) {
   double given = 0.0;
   for (int step = 0; step < 100; ++step) {
     WorkLimit limit = WorkLimit::of(energy, 0.0, 0.1);
-    limit.lend(0.3, 2.0, 0.01);  // more than the weight
+    limit.lend(0.3, 2.0, 0.01, 0.0);  // more than the weight
     EXPECT_EQ(limit.slack, 0.5 * 2.0 * 0.01 * 0.01);
-    energy.solve(limit.allowed(), 0.0, 0.0, limit.slack);
+    energy.solve(limit.allowed(), 0.0, 0.0, limit.lent());
     given += limit.allowed();
     energy.solve(0.0);  // does not push: nothing is lent, and what was stays owed
     energy.take_in(1e-3, now(100.0));
@@ -154,7 +154,7 @@ TEST(PairEnergy, SolvedStepOverdrawsOnceOnly) {
   double given = 0.0;
   for (int step = 0; step < 100; ++step) {
     const double work = WorkLimit::of(energy, 0.0, 0.1).allowed();
-    energy.solve(work);
+    energy.solve(work, 0.0, 0.0, WorkLimit::of(energy, 0.0, 0.1).lent());
     given += work;
   }
   EXPECT_NEAR(given, 1.0 + PairEnergy::kOverdraft, 1e-12);
@@ -263,8 +263,8 @@ TEST(ExplicitShare, WhatWasFoundComesOutSlowly) {
   EXPECT_EQ(explicit_share(limit, 1e5, 0.2, 0.5, 1e-3), 0.0);
 }
 
-// Power laws of the depth, undamped and at constant speed, that end within the step: the work of the
-// stages against what is stored.
+// Power laws of the depth, undamped and at constant speed, that end within the step: the work of
+// the stages against what is stored.
 TEST(EndExcess, IsWhatTheStagesDoTooMuch) {
   constexpr double kStep = 2e-3, kSpeed = 1.5, kRate = 1e6;
   double worst = 0.0;
