@@ -60,10 +60,10 @@ bool NativeConstraints::is_made_stiff(int row) const {
          (type == mjCNSTR_FRICTION_DOF || type == mjCNSTR_FRICTION_TENDON);
 }
 
-// As much as it takes to hold, up to what there is. The force is so steep that Newton's method would
-// go from one side to the other for ever: in between it is tried whether it holds. Where that comes
-// to no end, since contact under its limit of work yields the more the less it is moved, it stays
-// as soft as the solver has it: false.
+// As much as it takes to hold, up to what there is. The force is so steep that Newton's method
+// would go from one side to the other for ever: in between it is tried whether it holds. Where that
+// comes to no end, since contact under its limit of work yields the more the less it is moved, it
+// stays as soft as the solver has it: false.
 bool NativeConstraints::hold(int row, double violation) {
   constexpr double kStiff = 1e4;
   constexpr int kTrials = 2;

@@ -260,15 +260,14 @@ INSTANTIATE_TEST_SUITE_P(
 #if mjVERSION_HEADER >= 3013000
 INSTANTIATE_TEST_SUITE_P(
     Discrete, DenseStep,
-    ::testing::Values(
-        Scene{"Plain", kDiscrete.c_str(), 0.0, "bristle", "applied"},
-        Scene{"Damped", kDiscrete.c_str(), 3.0, "regularized_coulomb", "passive"},
-        Scene{"Springs", kDiscrete.c_str(), 0.0, "bristle", "applied", kSprings},
-        Scene{"Servos", kDiscrete.c_str(), 3.0, "bristle", "xfrc", "", kSpringServos},
-        Scene{"SpringsServos", kDiscrete.c_str(), 3.0, "bristle", "applied", kSprings,
-              kSpringServos},
-        Scene{"LimitsServos", kDiscrete.c_str(), 3.0, "bristle", "applied", kLimits + " " + kSprings,
-              kJoined + kSpringServos}),
+    ::testing::Values(Scene{"Plain", kDiscrete.c_str(), 0.0, "bristle", "applied"},
+                      Scene{"Damped", kDiscrete.c_str(), 3.0, "regularized_coulomb", "passive"},
+                      Scene{"Springs", kDiscrete.c_str(), 0.0, "bristle", "applied", kSprings},
+                      Scene{"Servos", kDiscrete.c_str(), 3.0, "bristle", "xfrc", "", kSpringServos},
+                      Scene{"SpringsServos", kDiscrete.c_str(), 3.0, "bristle", "applied", kSprings,
+                            kSpringServos},
+                      Scene{"LimitsServos", kDiscrete.c_str(), 3.0, "bristle", "applied",
+                            kLimits + " " + kSprings, kJoined + kSpringServos}),
     [](const auto& run) { return std::string(run.param.name); });
 #endif
 
