@@ -62,10 +62,11 @@ bool is_discrete([[maybe_unused]] const ModelPointer& m) {
 #endif
 }
 
-// Bodies that fly alone: under `discrete` only where no constraint acts on them.
+// Bodies that fly alone, whose bias is taken implicitly: under `discrete` only where no constraint
+// acts on them.
 bool flies(const ModelPointer& m, const DataPointer& d, int dof) {
   const int first = dof < 6 ? 0 : 6;
-  if (dof >= 12) return false;
+  if (mjVERSION_HEADER < 3011000 || dof >= 12) return false;
   if (!is_discrete(m)) return true;
   for (int i = 0; i < d->nefc; ++i) {
     for (int k = first; k < first + 6; ++k) {
@@ -111,12 +112,8 @@ MatrixXd implicit_damping(const ModelPointer& m, const DataPointer& d, const Dat
     for (int i = 0; i < nv; ++i) out(i, i) = h * m->dof_damping[i];
     return out;
   }
-  return h * slope(m, d, By::kVelocities, [&](int k) {
-#if mjVERSION_HEADER >= 3011000
-           if (flies(m, end, k)) return true;
-#endif
-           return m->opt.integrator == mjINT_IMPLICIT;
-         });
+  return h * slope(m, d, By::kVelocities,
+                   [&](int k) { return m->opt.integrator == mjINT_IMPLICIT || flies(m, end, k); });
 }
 
 struct Scene {
