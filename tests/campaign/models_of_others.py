@@ -30,7 +30,8 @@ NAME = "models_of_others"
 KEYS = ("package", "model", "stiffness", "seed")
 COLUMNS = (
     *(*KEYS, "integrator", "timestep", "dofs", "speed", "native_speed", "ratio"),
-    *("fine_speed", "fine_warnings", "warnings", "native_warnings", "dropped", "numerical", "said", "refused"),
+    *("fine_speed", "fine_warnings", "warnings", "native_warnings", "dropped", "numerical"),
+    *("said", "refused"),
 )
 ROOT = Path(__file__).resolve().parents[2]
 STIFFNESSES = (1e7, 1e8, 1e9, 1e10)  # [N/m^3]

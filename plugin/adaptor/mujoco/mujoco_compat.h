@@ -95,12 +95,13 @@ inline bool solves_with_step_matrix([[maybe_unused]] const mjModel* m) {
 /// Whether `discrete` may add more to that matrix than the damping of the degrees of freedom.
 inline bool adds_to_step_matrix(const mjModel* m) {
   return m->nu > 0 || m->ntendon > 0 || m->opt.density > 0.0 || m->opt.viscosity > 0.0 ||
-         std::any_of(m->jnt_stiffness, m->jnt_stiffness + m->njnt, [](double k) { return k != 0.0; });
+         std::any_of(m->jnt_stiffness, m->jnt_stiffness + m->njnt,
+                     [](double k) { return k != 0.0; });
 }
 
-/// What the matrix of `discrete` has beside the mass matrix, by degrees of freedom: on the diagonal,
-/// for fluids where the mass matrix has entries (null without), and the stiffness k h whose product
-/// with the velocity goes off the forces. All null where there is nothing.
+/// What the matrix of `discrete` has beside the mass matrix, by degrees of freedom: on the
+/// diagonal, for fluids where the mass matrix has entries (null without), and the stiffness k h
+/// whose product with the velocity goes off the forces. All null where there is nothing.
 struct StepDiagonal {
   const mjtNum* added = nullptr;
   const mjtNum* fluid = nullptr;

@@ -12,7 +12,7 @@ void NativeConstraints::read(const mjModel* m, mjData* d, const mjData* ahead,
   metric_ = &metric;
   begin_rows();
   count_ = complete_constraints(d, ahead) ? static_cast<int>(d->nefc) : 0;
-  side_.assign(size(count_), 0);
+  held_.assign(size(count_), {});
   if (count_ > 0) mj_referenceConstraint(m, d);
   for (int i = 0; i < count_; ++i) {
     for_row_of_constraint(m, d, i, [&](int dof, double value) {
@@ -44,10 +44,7 @@ void NativeConstraints::respond(std::span<const int> rows, std::span<const doubl
       set_response(i, -scale * violation[size(i)], scale);
       continue;
     }
-    if (slips_not(i)) {
-      hold(i, violation[size(i)]);
-      continue;
-    }
+    if (is_made_stiff(i) && hold(i, violation[size(i)])) continue;
     const int state = d_->efc_state[i];
     set_response(i, d_->efc_force[i], state == mjCNSTRSTATE_QUADRATIC ? d_->efc_D[i] : 0.0);
     if (state != mjCNSTRSTATE_CONE) continue;
@@ -56,28 +53,34 @@ void NativeConstraints::respond(std::span<const int> rows, std::span<const doubl
   }
 }
 
-// Dry friction of a joint or tendon that MuJoCo makes stiff after its solver has converged.
-bool NativeConstraints::slips_not(int row) const {
+// Dry friction of a joint or tendon, with noslip iterations after the solver has converged.
+bool NativeConstraints::is_made_stiff(int row) const {
   const int type = d_->efc_type[row];
   return m_->opt.noslip_iterations > 0 &&
          (type == mjCNSTR_FRICTION_DOF || type == mjCNSTR_FRICTION_TENDON);
 }
 
-// As much as it takes to hold, up to what there is. The force is so steep that Newton's method would
-// go from one side to the other for ever; it is tried whether it holds in between.
-void NativeConstraints::hold(int row, double violation) {
+// As much as it takes to hold, up to what there is. The force is so steep that Newton's method
+// would go from one side to the other for ever: in between it is tried whether it holds. Where that
+// comes to no end, since contact under its limit of work yields the more the less it is moved, it
+// stays as soft as the solver has it: false.
+bool NativeConstraints::hold(int row, double violation) {
   constexpr double kStiff = 1e4;
+  constexpr int kTrials = 2;
+  Held& held = held_[size(row)];
+  if (held.trials > kTrials) return false;
   const double most = d_->efc_frictionloss[row], slope = kStiff * d_->efc_D[row];
   const double force = -slope * violation;
   const int side = force > most ? 1 : force < -most ? -1 : 0;
-  int& before = side_[size(row)];
-  const bool slips = side != 0 && side * before >= 0;
-  before = slips ? side : 0;
+  const bool slips = side != 0 && side * held.side >= 0;
+  held.side = slips ? side : 0;
   if (slips) {
     set_response(row, side * most, 0.0);
-  } else {
-    set_response(row, force, slope);
+    return true;
   }
+  if (side != 0 && ++held.trials > kTrials) return false;
+  set_response(row, force, slope);
+  return true;
 }
 
 }  // namespace volcontact::adaptor

@@ -22,15 +22,20 @@ class NativeConstraints final : public LinearConstraints {
   void respond(std::span<const int> rows, std::span<const double> violation) override;
 
   void end_joining_row(const mjModel* m, double reference);
-  bool slips_not(int row) const;
-  void hold(int row, double violation);
+  bool is_made_stiff(int row) const;
+  bool hold(int row, double violation);
 
   const mjModel* m_ = nullptr;
   mjData* d_ = nullptr;
   const StepMetric* metric_ = nullptr;
   int count_ = 0;  // of MuJoCo's constraints; the rows of the metric follow
-  // Of rows that are held: the sign of the force at the guess before where it is the most there is.
-  std::vector<int> side_;
+  // Dry friction that is made stiff: the sign of its force at the guess before, where that was the
+  // most there is, and how often it was tried whether it holds.
+  struct Held {
+    int side = 0;
+    int trials = 0;
+  };
+  std::vector<Held> held_;
 };
 
 }  // namespace volcontact::adaptor

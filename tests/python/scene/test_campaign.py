@@ -192,6 +192,36 @@ def test_random_controls_are_the_same_for_both_contacts(part):
     assert models.driven(model, 6, None)[0] != one[0]
 
 
+def test_a_finer_step_sees_the_same_controls_at_the_same_times(part):
+    # Under constant forces velocities are exact at any step.
+    models = part("models_of_others")
+    model = mujoco.MjModel.from_xml_string(
+        '<mujoco><option gravity="0 0 0"/><worldbody><body><joint name="j" type="slide"/>'
+        '<geom size=".1"/></body></worldbody><actuator><motor joint="j"/></actuator></mujoco>'
+    )
+    coarse, _, _ = models.driven(model, 5, None)
+    model.opt.timestep /= models.FINER
+    assert models.driven(model, 5, None, models.FINER)[0] == pytest.approx(coarse, rel=1e-9)
+
+
+@pytest.mark.parametrize(("fine", "warned", "ratio"), [(4.0, 0, 1.5), (1.0, 0, 3.0), (4.0, 1, 3.0)])
+def test_a_fast_model_is_judged_by_a_tenth_of_its_step(part, monkeypatch, fine, warned, ratio):
+    models = part("models_of_others")
+    text = '<mujoco><worldbody>{0}<body pos="0 0 1"><freejoint/>{0}</body></worldbody></mujoco>'
+    model = mujoco.MjModel.from_xml_string(text.format('<geom size=".1"/>'))
+    monkeypatch.setattr(models, "make", lambda *_: model)
+
+    def driven(_model, _seed, contact, finer=1):
+        if contact is None:
+            return 2.0, 0, {}
+        return (fine, warned, {}) if finer > 1 else (6.0, 0, {"dropped": 0})
+
+    monkeypatch.setattr(models, "driven", driven)
+    row = models.examine({"package": "", "model": "", "stiffness": 1e8, "seed": 0})
+    assert row["ratio"] == pytest.approx(ratio)
+    assert models.is_sound(row) == (ratio <= 2.0)
+
+
 @pytest.mark.parametrize(
     "name", ["box_on_plane", "grazing", "generated_scenes", "models_of_others"]
 )
