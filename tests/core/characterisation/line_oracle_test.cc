@@ -107,14 +107,12 @@ TEST(ImplicitSolid, PartsOfLinesAreWhereTheFunctionIsNegative) {
     int inside = 0;
     for (int line = 0; line < 2000; ++line) {
       const Vec3 o = random.in_box(0.3), d = random.direction();
-      member.parts(o, d, 1.0, parts);
+      parts.count = 0;
+      MemberLines(member, d).add_parts(o, 1.0, parts);
       for (int i = 0; i < 20; ++i) {
         const double t = random.uniform(-1.0, 1.0);
         bool within = false;
-        for (int k = 0; k < parts.count; ++k) {
-          const auto end = static_cast<std::size_t>(2 * k);
-          within = within || (t > parts.ends[end] && t < parts.ends[end + 1]);
-        }
+        for (const auto& part : parts) within = within || (t > part.enter && t < part.leave);
         const double value = moved.value(o + t * d);
         if (std::abs(value) > 1e-12) {
           EXPECT_EQ(within, value < 0.0) << line << " at " << t;

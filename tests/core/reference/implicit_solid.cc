@@ -5,57 +5,15 @@
 #include <limits>
 #include <stdexcept>
 
+#include "volcontact/base/fields.h"
+
 namespace volcontact::test {
 namespace {
 
 using Kind = ImplicitMember::Kind;
 
+constexpr LineParts::Part kNowhere{kInfinity, -kInfinity}, kEverywhere{-kInfinity, kInfinity};
 constexpr int kUnion = -1, kIntersection = -2, kDifference = -3;
-
-struct Roots {
-  std::array<double, 16> t{};
-  int count = 0;
-  void add(double root) {
-    if (std::isfinite(root) && count < static_cast<int>(t.size())) {
-      t[static_cast<std::size_t>(count++)] = root;
-    }
-  }
-};
-
-// Roots of the linear function that has these values at t = 0 and at t = step.
-void add_linear(double at_zero, double at_step, double step, Roots& roots) {
-  roots.add(-at_zero * step / (at_step - at_zero));
-}
-
-// Roots of the polynomial of second degree F, from three of its values about `around`; F itself has
-// the last word.
-template <typename F>
-void add_quadratic(const F& function, double around, double step, Roots& roots) {
-  const double low = function(around - step), middle = function(around);
-  const double high = function(around + step);
-  const double a = 0.5 * (high + low) - middle, b = 0.5 * (high - low);
-  double s[2];
-  int count = 0;
-  if (std::abs(a) <= 1e-14 * (std::abs(b) + std::abs(middle))) {
-    s[count++] = -middle / b;
-  } else {
-    const double root = b * b - 4.0 * a * middle;
-    if (root < 0.0) return;
-    const double q = -0.5 * (b + std::copysign(std::sqrt(root), b));
-    s[count++] = q / a;
-    if (q != 0.0) s[count++] = middle / q;
-  }
-  for (int i = 0; i < count; ++i) {
-    double t = around + step * s[i];
-    const double slope = (2.0 * a * s[i] + b) / step;
-    if (slope != 0.0 && std::isfinite(t)) {
-      const double better = t - function(t) / slope;
-      // At a place of contact the slope is small, and a step would lead away.
-      if (std::abs(better - t) <= 1e-3 * step) t = better;
-    }
-    roots.add(t);
-  }
-}
 
 double horner(const double* c, int degree, double t) {
   double sum = c[degree];
@@ -63,8 +21,24 @@ double horner(const double* c, int degree, double t) {
   return sum;
 }
 
-// Real roots in [low, high] of a polynomial: its turning points part it into stretches on which it
-// rises or falls; there Newton's steps, or bisection where they lead out.
+// Root of a polynomial that rises or falls from left to right and changes its sign there: Newton's
+// steps, or bisection where they lead out.
+double root_between(const double* c, const double* slope, int degree, double left, double right) {
+  const double close = 2e-16 * (right - left);
+  const bool negative = horner(c, degree, left) < 0.0;
+  double t = 0.5 * (left + right);
+  for (int k = 0; k < 100; ++k) {
+    const double value = horner(c, degree, t);
+    ((value < 0.0) == negative ? left : right) = t;
+    const double step = -value / horner(slope, degree - 1, t);
+    if (std::abs(step) <= close || right - left <= close) return std::clamp(t, left, right);
+    t = t + step > left && t + step < right ? t + step : 0.5 * (left + right);
+  }
+  return t;
+}
+
+// Real roots in [low, high] of a polynomial, in order: its turning points part it into stretches on
+// which it rises or falls.
 int polynomial_roots(const double* c, int degree, double low, double high, double* roots) {
   if (degree == 1) {
     if (c[1] == 0.0) return 0;
@@ -77,19 +51,13 @@ int polynomial_roots(const double* c, int degree, double low, double high, doubl
   const int inner = polynomial_roots(slope, degree - 1, low, high, turns + 1);
   turns[inner + 1] = high;
   int count = 0;
+  bool negative = horner(c, degree, low) < 0.0;
   for (int i = 0; i <= inner; ++i) {
-    double left = turns[i], right = turns[i + 1], t = 0.5 * (left + right);
-    const bool negative = horner(c, degree, left) < 0.0;
-    if (negative == (horner(c, degree, right) < 0.0)) continue;
-    for (int k = 0; k < 100; ++k) {
-      const double value = horner(c, degree, t);
-      ((value < 0.0) == negative ? left : right) = t;
-      const double next = t - value / horner(slope, degree - 1, t);
-      const double before = t;
-      t = next > left && next < right ? next : 0.5 * (left + right);
-      if (std::abs(t - before) <= 1e-16 * (high - low)) break;
+    const bool next = horner(c, degree, turns[i + 1]) < 0.0;
+    if (next != negative) {
+      roots[count++] = root_between(c, slope, degree, turns[i], turns[i + 1]);
     }
-    roots[count++] = t;
+    negative = next;
   }
   return count;
 }
@@ -172,118 +140,6 @@ Vec3 ImplicitMember::local_slope(const Vec3& p) const {
     }
     default:
       return Vec3::UnitZ();
-  }
-}
-
-void ImplicitMember::parts(const Vec3& o_S, const Vec3& d_S, double reach, LineParts& out) const {
-  const Vec3 o = X_MS * o_S, d = X_MS.rotation * d_S;
-  const auto at = [&](double t) { return Vec3(o + t * d); };
-  out.count = 0;
-  if (kind == Kind::kPolytope) {  // one interval, cut plane by plane
-    double enter = -reach, leave = reach;
-    for (const Plane& plane : planes) {
-      const double value = plane.normal.dot(o) - plane.offset, rate = plane.normal.dot(d);
-      if (rate > 0.0) leave = std::min(leave, -value / rate);
-      if (rate < 0.0) enter = std::max(enter, -value / rate);
-      if (rate == 0.0 && value > 0.0) return;
-    }
-    if (enter < leave) out = {{enter, leave}, 1};
-    return;
-  }
-  // Most lines pass by: the least distance from the middle tells.
-  const double around = -o.dot(d);
-  const Vec3 nearest = at(around);
-  Roots roots;
-  const auto add_height = [&](double z) { add_linear(o.z() - z, at(1.0).z() - z, 1.0, roots); };
-  switch (kind) {
-    case Kind::kHalfSpace:
-      add_height(0.0);
-      break;
-    case Kind::kEllipsoid: {
-      const double step = size.maxCoeff();
-      if (nearest.squaredNorm() > step * step) return;
-      add_quadratic([&](double t) { return at(t).cwiseQuotient(size).squaredNorm() - 1.0; }, around,
-                    step, roots);
-      break;
-    }
-    case Kind::kCapsule: {
-      const double r = size.x(), h = size.y(), step = r + h;
-      if (nearest.squaredNorm() > step * step) return;
-      const auto tube = [&](double t) {
-        const Vec3 p = at(t);
-        return square(p.x()) + square(p.y()) - r * r;
-      };
-      add_quadratic(tube, around, step, roots);
-      for (const double end : {h, -h}) {
-        add_quadratic([&](double t) { return tube(t) + square(at(t).z() - end); }, around, step,
-                      roots);
-        add_height(end);
-      }
-      break;
-    }
-    case Kind::kFrustum: {
-      const double step = std::max(std::max(size.x(), size.y()), size.z());
-      if (nearest.squaredNorm() > 2.0 * step * step) return;
-      const double rise = (size.y() - size.x()) / (2.0 * size.z());
-      const double mean = 0.5 * (size.x() + size.y());
-      add_quadratic(
-          [&](double t) {
-            const Vec3 p = at(t);
-            return square(p.x()) + square(p.y()) - square(mean + rise * p.z());
-          },
-          around, step, roots);
-      add_height(size.z());
-      add_height(-size.z());
-      break;
-    }
-    case Kind::kBox:
-      if (nearest.squaredNorm() > size.squaredNorm()) return;
-      for (int axis = 0; axis < 3; ++axis) {
-        for (const double side : {size[axis], -size[axis]}) {
-          add_linear(o[axis] - side, o[axis] + d[axis] - side, 1.0, roots);
-        }
-      }
-      break;
-    case Kind::kTorus: {
-      const double R = size.x(), r = size.y();
-      if (nearest.squaredNorm() > square(R + r) || std::abs(around) > reach + R + r) return;
-      // (|p|^2 + R^2 - r^2)^2 - 4 R^2 (x^2 + y^2) with p = nearest + s d: |p|^2 = n^2 + s^2.
-      const double k = nearest.squaredNorm() + R * R - r * r;
-      const double across = square(d.x()) + square(d.y());
-      const double mixed = nearest.x() * d.x() + nearest.y() * d.y();
-      const double middle = square(nearest.x()) + square(nearest.y());
-      const double c[5] = {k * k - 4.0 * R * R * middle, -8.0 * R * R * mixed,
-                           2.0 * k - 4.0 * R * R * across, 0.0, 1.0};
-      double found[4];
-      const int count = polynomial_roots(c, 4, -(R + r), R + r, found);
-      for (int i = 0; i < count; ++i) roots.add(around + found[i]);
-      break;
-    }
-    case Kind::kPolytope:
-      break;
-  }
-  std::sort(roots.t.begin(), roots.t.begin() + roots.count);
-  double from = -reach;
-  bool open = false;
-  for (int i = 0; i <= roots.count; ++i) {
-    const double last = i < roots.count ? roots.t[static_cast<std::size_t>(i)] : reach;
-    const double to = std::clamp(last, -reach, reach);
-    if (!(to > from)) continue;
-    if (local_value(at(0.5 * (from + to))) < 0.0) {
-      const auto end = static_cast<std::size_t>(2 * out.count);
-      if (open) {
-        out.ends[end - 1] = to;
-      } else if (out.count < LineParts::kMost) {
-        out.ends[end] = from;
-        out.ends[end + 1] = to;
-        ++out.count;
-        open = true;
-      }
-    } else {
-      if (open && is_convex()) return;
-      open = false;
-    }
-    from = to;
   }
 }
 
@@ -452,6 +308,239 @@ bool ImplicitSolid::holds(std::uint64_t inside) const {
     stack = (stack & ~std::uint64_t{1}) | (both & 1);
   }
   return stack & 1;
+}
+
+// ---- Lines
+// ---------------------------------------------------------------------------------------
+// A line is n + s d with n its place nearest to the member's origin: so no number is larger than
+// the solid.
+
+MemberLines::MemberLines(const ImplicitMember& member, const Vec3& d_S)
+    : member_(member), d_(member.X_MS.rotation * d_S) {
+  const Vec3& size = member.size;
+  across_ = square(d_.x()) + square(d_.y());
+  switch (member.kind) {
+    case Kind::kHalfSpace:
+      ball_ = kInfinity;
+      break;
+    case Kind::kEllipsoid:
+      ball_ = square(size.maxCoeff());
+      scaled_ = d_.cwiseQuotient(size);
+      break;
+    case Kind::kCapsule:
+      ball_ = square(size.x() + size.y());
+      break;
+    case Kind::kFrustum:
+      ball_ = square(std::max(size.x(), size.y())) + square(size.z());
+      rise_ = (size.y() - size.x()) / (2.0 * size.z());
+      break;
+    case Kind::kBox:
+      ball_ = size.squaredNorm();
+      break;
+    case Kind::kTorus:
+      ball_ = square(size.x() + size.y());
+      break;
+    case Kind::kPolytope:
+      ball_ = kInfinity;
+      for (const auto& plane : member.planes) rates_.push_back(plane.normal.dot(d_));
+      break;
+  }
+}
+
+void MemberLines::add_parts(const Vec3& o_S, double reach, LineParts& out) const {
+  const Vec3 o = member_.X_MS * o_S;
+  const double around = -o.dot(d_);
+  const Vec3 n = o + around * d_;
+  if (n.squaredNorm() > ball_) return;
+  Span span{-kInfinity, kInfinity};
+  switch (member_.kind) {
+    case Kind::kHalfSpace:
+      if (d_.z() > 0.0) span.leave = -n.z() / d_.z();
+      if (d_.z() < 0.0) span.enter = -n.z() / d_.z();
+      if (d_.z() == 0.0 && n.z() > 0.0) return;
+      break;
+    case Kind::kEllipsoid:
+      span = ellipsoid(n);
+      break;
+    case Kind::kCapsule:
+      span = capsule(n);
+      break;
+    case Kind::kFrustum:
+      span = frustum(n);
+      break;
+    case Kind::kBox:
+      for (int axis = 0; axis < 3; ++axis) {
+        const Span between = slab(axis, n, member_.size[axis]);
+        span = {std::max(span.enter, between.enter), std::min(span.leave, between.leave)};
+      }
+      break;
+    case Kind::kPolytope:
+      span = facets(n);
+      break;
+    case Kind::kTorus:
+      return add_torus(n, around, reach, out);
+  }
+  out.add(std::max(-reach, around + span.enter), std::min(reach, around + span.leave));
+}
+
+// The ball of radius 1 about the origin, after the axes are scaled.
+MemberLines::Span MemberLines::ellipsoid(const Vec3& n) const {
+  const Vec3 p = n.cwiseQuotient(member_.size);
+  const double rate = scaled_.squaredNorm(), middle = -p.dot(scaled_) / rate;
+  const double left = 1.0 - (p + middle * scaled_).squaredNorm();
+  if (!(left > 0.0)) return kNowhere;
+  const double half = std::sqrt(left / rate);
+  return {middle - half, middle + half};
+}
+
+MemberLines::Span MemberLines::slab(int axis, const Vec3& n, double half) const {
+  const double rate = std::abs(d_[axis]);
+  const double at = d_[axis] < 0.0 ? -n[axis] : n[axis];
+  if (rate == 0.0) return std::abs(at) < half ? kEverywhere : kNowhere;
+  return {(-half - at) / rate, (half - at) / rate};
+}
+
+// About the z axis, without end.
+MemberLines::Span MemberLines::tube(const Vec3& n, double radius) const {
+  const double cross = std::abs(n.x() * d_.y() - n.y() * d_.x());
+  if (across_ == 0.0) {
+    return square(n.x()) + square(n.y()) < square(radius) ? kEverywhere : kNowhere;
+  }
+  const double far = std::sqrt(across_) * radius;
+  if (!(cross < far)) return kNowhere;
+  const double half = std::sqrt((far - cross) * (far + cross)) / across_;
+  const double middle = -(n.x() * d_.x() + n.y() * d_.y()) / across_;
+  return {middle - half, middle + half};
+}
+
+// A tube between two heights and a ball at each of them; one part, as the whole is convex.
+MemberLines::Span MemberLines::capsule(const Vec3& n) const {
+  const double r = member_.size.x(), h = member_.size.y();
+  const Span wall = tube(n, r), between = slab(2, n, h);
+  Span all{std::max(wall.enter, between.enter), std::min(wall.leave, between.leave)};
+  if (!(all.enter < all.leave)) all = kNowhere;
+  for (const double end : {h, -h}) {
+    const double middle = end * d_.z();
+    const Vec3 nearest = n + middle * d_ - end * Vec3::UnitZ();
+    const double left = r * r - nearest.squaredNorm();
+    if (!(left > 0.0)) continue;
+    const double half = std::sqrt(left);
+    all = {std::min(all.enter, middle - half), std::max(all.leave, middle + half)};
+  }
+  return all;
+}
+
+// Between two heights the sign of x^2 + y^2 - (radius at z)^2 tells; it changes at two places.
+MemberLines::Span MemberLines::frustum(const Vec3& n) const {
+  const double top = member_.size.y(), bottom = member_.size.x(), h = member_.size.z();
+  const Span between = slab(2, n, h);
+  if (rise_ == 0.0) {
+    const Span wall = tube(n, top);
+    return {std::max(wall.enter, between.enter), std::min(wall.leave, between.leave)};
+  }
+  // a s^2 + 2 b s + c, and b^2 - a c as a difference of two squares.
+  const double g = 0.5 * (bottom + top) + rise_ * n.z(), k = rise_ * d_.z();
+  const double a = across_ - k * k;
+  const double b = n.x() * d_.x() + n.y() * d_.y() - k * g;
+  const double c = square(n.x()) + square(n.y()) - g * g;
+  const double across = std::abs(n.x() * d_.y() - n.y() * d_.x());
+  const double along = std::sqrt(square(g * d_.x() - k * n.x()) + square(g * d_.y() - k * n.y()));
+  const auto value = [&](double s) { return (a * s + 2.0 * b) * s + c; };
+  double cuts[4] = {between.enter, between.enter, between.enter, between.leave};
+  if (across < along) {
+    const double root = std::sqrt((along - across) * (along + across));
+    const double q = -(b + std::copysign(root, b));
+    double first = a != 0.0 ? q / a : kInfinity, second = q != 0.0 ? c / q : kInfinity;
+    for (double* s : {&first, &second}) {
+      const double slope = 2.0 * (a * *s + b), better = *s - value(*s) / slope;
+      // At a place of contact the slope is small, and a step would lead away.
+      if (std::abs(better - *s) <= 1e-3 * h) *s = better;
+    }
+    if (second < first) std::swap(first, second);
+    cuts[1] = std::clamp(first, between.enter, between.leave);
+    cuts[2] = std::clamp(second, between.enter, between.leave);
+  }
+  Span all = kNowhere;
+  for (int i = 0; i < 3; ++i) {
+    if (!(cuts[i] < cuts[i + 1]) || !(value(0.5 * (cuts[i] + cuts[i + 1])) < 0.0)) continue;
+    all = {std::min(all.enter, cuts[i]), std::max(all.leave, cuts[i + 1])};
+  }
+  return all;
+}
+
+MemberLines::Span MemberLines::facets(const Vec3& n) const {
+  Span span = kEverywhere;
+  for (std::size_t i = 0; i < rates_.size(); ++i) {
+    const auto& plane = member_.planes[i];
+    const double value = plane.normal.dot(n) - plane.offset, rate = rates_[i];
+    if (rate > 0.0) span.leave = std::min(span.leave, -value / rate);
+    if (rate < 0.0) span.enter = std::max(span.enter, -value / rate);
+    if (rate == 0.0 && value > 0.0) return kNowhere;
+    if (!(span.enter < span.leave)) return kNowhere;
+  }
+  return span;
+}
+
+// (|p|^2 + R^2 - r^2)^2 - 4 R^2 (x^2 + y^2) with p = n + s d: |p|^2 = n^2 + s^2. Between two roots
+// the sign of the distance tells.
+void MemberLines::add_torus(const Vec3& n, double around, double reach, LineParts& out) const {
+  const double R = member_.size.x(), r = member_.size.y();
+  const Span between = slab(2, n, r);
+  const double low = std::max({between.enter, -(R + r), -reach - around});
+  const double high = std::min({between.leave, R + r, reach - around});
+  if (!(low < high)) return;
+  const double k = n.squaredNorm() + R * R - r * r;
+  const double mixed = n.x() * d_.x() + n.y() * d_.y();
+  const double middle = square(n.x()) + square(n.y());
+  const double c[5] = {k * k - 4.0 * R * R * middle, -8.0 * R * R * mixed,
+                       2.0 * k - 4.0 * R * R * across_, 0.0, 1.0};
+  double cuts[6];
+  const int count = polynomial_roots(c, 4, low, high, cuts + 1);
+  cuts[0] = low;
+  cuts[count + 1] = high;
+  const auto is_inside = [&](double s) {
+    const Vec3 p = n + s * d_;
+    const double off = std::sqrt(square(p.x()) + square(p.y())) - R;
+    return off * off + p.z() * p.z() < r * r;
+  };
+  for (int i = 0; i <= count; ++i) {
+    double enter = cuts[i];
+    if (!is_inside(0.5 * (enter + cuts[i + 1]))) continue;
+    while (i < count && is_inside(0.5 * (cuts[i + 1] + cuts[i + 2]))) ++i;
+    out.add(around + enter, around + cuts[i + 1]);
+  }
+}
+
+SolidLines::SolidLines(const ImplicitSolid& solid, const Vec3& d) : solid_(solid) {
+  members_.reserve(solid.members().size());
+  for (const ImplicitMember& member : solid.members()) members_.emplace_back(member, d);
+}
+
+void SolidLines::parts(const Vec3& o, double reach, LineParts& out) {
+  out.count = 0;
+  if (members_.size() == 1) return members_[0].add_parts(o, reach, out);
+  ends_.clear();
+  std::uint64_t bit = 1;
+  for (const MemberLines& member : members_) {
+    of_member_.count = 0;
+    member.add_parts(o, reach, of_member_);
+    for (const auto& part : of_member_) {
+      ends_.push_back({part.enter, bit});
+      ends_.push_back({part.leave, bit});
+    }
+    bit <<= 1;
+  }
+  std::sort(ends_.begin(), ends_.end(), [](const End& e, const End& f) { return e.t < f.t; });
+  std::uint64_t inside = 0;
+  bool within = false;
+  double enter = 0.0;
+  for (const End& end : ends_) {
+    inside ^= end.member;
+    const bool is = solid_.holds(inside);
+    if (is && !within) enter = end.t;
+    if (within && !is) out.add(enter, end.t);
+    within = is;
+  }
 }
 
 }  // namespace volcontact::test

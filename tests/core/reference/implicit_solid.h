@@ -12,11 +12,21 @@ namespace volcontact::test {
 // shapes of the core: a member is a function that is negative inside, and what a line has in a
 // solid is found from the roots of its polynomials and from the sign of that function between them.
 
-/// Parts of a line inside a member, in order along it.
+/// Parts of a line inside a solid, in order along it.
 struct LineParts {
-  static constexpr int kMost = 4;
-  std::array<double, 2 * kMost> ends{};  ///< enter, leave, enter, leave ...
-  int count = 0;                         ///< of parts
+  struct Part {
+    double enter, leave;
+  };
+  static constexpr int kMost = 128;
+  std::array<Part, kMost> part;
+  int count = 0;
+
+  /// One more behind the last; nothing where it has no length.
+  void add(double enter, double leave) {
+    if (enter < leave && count < kMost) part[static_cast<std::size_t>(count++)] = {enter, leave};
+  }
+  const Part* begin() const { return part.data(); }
+  const Part* end() const { return part.data() + count; }
 };
 
 /// One solid that is not made of others, posed in the frame of the whole.
@@ -39,8 +49,6 @@ class ImplicitMember {
   /// A subgradient of value(), of kinds that are convex.
   Vec3 slope(const Vec3& p_S) const { return X_SM.rotation * local_slope(X_MS * p_S); }
   bool is_convex() const { return kind != Kind::kTorus; }
-  /// The line o + t d, d of unit length, for t from -reach to reach.
-  void parts(const Vec3& o, const Vec3& d, double reach, LineParts& out) const;
 
  private:
   double local_value(const Vec3& p) const;
@@ -86,6 +94,51 @@ class ImplicitSolid {
 
   std::vector<ImplicitMember> members_;
   std::vector<int> steps_;
+};
+
+/// A member and lines of one direction: what these have in common is worked out once.
+class MemberLines {
+ public:
+  /// `d_S` of unit length. The member must outlive this.
+  MemberLines(const ImplicitMember& member, const Vec3& d_S);
+  /// Adds what the line o + t d has inside for t from -reach to reach.
+  void add_parts(const Vec3& o_S, double reach, LineParts& out) const;
+
+ private:
+  using Span = LineParts::Part;
+  Span ellipsoid(const Vec3& n) const;
+  Span capsule(const Vec3& n) const;
+  Span frustum(const Vec3& n) const;
+  Span slab(int axis, const Vec3& n, double half) const;
+  Span tube(const Vec3& n, double radius) const;
+  Span facets(const Vec3& n) const;
+  void add_torus(const Vec3& n, double around, double reach, LineParts& out) const;
+
+  const ImplicitMember& member_;
+  Vec3 d_;                      // in the member's frame
+  double ball_ = 0.0;           // radius of a ball about the member's origin that holds it, squared
+  Vec3 scaled_ = Vec3::Zero();  // d in a frame in which an ellipsoid is a unit ball
+  double across_ = 0.0;         // squared length of the part of d across the axis
+  double rise_ = 0.0;           // of a frustum: radius by height
+  std::vector<double> rates_;   // of the heights above the planes of a polytope
+};
+
+/// A solid and lines of one direction.
+class SolidLines {
+ public:
+  SolidLines(const ImplicitSolid& solid, const Vec3& d);
+  /// What the line o + t d has inside for t from -reach to reach.
+  void parts(const Vec3& o, double reach, LineParts& out);
+
+ private:
+  struct End {
+    double t;
+    std::uint64_t member;  // its bit
+  };
+  const ImplicitSolid& solid_;
+  std::vector<MemberLines> members_;
+  LineParts of_member_;
+  std::vector<End> ends_;
 };
 
 }  // namespace volcontact::test

@@ -16,11 +16,6 @@ constexpr int kFewHits = 50;  // of so few lines the spread says nothing
 
 double part_after_point(double x) { return x - std::floor(x); }
 
-struct Event {
-  double t;
-  int member;
-};
-
 }  // namespace
 
 LineOracle::LineOracle(const ImplicitSolid& a, const ImplicitSolid& b_A, std::uint64_t seed)
@@ -84,87 +79,54 @@ void LineOracle::find_cells() {
   most_volume_ = cell_volume * static_cast<double>(cells_.size());
 }
 
-LineOracle::Sum LineOracle::along(int axis, int level, Random& random) const {
+LineOracle::Sum LineOracle::along(int axis, int level, Random& random) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3, lines = kLines[level][0];
   const double step = static_cast<double>(kLines[level][1]) / lines;
   const double x0 = random.uniform(), y0 = random.uniform();
   const Vec3 d = frame_.col(axis), half = 0.5 * (high_ - low_);
-  const double reach = half[axis];
-  const auto members_a = a_.members().size(), members_b = b_.members().size();
+  SolidLines lines_a(a_, d), lines_b(b_, d);
   Sum sum;
-  std::vector<Event> events;
-  LineParts parts;
   for (int i = 0; i < lines; ++i) {
     Vec3 o_F = 0.5 * (low_ + high_);
     o_F[u] = low_[u] + 2.0 * half[u] * part_after_point(x0 + (i + 0.5) / lines);
     o_F[v] = low_[v] + 2.0 * half[v] * part_after_point(y0 + i * step);
     const Vec3 o = frame_ * o_F;
-    events.clear();
-    const auto collect = [&](const ImplicitSolid& solid, int first) {
-      for (const ImplicitMember& member : solid.members()) {
-        member.parts(o, d, reach, parts);
-        for (int k = 0; k < 2 * parts.count; ++k) {
-          events.push_back({parts.ends[static_cast<std::size_t>(k)], first});
-        }
-        ++first;
-      }
-    };
-    collect(a_, 0);
-    if (events.empty()) continue;
-    const std::size_t before = events.size();
-    collect(b_, 64);
-    if (events.size() == before) continue;
-    if (members_a + members_b > 2 || events.size() > 4) {
-      std::sort(events.begin(), events.end(),
-                [](const Event& e, const Event& f) { return e.t < f.t; });
-    } else if (events.size() == 4) {  // two intervals
-      if (events[1].t <= events[2].t || events[3].t <= events[0].t) continue;
-      if (events[2].t < events[0].t) std::swap(events[0], events[2]);
-      if (events[2].t < events[1].t) std::swap(events[1], events[2]);
-      if (events[3].t < events[2].t) std::swap(events[2], events[3]);
-    }
-    std::uint64_t bits_a = 0, bits_b = 0;
-    bool in_a = a_.holds(0), in_b = b_.holds(0);
-    double entered = 0.0;
-    for (const Event& event : events) {
-      const bool was = in_a && in_b;
-      const bool was_a = in_a;
-      if (event.member < 64) {
-        bits_a ^= std::uint64_t{1} << event.member;
-        in_a = a_.holds(bits_a);
-      } else {
-        bits_b ^= std::uint64_t{1} << (event.member - 64);
-        in_b = b_.holds(bits_b);
-      }
-      const bool is = in_a && in_b;
-      if (was == is) continue;
-      // Ends of the box are none of the surface.
-      if (was_a != in_a && std::abs(event.t) < reach) sum.flux += in_a ? -1.0 : 1.0;
-      if (is) {
-        entered = event.t;
-        continue;
-      }
-      const double length = event.t - entered;
-      if (!(length > 0.0)) continue;
-      sum.volume += length;
-      ++sum.hits;
-      Vec3 middle = o_F;
-      middle[axis] += 0.5 * (entered + event.t);
-      sum.first += length * middle;
-      middle[axis] = o_F[axis] + entered;
-      sum.low = sum.low.cwiseMin(middle);
-      middle[axis] = o_F[axis] + event.t;
-      sum.high = sum.high.cwiseMax(middle);
-      sum.low = sum.low.cwiseMin(middle);
-      middle[axis] = o_F[axis] + entered;
-      sum.high = sum.high.cwiseMax(middle);
-    }
+    lines_a.parts(o, half[axis], in_a_);
+    if (in_a_.count == 0) continue;
+    lines_b.parts(o, half[axis], in_b_);
+    add_common(axis, o_F, half[axis], sum);
   }
   const double weight = 4.0 * half[u] * half[v] / lines;
   sum.volume *= weight;
   sum.first *= weight;
   sum.flux *= weight;
   return sum;
+}
+
+// What both have of the line through o_F along the axis.
+void LineOracle::add_common(int axis, const Vec3& o_F, double reach, Sum& sum) const {
+  const auto *a = in_a_.begin(), *b = in_b_.begin();
+  while (a != in_a_.end() && b != in_b_.end()) {
+    const double enter = std::max(a->enter, b->enter), leave = std::min(a->leave, b->leave);
+    if (enter < leave) {
+      // A's surface where B is; ends of the box are none of the surface.
+      if (a->enter > b->enter && a->enter > -reach) sum.flux -= 1.0;
+      if (a->leave <= b->leave && a->leave < reach) sum.flux += 1.0;
+      const double length = leave - enter;
+      sum.volume += length;
+      ++sum.hits;
+      Vec3 p = o_F;
+      p[axis] = o_F[axis] + 0.5 * (enter + leave);
+      sum.first += length * p;
+      p[axis] = o_F[axis] + enter;
+      sum.low = sum.low.cwiseMin(p);
+      sum.high = sum.high.cwiseMax(p);
+      p[axis] = o_F[axis] + leave;
+      sum.low = sum.low.cwiseMin(p);
+      sum.high = sum.high.cwiseMax(p);
+    }
+    (a->leave <= b->leave ? a : b)++;
+  }
 }
 
 LineEstimate LineOracle::estimate(int level) {

@@ -54,7 +54,8 @@ class LineOracle {
 
   void find_cells();
   bool is_empty(const Vec3& middle_F, double reach) const;
-  Sum along(int axis, int level, Random& random) const;
+  Sum along(int axis, int level, Random& random);
+  void add_common(int axis, const Vec3& o_F, double reach, Sum& sum) const;
 
   ImplicitSolid a_, b_;  // in A's frame
   Mat3 frame_;           // columns: the directions of the lines
@@ -63,6 +64,7 @@ class LineOracle {
   Vec3 low_ = Vec3::Zero(), high_ = Vec3::Zero();  // the box of the lines, in their frame
   double least_volume_ = 0.0, most_volume_ = 0.0;
   Random random_;
+  LineParts in_a_, in_b_;  // of the line at hand
 };
 
 }  // namespace volcontact::test

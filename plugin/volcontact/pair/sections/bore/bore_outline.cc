@@ -13,11 +13,9 @@ constexpr int kMaxRoundings = 24;  // of the frame
 constexpr double kRoundRim =
     3.0;                        // longest by shortest way to the outline; then it is round enough
 constexpr double kSpike = 6.0;  // longest by shortest of all ways: a spike between the first ones
-constexpr double kOverCorner = 0.5;  // of the steepest step: how far a corner reaches over a place
-constexpr double kCorner = 0.5;      // bend by the steepest step: less is no corner
-constexpr double kSharper = 4.0;     // bend where a corner is next, by that at the other end
-constexpr int kNarrowings = 3;       // of a place where the outline comes near the wall
-constexpr int kEndNarrowings = 2;    // of a place where it crosses the wall
+constexpr double kStraight = 1e-6;  // sine of a turn below which the outline has no corner
+constexpr int kNarrowings = 3;      // of a place where the outline comes near the wall
+constexpr int kEndNarrowings = 2;   // of a place where it crosses the wall
 
 }  // namespace
 
@@ -114,21 +112,28 @@ void BoreOutline::trace() {
             [](const Place& p, const Place& q) { return p.angle < q.angle; });
 }
 
-// A corner of the outline between two places within the wall may stick out of it: then the curve
-// bends at one of them far more than at the other.
+// Between two places within the wall a part of the outline may stick out of it. As the outline is
+// convex, it lies in the triangle that the chords before and after them make with their own.
 void BoreOutline::look_behind_corners() {
   const std::size_t n = kEvenTurn;
+  const auto turn = [&](const Vec3& from, const Vec3& to) {
+    return from.cross(to).dot(bore_.axis);
+  };
   for (std::size_t k = 0; k < n; ++k) {
-    const Place here = places_[k], next = places_[(k + 1) % n];
+    const Place &here = places_[k], &next = places_[(k + 1) % n];
     if (here.rho > 1.0 || next.rho > 1.0) continue;
-    const double before = here.rho - places_[(k + n - 1) % n].rho, way = next.rho - here.rho,
-                 after = places_[(k + 2) % n].rho - next.rho;
-    const double steepest = std::max({std::abs(before), std::abs(way), std::abs(after)});
-    if (std::max(here.rho, next.rho) + kOverCorner * steepest <= 1.0) continue;
-    const double bend = std::abs(way - before), other = std::abs(after - way);
-    const double sharpest = std::max(bend, other);
-    if (sharpest < kSharper * std::min(bend, other) || sharpest < kCorner * steepest) continue;
-    const Place top = summit(here.angle, here.angle + 2.0 * kPi / kEvenTurn, 1.0);
+    const Vec3 from = bore_.seen(here.point), way = bore_.seen(next.point) - from;
+    const Vec3 before = from - bore_.seen(places_[(k + n - 1) % n].point);
+    const Vec3 after = bore_.seen(places_[(k + 2) % n].point) - from - way;
+    const double length = kStraight * way.norm();
+    if (std::abs(turn(before, way)) <= length * before.norm() ||
+        std::abs(turn(way, after)) <= length * after.norm()) {
+      continue;  // along one of the chords
+    }
+    const double both = turn(before, after), ahead = turn(way, after) / both;
+    if (ahead > 0.0 && (from + ahead * before).norm() <= 1.0) continue;
+    const double angle = here.angle;
+    const Place top = summit(angle, angle + 2.0 * kPi / kEvenTurn, 1.0);
     if (top.rho > 1.0) places_.push_back(top);
   }
 }

@@ -43,6 +43,19 @@ TEST(CornerLobes, ABarAcrossACounterboreHasTwo) {
                         Box({.half_sizes = Vec3(0.25, 0.15, 0.4)}), X);
 }
 
+// Two corners between two places: the curve bends at both of them.
+TEST(CornerLobes, ARimThatLeavesAFaceHasOne) {
+  Pose X;
+  X.rotation << -0.7175692032051646, 0.1339598876377063, 0.6834831286254236, -0.43765016337304852,
+      0.67666790137017174, -0.5921004017519591, -0.54180879755781775, -0.72399951640825044,
+      -0.42692848011062745;
+  X.translation = Vec3(-0.23511808110027529, 0.553045070529929, -0.32827318856586341);
+  expect_the_difference(
+      Box({.half_sizes = Vec3(0.66878710616658532, 0.7687871061665853, 0.38953901186701345)}),
+      Cylinder({.radius = 0.37545033015380308, .half_length = 0.48953901186701343}),
+      Cylinder({.radius = 0.66878710678988817, .half_length = 0.66878710616972725}), X.inverse());
+}
+
 TEST(CornerLobes, RandomBarsAndCansHaveAllOfThem) {
   test::Random random(11);
   const Box block({.half_sizes = Vec3(0.4, 0.45, 0.1)});
