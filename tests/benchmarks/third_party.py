@@ -5,7 +5,8 @@
 
 The wheels (56, 40, 527 and 26 MB) go into the folder given, without what they depend on: their
 MJCF is all that is needed. Each scene is compiled by MuJoCo, gets its data, and is then attached
-without a key in it. Writes one row a scene to results/third_party.csv, of which
+without a key in it. The two contacts step in turns, and the processor time of the thread counts,
+whatever else the machine does. Writes one row a scene to results/third_party.csv, of which
 docs/generate/make_third_party.py makes the page. Needs MuJoCo 3.3 or later, to put the parts of
 robosuite together.
 """
@@ -14,10 +15,12 @@ from __future__ import annotations
 
 import argparse
 import csv
+import ctypes
 import subprocess
 import time
 import warnings
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -187,7 +190,7 @@ def install(folder: Path) -> None:
 
 def examine(make: Callable[[], mujoco.MjModel], steps: int) -> dict[str, Any]:
     """The row of one scene, under both contacts."""
-    model = make()
+    model, native = make(), make()
     row: dict[str, Any] = {
         "mujoco": mujoco.__version__,
         "dofs": model.nv,
@@ -195,7 +198,8 @@ def examine(make: Callable[[], mujoco.MjModel], steps: int) -> dict[str, Any]:
         "timestep": model.opt.timestep,
         "integrator": mujoco.mjtIntegrator(model.opt.integrator).name.removeprefix("mjINT_"),
     }
-    data = mujoco.MjData(model)  # before attach, as an environment has it
+    runs = {"native": Run(native)}
+    run = Run(model)  # its data are there before attach, as an environment has them
     try:
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
@@ -203,51 +207,76 @@ def examine(make: Callable[[], mujoco.MjModel], steps: int) -> dict[str, Any]:
     except ValueError as error:
         row["refused"] = str(error)
     else:
-        with contact:
-            alerts = [str(w.message) for w in said]
-            row["said"] = "; ".join(alert.split(":")[0] for alert in alerts)
-            hulls = [alert for alert in alerts if "convex hull" in alert]
-            row["hulls"] = hulls[0].count(", ") + 1 if hulls else 0
-            row["pairs"] = len(contact.description["pairs"])
-            row |= measured("volumetric", model, data, steps, contact)
-    row |= measured("native", model, mujoco.MjData(model), steps)
+        run.contact = contact
+        runs["volumetric"] = run
+        alerts = [str(w.message) for w in said]
+        row["said"] = "; ".join(alert.split(":")[0] for alert in alerts)
+        hulls = [alert for alert in alerts if "convex hull" in alert]
+        row["hulls"] = hulls[0].count(", ") + 1 if hulls else 0
+        row["pairs"] = len(contact.description["pairs"])
+    passive = passive_callback()
+    ours = passive.value
+    for _ in range(steps):
+        for kind, one in runs.items():
+            passive.value = ours if kind == "volumetric" else None
+            one.step()
+    passive.value = ours
+    for kind, one in runs.items():
+        row |= {f"{kind}_{name}": value for name, value in one.numbers().items()}
+    if run.contact is not None:
+        run.contact.close()
     return row
 
 
-def measured(
-    kind: str,
-    model: mujoco.MjModel,
-    data: mujoco.MjData,
-    steps: int,
-    contact: vc.Contact | None = None,
-) -> dict[str, Any]:
-    """Steps with its actuators swinging a little about the middle of their range."""
-    if model.nkey:
-        mujoco.mj_resetDataKeyframe(model, data, 0)
-    low, high = model.actuator_ctrlrange.T
-    phase = np.arange(model.nu)
-    spent, most, depth = [], 0, 0.0
-    for _ in range(steps):
-        wave = np.sin(np.pi * data.time + phase)
+def passive_callback() -> ctypes.c_void_p:
+    """MuJoCo's own variable: under native contact nothing is called."""
+    library = next(Path(mujoco.__file__).parent.glob("libmujoco.so*"))
+    return ctypes.c_void_p.in_dll(ctypes.CDLL(str(library)), "mjcb_passive")
+
+
+@dataclass
+class Run:
+    """A model that steps, its actuators swinging a little about the middle of their range."""
+
+    model: mujoco.MjModel
+    contact: vc.Contact | None = None
+    spent: list[int] = field(default_factory=list)  # processor time of each step [ns]
+    contacts: int = 0
+    depth: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.data = mujoco.MjData(self.model)
+        if self.model.nkey:
+            mujoco.mj_resetDataKeyframe(self.model, self.data, 0)
+
+    def step(self) -> None:
+        """One step, and what touches after it."""
+        data = self.data
+        low, high = self.model.actuator_ctrlrange.T
+        wave = np.sin(np.pi * data.time + np.arange(self.model.nu))
         data.ctrl[:] = 0.5 * (low + high) + 0.5 * SWING * (high - low) * wave
-        begin = time.perf_counter()
-        mujoco.mj_step(model, data)
-        spent.append(time.perf_counter() - begin)
-        if contact is not None:
-            sites = contact.sites(data)
-            most = max(most, len(sites))
-            depth = max(depth, sites["depth"].max(initial=0.0))
+        begin = time.thread_time_ns()
+        mujoco.mj_step(self.model, data)
+        end = time.thread_time_ns()
+        self.spent.append(end - begin - (time.thread_time_ns() - end))  # less that of the clock
+        if self.contact is not None:
+            sites = self.contact.sites(data)
+            self.contacts = max(self.contacts, len(sites))
+            self.depth = max(self.depth, sites["depth"].max(initial=0.0))
         else:
-            most = max(most, data.ncon)
-            depth = max(depth, -min(data.contact.dist[: data.ncon], default=0.0))
-    numbers = {
-        "us": f"{1e6 * np.median(spent):.1f}",
-        "contacts": most,
-        "depth": f"{depth:.3g}",
-        "speed": f"{np.abs(data.qvel).max(initial=0.0):.3g}",
-        "warnings": " ".join(f"{name} {count}" for name, count in warnings_of(data).items()),
-    }
-    return {f"{kind}_{name}": value for name, value in numbers.items()}
+            self.contacts = max(self.contacts, data.ncon)
+            self.depth = max(self.depth, -min(data.contact.dist[: data.ncon], default=0.0))
+
+    def numbers(self) -> dict[str, Any]:
+        """Of all steps together."""
+        count = warnings_of(self.data)
+        return {
+            "us": f"{1e-3 * np.median(self.spent):.1f}",
+            "contacts": self.contacts,
+            "depth": f"{self.depth:.3g}",
+            "speed": f"{np.abs(self.data.qvel).max(initial=0.0):.3g}",
+            "warnings": " ".join(f"{name} {number}" for name, number in count.items()),
+        }
 
 
 if __name__ == "__main__":

@@ -19,6 +19,20 @@ bool reaches_plane(const mjData* d, int plane, const Shape& solid, const Pose& X
   return !(height >= reach);
 }
 
+// Bounds of a polytope look at all of its corners. These are of the box that holds it in its own
+// frame, a little larger for the rounding of both.
+Bounds rough_bounds(const Aabb& box, const Pose& X_WG) {
+  constexpr double kRounding = 1e-9;
+  const Vec3 center = X_WG * box.center();
+  Bounds out;
+  for (int i = 0; i < 3; ++i) {
+    const double reach = X_WG.rotation.row(i).cwiseAbs().dot(box.half_sizes());
+    const double about = reach + kRounding * (reach + std::abs(center[i]));
+    out.set(i, center[i] - about, -center[i] - about);
+  }
+  return out;
+}
+
 }  // namespace
 
 Cull::Cull(const PairRules& rules, const std::vector<Shape>& solids)
@@ -58,6 +72,16 @@ void Cull::tell_fixed_apart() {
   fixed_ = FixedSolids(*solids_, std::move(fixed));
 }
 
+const Bounds& Cull::exact_box(const mjData* d, int place, Scratch& scratch) const {
+  Bounds& box = scratch.boxes[size(place)];
+  if (scratch.rough[size(place)]) {
+    const int geom = moving_[size(place)];
+    box = world_bounds(solid_of(geom), pose_of_geom(d, geom));
+    scratch.rough[size(place)] = 0;
+  }
+  return box;
+}
+
 void Cull::compare_all(const mjData* d, Scratch& scratch) const {
   for (const Listed& pair : with_plane_) {
     const int geom = moving_[size(pair.b)];
@@ -67,6 +91,7 @@ void Cull::compare_all(const mjData* d, Scratch& scratch) const {
   }
   for (const Listed& pair : between_) {
     if (are_apart(scratch.boxes[size(pair.a)], scratch.boxes[size(pair.b)])) continue;
+    if (are_apart(exact_box(d, pair.a, scratch), exact_box(d, pair.b, scratch))) continue;
     scratch.near.push_back(pair.id);
   }
 }
@@ -158,8 +183,14 @@ void Cull::meet_fixed(const mjData* d, Scratch& scratch) const {
 void Cull::run(const mjData* d, Scratch& scratch) const {
   scratch.near.clear();
   scratch.boxes.resize(moving_.size());
+  scratch.rough.assign(moving_.size(), 0);
   for (std::size_t i = 0; i < moving_.size(); ++i) {
-    scratch.boxes[i] = world_bounds(solid_of(moving_[i]), pose_of_geom(d, moving_[i]));
+    const Shape& solid = solid_of(moving_[i]);
+    const Pose X_WG = pose_of_geom(d, moving_[i]);
+    const auto* polytope = is_swept_ ? nullptr : std::get_if<ConvexPolytope>(&solid);
+    scratch.rough[i] = polytope ? 1 : 0;
+    scratch.boxes[i] =
+        polytope ? rough_bounds(polytope->bounds(), X_WG) : world_bounds(solid, X_WG);
   }
   if (is_swept_) {
     reach_planes(d, scratch);

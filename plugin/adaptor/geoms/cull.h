@@ -21,6 +21,7 @@ class Cull {
   /// Memory of one call, reused. What it holds changes no result.
   struct Scratch {
     std::vector<Bounds> boxes;    ///< of the solids that move
+    std::vector<char> rough;      ///< whether they are larger than need be
     std::vector<int> sorted;      ///< them by their lower ends, as they were sorted last
     std::vector<double> low;      ///< by solid, along the axis of the sweep
     std::vector<Bounds> ordered;  ///< in the order of the sweep
@@ -37,6 +38,7 @@ class Cull {
     int a, b;  // a plane and a place in moving_; else two places in moving_
   };
   const Shape& solid_of(int geom) const { return (*solids_)[static_cast<std::size_t>(geom)]; }
+  const Bounds& exact_box(const mjData* d, int place, Scratch& scratch) const;
   void list_pairs();
   void tell_fixed_apart();
   void compare_all(const mjData* d, Scratch& scratch) const;

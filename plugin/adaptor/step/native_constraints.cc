@@ -14,6 +14,11 @@ void NativeConstraints::read(const mjModel* m, mjData* d, const mjData* ahead,
   count_ = complete_constraints(d, ahead) ? static_cast<int>(d->nefc) : 0;
   held_.assign(size(count_), {});
   if (count_ > 0) mj_referenceConstraint(m, d);
+  // MuJoCo's solver begins there, too. Cones are curved: what is found there hangs on the begin.
+  const bool is_curved = d->ncon > 0 && m->opt.cone == mjCONE_ELLIPTIC;
+  if (!is_curved && (m->opt.disableflags & mjDSBL_WARMSTART) == 0) {
+    guess({d->qacc_warmstart, size(static_cast<int>(m->nv))});
+  }
   for (int i = 0; i < count_; ++i) {
     for_row_of_constraint(m, d, i, [&](int dof, double value) {
       if (value != 0.0) add_entry(dof, value);

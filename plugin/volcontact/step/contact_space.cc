@@ -104,7 +104,9 @@ void ContactSpace::make_free_row(int place, int end) {
   for (const Carried& one : carried(place)) {
     std::copy_n(one.moved.data(), kRows, &dense_[size(kRows * one.dof)]);
   }
+  free_block(place, place) = free_mobility_[size(place)];
   for (int other = 0; other < end; ++other) {
+    if (other == place) continue;
     Square& out = free_block(place, other);
     out.setZero();
     for (const Carried& one : carried(other)) {
@@ -189,7 +191,7 @@ void ContactSpace::build_mobility() {
 
 // The form of less work, counted in multiplications and weighed as measured.
 void ContactSpace::choose_form() {
-  constexpr double kBlocks = 32.0, kPairs = 200.0, kOther = 2.0;
+  constexpr double kBlocks = 10.0, kPairs = 130.0;
   double by_dofs = 0.0;
   for (std::size_t i = 0; i < envelope_.size(); ++i) {
     const double width = static_cast<double>(i) + 1.0 - envelope_[i];
@@ -199,7 +201,6 @@ void ContactSpace::choose_form() {
     const double count = static_cast<double>(moves(place).size());
     by_dofs += kRows * count * count;
   }
-  if (!is_symmetric()) by_dofs *= kOther;
   const double count = places();
   prefers_dofs_ = by_dofs <= (kBlocks * count + kPairs) * count * count;
 }

@@ -11,6 +11,7 @@ void LinearConstraints::begin_rows() {
   row_begin_.assign(1, 0);
   reference_.clear();
   joined_.clear();
+  guess_.clear();
 }
 
 std::span<const LinearConstraints::Entry> LinearConstraints::end_row(double reference) {
@@ -29,7 +30,11 @@ void LinearConstraints::select(const ContactIslands& islands, int island) {
     const std::span<const Entry> row = this->row(i);
     if (row.empty() || islands.island_of(row.front().dof) != island) continue;
     rows_.push_back(i);
-    violation_[size(i)] = -reference_[size(i)];
+    double guessed = 0.0;
+    for (const Entry& entry : row) {
+      if (!guess_.empty()) guessed += entry.value * guess_[size(entry.dof)];
+    }
+    violation_[size(i)] = (std::isfinite(guessed) ? guessed : 0.0) - reference_[size(i)];
   }
   evaluate();
 }
@@ -51,7 +56,22 @@ bool LinearConstraints::improve(std::span<const double> acceleration) {
     change = std::max(change, std::abs(force_[size(i)] - linear_[size(i)]));
     largest = std::max(largest, std::abs(force_[size(i)]));
   }
-  return change <= kChange * largest;
+  if (change <= kChange * largest) return true;
+  hold_what_turned();
+  return false;
+}
+
+// Dry friction that turned round from one guess to the next may hold in between: there it is looked
+// at next. Without that it goes on from one side to the other.
+void LinearConstraints::hold_what_turned() {
+  if (is_curved()) return;
+  bool turned = false;
+  for (const int i : rows_) {
+    if (slope_[size(i)] != 0.0 || !(linear_[size(i)] * force_[size(i)] < 0.0)) continue;
+    violation_[size(i)] = 0.0;
+    turned = true;
+  }
+  if (turned) evaluate();
 }
 
 // The forces at the guess, and how they change.
@@ -109,6 +129,7 @@ void LinearConstraints::make_columns() {
   for (const int i : rows_) way_[size(i)] = -(violation_[size(i)] + reference_[size(i)]);
   subtract_slope(way_, constant_);
   for (const int i : rows_) {
+    if (slope_[size(i)] != 0.0) constant_[size(i)] = slope_[size(i)] * reference_[size(i)];
     if (constant_[size(i)] != 0.0) add(load_, i, constant_[size(i)]);
     if (slope_[size(i)] == 0.0) continue;
     add(columns_, i, std::sqrt(slope_[size(i)]));

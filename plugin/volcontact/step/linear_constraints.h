@@ -29,7 +29,7 @@ class LinearConstraints {
   /// Pairs of degrees of freedom that are joined by some constraint.
   std::span<const std::pair<int, int>> joined() const { return joined_; }
 
-  /// Goes on to an island, with the guess that nothing accelerates: as at rest.
+  /// Goes on to an island, with the first guess.
   void select(const ContactIslands& islands, int island);
 
   /// Whether the island has any.
@@ -57,11 +57,17 @@ class LinearConstraints {
   void add_entry(int dof, double value) { jacobian_.push_back({dof, value}); }
   std::span<const Entry> end_row(double reference);
   void join(int dof, int other) { joined_.emplace_back(dof, other); }
+  /// The first guess, by degree of freedom, in place of that nothing accelerates. Where no rows know
+  /// each other, it tells nothing but which of them push: the forces at the end are the same.
+  void guess(std::span<const double> acceleration) {
+    guess_.assign(acceleration.begin(), acceleration.end());
+  }
 
   /// Where x = Jc a - a_ref of all rows is `violation`: answers with set_response() for each of
   /// `rows`, and add_cone() for those that know each other.
   virtual void respond(std::span<const int> rows, std::span<const double> violation) = 0;
-  /// The force of a row, and -df/dx where it hangs on no other row.
+  /// The force of a row, and -df/dx where it hangs on no other row: of a force -d x, or of 0 for
+  /// one that stays.
   void set_response(int row, double force, double slope);
   /// Of `count` rows from `first` on, at most six, -df/dx: symmetric, positive semidefinite,
   /// row-major.
@@ -80,13 +86,16 @@ class LinearConstraints {
     return {of.data() + begin[k], static_cast<std::size_t>(begin[k + 1] - begin[k])};
   }
   std::span<const Entry> row(int i) const { return part(jacobian_, row_begin_, i); }
+  bool is_curved() const { return !cones_.empty(); }
   void evaluate();
+  void hold_what_turned();
   void subtract_slope(const std::vector<double>& x, std::vector<double>& force) const;
   void make_columns();
 
   std::vector<Entry> jacobian_;
   std::vector<int> row_begin_ = {0};
   std::vector<double> reference_;  // a_ref by rows
+  std::vector<double> guess_;      // empty: nothing accelerates
   std::vector<std::pair<int, int>> joined_;
   std::vector<int> rows_;  // of the island
   // By rows: x = Jc a - a_ref at the guess, f there, and -df/dx of rows that know no other.

@@ -91,6 +91,29 @@ TEST_P(BesideConstraints, RestsAsDeepAsItsLoadOverStiffness) {
   for (int i = 0; i < m->nv; ++i) EXPECT_LT(std::abs(d->qvel[i]), 1e-6);
 }
 
+// What the step begins its search with changes nothing of what it finds, on the way to rest.
+TEST_P(BesideConstraints, TheLastAccelerationDecidesNothing) {
+  const ModelPointer m = testing::load(GetParam().text);
+  const Attached attached(m);
+  const DataPointer d = testing::make_data(m), with = testing::make_data(m),
+                    without = testing::make_data(m);
+  if (m->nu) d->ctrl[0] = -60.0;
+  int touched = 0;
+  for (int i = 0; i < 600; ++i) {
+    mj_step(m.get(), d.get());
+    mj_copyData(with.get(), m.get(), d.get());
+    mj_copyData(without.get(), m.get(), d.get());
+    mju_zero(without->qacc_warmstart, static_cast<int>(m->nv));
+    volcontact_site site{}, other{};
+    for (mjData* one : {with.get(), without.get()}) mj_forward(m.get(), one);
+    ASSERT_EQ(volcontact_sites(m.get(), with.get(), &site, 1),
+              volcontact_sites(m.get(), without.get(), &other, 1));
+    touched += site.normal_force > 0.0 ? 1 : 0;
+    EXPECT_NEAR(site.normal_force, other.normal_force, 1e-9 * site.normal_force) << i;
+  }
+  EXPECT_GT(touched, 100);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Scenes, BesideConstraints,
     ::testing::Values(

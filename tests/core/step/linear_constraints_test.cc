@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <limits>
 
 #include "core/support/free_bodies.h"
 #include "core/support/random.h"
@@ -29,6 +30,8 @@ class Rows final : public LinearConstraints {
     join(0, 6);
   }
 
+  using LinearConstraints::guess;
+
   VectorXd forces(const VectorXd& x) const {
     VectorXd f = (-d_ * x).cwiseMax(0.0);
     f.tail<3>() = -h_ * x.tail<3>();
@@ -51,55 +54,138 @@ class Rows final : public LinearConstraints {
   int one_sided_;
 };
 
-// Newton's method on M a = t + Jc' f(Jc a - a_ref): ends where the forces are those of the rows.
-TEST(LinearConstraints, RoundsEndAtTheForcesOfTheRows) {
-  test::Random random(4);
-  for (int run = 0; run < 50; ++run) {
-    test::FreeBodies bodies;
-    for (int i = 0; i < 2; ++i) bodies.add(random.log_uniform(0.1, 10.0), Mat3::Identity());
-    const int rows = 8, dofs = 12;
-    MatrixXd jacobian = MatrixXd::Zero(rows, dofs);
-    VectorXd reference(rows), t(dofs);
-    for (int i = 0; i < rows; ++i) {
-      for (int k = 0; k < dofs; ++k) jacobian(i, k) = random.uniform(-1.0, 1.0);
-      reference[i] = random.uniform(-5.0, 5.0);
+// Dry friction of degrees of freedom: f = -d x, and no more than it can hold.
+class DryRows final : public LinearConstraints {
+ public:
+  DryRows(int count, double d, double most) : d_(d), most_(most) {
+    begin_rows();
+    for (int i = 0; i < count; ++i) {
+      add_entry(i, 1.0);
+      end_row(0.0);
     }
-    for (int k = 0; k < dofs; ++k) t[k] = random.uniform(-10.0, 10.0);
+    join(0, 6);
+  }
+
+  using LinearConstraints::guess;
+
+  VectorXd forces(const VectorXd& x) const { return (-d_ * x).cwiseMax(-most_).cwiseMin(most_); }
+
+ private:
+  void respond(std::span<const int> rows, std::span<const double> violation) override {
+    const VectorXd f = forces(
+        Eigen::Map<const VectorXd>(violation.data(), static_cast<Eigen::Index>(violation.size())));
+    for (const int i : rows) set_response(i, f[i], std::abs(f[i]) < most_ ? d_ : 0.0);
+  }
+
+  double d_, most_;
+};
+
+// Two free bodies under random forces t, with rows that know all of their degrees of freedom.
+struct Problem {
+  explicit Problem(test::Random& random) {
+    for (int i = 0; i < 2; ++i) bodies.add(random.log_uniform(0.1, 10.0), Mat3::Identity());
+    for (double& x : jacobian.reshaped()) x = random.uniform(-1.0, 1.0);
+    for (double& x : reference) x = random.uniform(-5.0, 5.0);
+    for (double& x : t) x = random.uniform(-10.0, 10.0);
     // Without curvature along one direction, as a cone along the way to its tip.
     const Vec3 flat = random.direction();
-    const Mat3 h = 30.0 * (Mat3::Identity() - flat * flat.transpose());
-    Rows constraints(jacobian, reference, 20.0, h);
-    ContactIslands islands;
-    islands.build(*bodies.trees, {}, constraints.joined());
-    ASSERT_EQ(islands.count(), 1);
-    constraints.select(islands, 0);
-    ASSERT_FALSE(constraints.empty());
-
+    h = 30.0 * (Mat3::Identity() - flat * flat.transpose());
     std::vector<DofEntry> entries;
     const int all[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
     bodies.mass(all, entries);
-    MatrixXd m = MatrixXd::Zero(dofs, dofs);
-    for (const DofEntry& entry : entries) m(entry.row, entry.column) = entry.value;
-    m = MatrixXd(m.selfadjointView<Eigen::Lower>());
-    VectorXd a(dofs);
-    bool settled = false;
-    for (int round = 0; round < 30 && !settled; ++round) {
+    MatrixXd lower = MatrixXd::Zero(kDofs, kDofs);
+    for (const DofEntry& entry : entries) lower(entry.row, entry.column) = entry.value;
+    m = MatrixXd(lower.selfadjointView<Eigen::Lower>());
+  }
+
+  Rows rows() const { return {jacobian, reference, 20.0, h}; }
+
+  // Newton's method on M a = t + Jc' f(Jc a - a_ref). Returns how many rounds it took, or 0.
+  int settle(LinearConstraints& constraints, VectorXd& a) const {
+    ContactIslands islands;
+    islands.build(*bodies.trees, {}, constraints.joined());
+    constraints.select(islands, 0);
+    for (int round = 1; round <= 30; ++round) {
       MatrixXd left = m;
       VectorXd right = t;
       for (const auto& entry : constraints.load()) right[entry.dof] += entry.value;
       for (int c = 0; c < constraints.columns(); ++c) {
-        VectorXd column = VectorXd::Zero(dofs);
+        VectorXd column = VectorXd::Zero(kDofs);
         for (const auto& entry : constraints.column(c)) column[entry.dof] += entry.value;
         left += column * column.transpose();
       }
       a = left.ldlt().solve(right);
-      settled = constraints.improve({a.data(), static_cast<std::size_t>(dofs)});
+      if (constraints.improve({a.data(), kDofs})) return round;
     }
-    EXPECT_TRUE(settled) << run;
-    const VectorXd missing =
-        t + jacobian.transpose() * constraints.forces(jacobian * a - reference) - m * a;
-    EXPECT_LT(missing.norm(), 1e-8 * t.norm()) << run;
+    return 0;
   }
+
+  static constexpr int kDofs = 12;
+  test::FreeBodies bodies;
+  MatrixXd jacobian = MatrixXd(8, kDofs), m;
+  VectorXd reference = VectorXd(8), t = VectorXd(kDofs);
+  Mat3 h;
+};
+
+TEST(LinearConstraints, RoundsEndAtTheForcesOfTheRows) {
+  test::Random random(4);
+  for (int run = 0; run < 50; ++run) {
+    const Problem problem(random);
+    Rows constraints = problem.rows();
+    VectorXd a;
+    EXPECT_GT(problem.settle(constraints, a), 0) << run;
+    EXPECT_FALSE(constraints.empty());
+    const VectorXd force = constraints.forces(problem.jacobian * a - problem.reference);
+    const VectorXd missing = problem.t + problem.jacobian.transpose() * force - problem.m * a;
+    EXPECT_LT(missing.norm(), 1e-8 * problem.t.norm()) << run;
+  }
+}
+
+TEST(LinearConstraints, TheFirstGuessTellsOnlyWhichRowsPush) {
+  test::Random random(5);
+  for (int run = 0; run < 50; ++run) {
+    const Problem problem(random);
+    VectorXd a, again, anywhere(Problem::kDofs);
+    Rows constraints = problem.rows();
+    ASSERT_GT(problem.settle(constraints, a), 0);
+    constraints.guess({a.data(), Problem::kDofs});
+    EXPECT_EQ(problem.settle(constraints, again), 1) << run;
+    EXPECT_LT((again - a).norm(), 1e-12 * a.norm()) << run;
+    for (double& x : anywhere) x = random.uniform(-100.0, 100.0);
+    anywhere[0] = std::numeric_limits<double>::quiet_NaN();
+    constraints.guess({anywhere.data(), Problem::kDofs});
+    ASSERT_GT(problem.settle(constraints, again), 0) << run;
+    EXPECT_LT((again - a).norm(), 1e-12 * a.norm()) << run;
+    anywhere[0] = 0.0;
+    constraints.guess({anywhere.data(), Problem::kDofs});
+    ASSERT_GT(problem.settle(constraints, again), 0) << run;
+    EXPECT_LT((again - a).norm(), 1e-12 * a.norm()) << run;
+  }
+}
+
+// What moves across the narrow range in which it holds is not looked at from the other side again.
+TEST(LinearConstraints, DryFrictionComesToHold) {
+  test::Random random(6);
+  int holds = 0, slides = 0;
+  for (int run = 0; run < 50; ++run) {
+    Problem problem(random);
+    // Bodies that hang together, so that friction of one holds the other.
+    MatrixXd coupled(Problem::kDofs, Problem::kDofs);
+    for (double& x : coupled.reshaped()) x = random.uniform(-1.0, 1.0);
+    problem.m += coupled * coupled.transpose();
+    constexpr double kMost = 4.0;
+    DryRows constraints(Problem::kDofs, 1e6, kMost);
+    VectorXd a = VectorXd::Zero(Problem::kDofs);
+    VectorXd start(Problem::kDofs);
+    for (double& x : start) x = random.uniform(-1.0, 1.0);
+    constraints.guess({start.data(), Problem::kDofs});
+    EXPECT_GT(problem.settle(constraints, a), 0) << run;
+    const VectorXd force = constraints.forces(a);
+    EXPECT_LT((problem.t + force - problem.m * a).norm(), 1e-6 * problem.t.norm()) << run;
+    for (const double f : force) ++(std::abs(f) < kMost ? holds : slides);
+  }
+  EXPECT_GT(holds, 100);
+  EXPECT_GT(slides, 50);
 }
 
 TEST(LinearConstraints, AnIslandWithoutAnyHasNone) {

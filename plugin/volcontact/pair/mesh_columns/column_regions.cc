@@ -54,8 +54,9 @@ class Joiner {
   }
 
  private:
+  // By high bits, the only ones that both faces have a part in.
   std::size_t home(std::uint64_t key) const {
-    return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15u) >> 20) & mask_;
+    return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15u) >> 36) & mask_;
   }
   int cell_of(int f, int g) const {
     const std::uint64_t key = key_of(f, g);
