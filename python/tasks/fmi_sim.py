@@ -20,11 +20,11 @@ class NoFmiSim(Stopped):
 
 
 def build_fmi_sim() -> None:
-    """Builds the program once, for who wishes it: seven minutes of one core."""
+    """Builds the program once, for who wishes it: some four minutes of one core."""
     if PROGRAM.exists() or shutil.which("fmi-sim"):
         return
     if os.environ.get("CI") != "true" and os.environ.get(WISH) != "1":
-        raise NoFmiSim(f"{WISH}=1 ./run test builds it, once, in seven minutes of one core")
+        raise NoFmiSim(f"{WISH}=1 ./run test builds it, once, in some four minutes of one core")
     if shutil.which("cargo") is None:
         raise NoFmiSim("there is no cargo: install Rust")
     with locked("fmi-sim.lock"):
@@ -32,7 +32,7 @@ def build_fmi_sim() -> None:
         FOLDER.mkdir(parents=True, exist_ok=True)
         with (FOLDER / "build.log").open("w") as log:
             run(
-                "cargo", "install", "--locked", "--version", _VERSION, "--root", FOLDER,
+                "cargo", "install", "--debug", "--locked", "--version", _VERSION, "--root", FOLDER,
                 "--target-dir", FOLDER / "target", "fmi-sim", env=_clang(), log=log,
             )  # fmt: skip
 
