@@ -59,8 +59,8 @@ _ARGUMENT = re.compile(r"(\w+) {2,}(\S.*)")
 
 def unread(folder: str, names: list[str]) -> set[str]:
     """What of a folder of the package no name of the reference is in."""
-    if Path(folder).name in ("fmu", "identify", "study"):
-        wanted = {"__init__.py", "export.py", "merge.py", "scene_export.py", "settings.py"}
+    if Path(folder).name in ("fmu", "identify", "study", "file"):
+        wanted = {"__init__.py", "export.py", "merge.py", "scene_export.py", "file", "settings.py"}
         return set(names) - wanted
     hidden = ("cli", "view", "templates", "report", "meshes", "__pycache__")
     return {name for name in names if name in hidden or name.endswith(".so")}

@@ -149,7 +149,7 @@ def test_pictures_of_the_concepts_show_what_the_core_computes(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     module = generator("make_concepts")
-    monkeypatch.setattr("concepts_sections.POINTS", 20)  # the test looks at numbers alone
+    monkeypatch.setattr("parts.concepts_sections.POINTS", 20)  # the test looks at numbers alone
     assert {path.stem for path in module.PICTURES.glob("*.svg")} == set(module.PICTURE)
     for name, draw in module.PICTURE.items():
         picture = (module.PICTURES / f"{name}.svg").read_text(encoding="utf-8")
@@ -183,7 +183,7 @@ def test_blocks_of_pages_say_what_the_code_and_the_results_say(
     for page in module.pages():
         text = page.read_text(encoding="utf-8")
         assert text == module.render(text), f"{page.name}: {command}"
-    monkeypatch.setattr("concepts_sections.POINTS", 20)  # the test looks at numbers alone
+    monkeypatch.setattr("parts.concepts_sections.POINTS", 20)  # the test looks at numbers alone
     for name, draw in module.PICTURE.items():
         picture = (module.DOCS / f"{name}.svg").read_text(encoding="utf-8")
         assert f"<dc:source>{digest(draw()[1])}</dc:source>" in picture, command
