@@ -449,6 +449,11 @@ _FAMILIES = (
         "any, or axes along axes on a grid",
     ),
     ("`meshes`", "hulls, boxes and rings as meshes with all others", "both"),
+    (
+        "`slender`",
+        "the same meshes with simple solids of which one size is 0.02 to 0.3 of the others",
+        "both",
+    ),
 )
 
 
@@ -470,7 +475,7 @@ No two cases have the same solids, except that twenty in a row share a composed 
 The reference shares no code with the engines
 ([line_oracle.h](../tests/core/reference/line_oracle.h)). It represents a solid by a function that
 is negative inside; lines in three skew directions are cut at the roots of its polynomials, and the
-sign between two roots tells what is inside. An even lattice of 4181 lines per direction is summed;
+signs between them tell what is inside. An even lattice of 4181 lines per direction is summed;
 if that does not confirm the result, seven times as many are, and so on. The spread between the
 directions is its uncertainty. One case in twenty is examined more closely from the start, one in
 500 more closely still. The columns 1e-2 to 1e-5 say for how many overlaps the reference was that

@@ -58,7 +58,8 @@ TEST(PairSearch, ATubeThroughAnEdge) {
 // A sample of what `./run search` does, of the families that all answers are right in.
 TEST(PairSearch, FindsNothing) {
   PairSearch search;
-  for (const SearchFamily family : {SearchFamily::kRandom, SearchFamily::kMeshes}) {
+  for (const SearchFamily family :
+       {SearchFamily::kRandom, SearchFamily::kMeshes, SearchFamily::kSlender}) {
     SearchCases cases(family, 1);
     int overlapping = 0, judged = 0;
     for (std::uint64_t index = 0; index < 60; ++index) {

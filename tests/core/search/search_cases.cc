@@ -57,6 +57,13 @@ class Drawer {
         c.b = chance(0.35) ? mesh() : chance(0.8) ? primitive(false) : bored();
         c.special = chance(0.6);
         break;
+      case SearchFamily::kSlender:
+        c.a = mesh();
+        if (chance(0.3)) share_sizes_of(c.a);
+        thin_ = random_.log_uniform(0.02, 0.3);
+        c.b = primitive(false);
+        c.special = chance(0.6);
+        break;
     }
     return c;
   }
@@ -336,8 +343,8 @@ class Drawer {
 }  // namespace
 
 const char* to_string(SearchFamily family) {
-  constexpr const char* kNames[] = {"random", "special",  "cones", "thin",
-                                    "bored",  "composed", "meshes"};
+  constexpr const char* kNames[] = {"random", "special",  "cones",  "thin",
+                                    "bored",  "composed", "meshes", "slender"};
   return kNames[static_cast<int>(family)];
 }
 

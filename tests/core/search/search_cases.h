@@ -18,10 +18,11 @@ enum class SearchFamily : int {
   kBored = 4,     ///< blocks, pipes and cups with what fits into them
   kComposed = 5,  ///< random trees of operations to depth 4
   kMeshes = 6,    ///< meshes of polyhedra with simple solids and with each other
+  kSlender = 7,   ///< the same meshes with simple solids of which one size is 0.02 to 0.3
 };
 inline constexpr std::array kSearchFamilies = {
-    SearchFamily::kRandom, SearchFamily::kSpecial,  SearchFamily::kCones, SearchFamily::kThin,
-    SearchFamily::kBored,  SearchFamily::kComposed, SearchFamily::kMeshes};
+    SearchFamily::kRandom, SearchFamily::kSpecial,  SearchFamily::kCones,  SearchFamily::kThin,
+    SearchFamily::kBored,  SearchFamily::kComposed, SearchFamily::kMeshes, SearchFamily::kSlender};
 const char* to_string(SearchFamily family);
 
 struct SearchCase {

@@ -13,7 +13,8 @@
 namespace volcontact {
 namespace {
 
-constexpr double kSag = 0.3;          // of an arc over its chord; a triangle with more is divided
+// Of an arc over its chord, where the solid is scaled to be round; a triangle with more is divided.
+constexpr double kSag = 0.3;
 constexpr int kMostHalvings = 10;     // of an arc
 constexpr int kMostPasses = 6;        // over the arcs of a polygon
 constexpr double kSlivers = 10.0;     // by the tolerance, of the area of the polygon within
@@ -26,6 +27,10 @@ struct Outline {
   Vec3 corner[8];
   int count = 0;
   void add(const Vec3& p) { corner[count++] = p; }
+  template <typename Height>
+  bool has_above(Height&& height) const {
+    return std::any_of(corner, corner + count, [&](const Vec3& p) { return height(p) > 0.0; });
+  }
 };
 
 // Cuts one triangle of A by the faces of B.
@@ -35,31 +40,55 @@ class FaceCut {
           std::vector<Vec3>& corners)
       : s_(solid), face_(face), sliver_share_(sliver_share), pieces_(pieces), corner_(corners) {}
 
-  // Cuts by the plane faces, then each part by the round one.
+  // Cuts by the plane faces, at the seams, then each part by the round face.
   void cut(const Vec3 (&corner)[3]) {
     normal_ = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
     if (normal_.isZero(0.0)) return;
     Outline outline;
     for (const Vec3& p : corner) outline.add(p);
-    for (int k = 0; k < s_.plane_count; ++k) cut_by_plane(k, outline);
-    for (int i = 2; i < outline.count; ++i) {
-      cut_by_round(outline.corner[0], outline.corner[i - 1], outline.corner[i], 0);
+    for (int k = 0; k < s_.plane_count; ++k) {
+      cut_by_plane([&](const Vec3& x) { return s_.over_plane(k, x); }, outline);
     }
+    if (!(s_.half_length > 0.0)) return cut_by_round(outline);
+    // The tube of a capsule and its balls apart: across a seam columns do not change smoothly, and
+    // over the length of a slender one few would see the balls.
+    for (const double way : {1.0, -1.0}) {
+      const auto beyond = [&](const Vec3& x) { return way * along_axis(x) - s_.half_length; };
+      if (!outline.has_above(beyond)) continue;
+      Outline ball = outline;
+      cut_by_plane([&](const Vec3& x) { return -beyond(x); }, ball);
+      cut_by_round(ball);
+      cut_by_plane(beyond, outline);
+    }
+    in_tube_ = true;
+    cut_by_round(outline);
   }
 
  private:
   double level(const Vec3& x, Vec3& gradient) const { return round_level(s_, x, gradient); }
+  // From the middle of a capsule.
+  double along_axis(const Vec3& x) const {
+    return Vec3::Map(s_.axis).dot(x - Vec3::Map(s_.center));
+  }
 
-  void cut_by_plane(int k, Outline& outline) const {
+  // Leaves what is not above, where `height` is negative.
+  template <typename Height>
+  static void cut_by_plane(Height&& height, Outline& outline) {
     Outline kept;
     for (int i = 0; i < outline.count; ++i) {
       const Vec3 &p = outline.corner[i], &q = outline.corner[i + 1 == outline.count ? 0 : i + 1];
-      const double h = s_.over_plane(k, p), next = s_.over_plane(k, q);
+      const double h = height(p), next = height(q);
       if (h <= 0.0) kept.add(p);
       if ((h <= 0.0) != (next <= 0.0)) kept.add(p + h / (h - next) * (q - p));
     }
     outline = kept;
     if (outline.count < 3) outline.count = 0;
+  }
+
+  void cut_by_round(const Outline& outline) {
+    for (int i = 2; i < outline.count; ++i) {
+      cut_by_round(outline.corner[0], outline.corner[i - 1], outline.corner[i], 0);
+    }
   }
 
   void divide(const Vec3& a, const Vec3& b, const Vec3& c, int level) {
@@ -122,10 +151,7 @@ class FaceCut {
     for (int i = 0; i < count; ++i) {
       if (!arc_after[i]) continue;
       arc[i] = arc_between(outline[i], outline[i + 1 == count ? 0 : i + 1]);
-      const double sag = arc[i].sag;
-      if (sag > kSag * arc[i].chord() && sag > kTinySag * s_.size && divisions < kMostDivisions) {
-        return divide(a, b, c, divisions);
-      }
+      if (bends_much(arc[i]) && divisions < kMostDivisions) return divide(a, b, c, divisions);
     }
     add_outline(outline, arc_after, arc, count);
   }
@@ -172,6 +198,19 @@ class FaceCut {
     double sag;      // and so far from it
     double chord() const { return (q - p).norm(); }
   };
+
+  // Of a slender solid an arc along it is as flat as it may be, and yet half of the section.
+  bool bends_much(const Arc& arc) const {
+    const Vec3 way = scaled(arc.tip - 0.5 * (arc.p + arc.q));
+    return arc.sag > kTinySag * s_.size &&
+           way.squaredNorm() > kSag * kSag * scaled(arc.q - arc.p).squaredNorm();
+  }
+  // In the frame in which the round face is that of a ball, tube or cone of unit size.
+  Vec3 scaled(const Vec3& d) const {
+    const Vec3 axis = Vec3::Map(s_.axis);
+    const Vec3 x = in_tube_ ? Vec3(d - axis.dot(d) * axis) : d;
+    return {Vec3::Map(s_.map[0]).dot(x), Vec3::Map(s_.map[1]).dot(x), Vec3::Map(s_.map[2]).dot(x)};
+  }
 
   // An arc does not leave the triangle: what is found beyond is the far side of a section that is
   // touched in a point.
@@ -243,7 +282,8 @@ class FaceCut {
   const double sliver_share_;
   RoundPieces& pieces_;
   Vec3 normal_, unit_;
-  Vec3 part_[3];  // of the triangle, that is cut by the round face now
+  Vec3 part_[3];          // of the triangle, that is cut by the round face now
+  bool in_tube_ = false;  // of a capsule
   std::vector<Vec3>& corner_;
 };
 
@@ -291,7 +331,7 @@ bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid
     const int face = static_cast<int>(pieces.slot_of_face.size());
     const std::size_t before = pieces.triangles.size() + pieces.slivers.size();
     const Vec3 corner[3] = {corner_of(slot, 0), corner_of(slot, 1), corner_of(slot, 2)};
-    if (inside) {
+    if (inside && !(solid.half_length > 0.0)) {
       pieces.triangles.push_back({{corner[0], corner[1], corner[2]}, face});
     } else {
       FaceCut(solid, face, share, pieces, scratch.corners).cut(corner);

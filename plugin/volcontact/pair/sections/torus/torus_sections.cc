@@ -19,7 +19,8 @@ constexpr double kLostFace = 1e-5;      // of the area: a face that the sums hav
 constexpr double kWidestAngle = 1.6;    // of an undivided arc [rad]
 constexpr double kSameAngle = 1e-11;    // [rad]
 constexpr double kNearRangeEnd = 3e-4;  // of a range: to which its ends are known at least
-constexpr double kOnAxis = 1e-8;        // of a plane from the axis, per radius
+constexpr double kOnAxis = 1e-13;       // of a plane from the axis, per radius; a body may be thin
+constexpr double kAlongAxis = 1e-8;     // of a plane: the sine of its slope
 constexpr double kEndError = 5.0;       // error by its estimate where an arc ends in nothing
 constexpr double kTarget = 1e-2;    // share of the tolerance asked of an arc: kinks may be hidden
 constexpr double kGapError = 3.0;   // error of V by the gap on a first look, at most as measured
@@ -65,7 +66,7 @@ class TorusSectionsRun {
     // A plane that holds the axis is seen edge on: it is moved a little.
     const double least = kOnAxis * torus_.major_radius();
     for (PlaneFace& plane : s_.faces.planes) {
-      if (std::abs(plane.normal.z()) < kOnAxis && std::abs(plane.offset) < least) {
+      if (std::abs(plane.normal.z()) < kAlongAxis && std::abs(plane.offset) < least) {
         plane.offset = least;
       }
     }
@@ -297,14 +298,13 @@ class TorusSectionsRun {
     }
     sum.area_vector = of_torus;
     sum.area_moment = Vec3(sums.moment[0], sums.moment[1], 0.0);
-    if (flat || !(of_torus.norm() > sum.counter_area)) return;
-    // No vector is longer than its area: where the body shows next to none, it is told by the body,
-    // or else by a face through the axis.
+    if (flat) return;
     const Vec3 of_body = vector_of_body();
     const double lost = (of_torus - of_body).norm();
     if (has_axial_plane() && lost >= kLostFace * sum.area) {
       sum.counter_area += lost;
-    } else {
+    } else if (of_torus.norm() > sum.counter_area) {
+      // No vector is longer than its area: where the body shows next to none, the body tells it.
       sum.area_vector = of_body;
     }
   }

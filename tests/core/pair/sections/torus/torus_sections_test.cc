@@ -357,6 +357,26 @@ TEST(TorusSections, AThinDiscThroughTheAxis) {
   }
 }
 
+// One face of a plate holds the axis of the ring. The plate, wider than the ring, is so thin that V
+// is its thickness times two circles, to the square of the one by the other.
+TEST(TorusSections, AFaceThroughTheAxisOfAPlateIsWhereItIs) {
+  const double area = 2.0 * kPi * kMinor * kMinor;
+  for (const double half : {1e-4, 1e-5, 1e-6, 1e-7}) {
+    const Shape plate = Cylinder({.radius = 0.5, .half_length = half});
+    for (const double angle : {0.0, 0.3, 2.0}) {
+      Mat3 upright;  // the disc's axis across that of the ring
+      upright << Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitY();
+      const Mat3 R = test::turn(Vec3::UnitZ(), angle) * upright;
+      for (const double from : {0.0, 1e-12, 1e-9, -1e-9}) {
+        const Pose X{R, (half + from) * R.col(2)};
+        const VolumeMetrics m = evaluated(kRing, plate, X).total;
+        EXPECT_NEAR(m.volume, 2.0 * half * area, m.volume_error + 1e-8 * m.volume)
+            << half << " " << angle << " " << from;
+      }
+    }
+  }
+}
+
 // The end of a cone holds the axis of the ring: what the half-planes see of it tells nothing, and a
 // range that looks smooth may not be.
 TEST(TorusSections, AConeWhoseEndHoldsTheAxis) {
