@@ -30,7 +30,8 @@ Mat3 root_of(Mat3 rest) {
 
 // Of the block of Lambda of two places, the rows and columns from these on.
 Mat3 part_of(const ContactSpace& space, int i, Eigen::Index row, int k, Eigen::Index column) {
-  if (space.is_symmetric() && k > i) return space.delassus(k, i).block<3, 3>(column, row).transpose();
+  if (space.is_symmetric() && k > i)
+    return space.delassus(k, i).block<3, 3>(column, row).transpose();
   return space.delassus(i, k).block<3, 3>(row, column);
 }
 
@@ -101,9 +102,7 @@ void ContactEquations::factor_normal(const ContactSpace& space, double step) {
 
 // How friction moves the places of friction when the normal forces answer.
 void ContactEquations::couple(const ContactSpace& space, double step) {
-  const auto has_slope = [this](int place) {
-    return !slopes_.friction[size(place)].isZero(0.0);
-  };
+  const auto has_slope = [this](int place) { return !slopes_.friction[size(place)].isZero(0.0); };
   const auto are_same = [&] {
     const auto count = std::count_if(slopes_.friction.begin(), slopes_.friction.end(),
                                      [](const Mat3& slope) { return !slope.isZero(0.0); });
@@ -129,9 +128,9 @@ void ContactEquations::couple(const ContactSpace& space, double step) {
       back_[i * normals + a].noalias() =
           factor.transpose() * part_of(space, other, 0, place, kFriction);
       forth_[i * normals + a] =
-          is_symmetric ? back_[i * normals + a]
-                       : Mat3(factor.transpose() *
-                              part_of(space, place, kFriction, other, 0).transpose());
+          is_symmetric
+              ? back_[i * normals + a]
+              : Mat3(factor.transpose() * part_of(space, place, kFriction, other, 0).transpose());
     }
     if (normals > 0) normal_.matrix.solve<3>(back_[i * normals].data());
   }
@@ -218,8 +217,7 @@ void ContactEquations::solve_for_forces(const ContactSpace& space, double step,
   if (has_friction()) solve_friction(space, step, force);
   for (std::size_t a = 0; a < normals; ++a) {
     const std::size_t place = size(normal_.active[a]);
-    part(force, size(kRows) * place).noalias() -=
-        normal_.factors[place] * part(right_, 3 * a);
+    part(force, size(kRows) * place).noalias() -= normal_.factors[place] * part(right_, 3 * a);
   }
   space.move_by_delassus(force.data(), velocity.data());
 }
@@ -251,8 +249,8 @@ void ContactEquations::factor(ContactSpace& space, double step, ByDofs& out) con
   out.matrix.reset(space.envelope(), space.is_symmetric());
   out.matrix.add(space.matrix().matrix());
   for (int place = 0; place < space.places(); ++place) {
-    const bool bears = !slopes_.normal[size(place)].isZero(0.0) ||
-                       !slopes_.friction[size(place)].isZero(0.0);
+    const bool bears =
+        !slopes_.normal[size(place)].isZero(0.0) || !slopes_.friction[size(place)].isZero(0.0);
     if (bears) add_slope(space, place, step, out.matrix);
   }
   out.matrix.factor();

@@ -57,8 +57,8 @@ class LinearConstraints {
   void add_entry(int dof, double value) { jacobian_.push_back({dof, value}); }
   std::span<const Entry> end_row(double reference);
   void join(int dof, int other) { joined_.emplace_back(dof, other); }
-  /// The first guess, by degree of freedom, in place of that nothing accelerates. Where no rows know
-  /// each other, it tells nothing but which of them push: the forces at the end are the same.
+  /// The first guess, by degree of freedom, in place of that nothing accelerates. Where no rows
+  /// know each other, it tells nothing but which of them push: the forces at the end are the same.
   void guess(std::span<const double> acceleration) {
     guess_.assign(acceleration.begin(), acceleration.end());
   }
