@@ -7,6 +7,7 @@ docs/generate/make_campaign.py` writes it anew from the tables that are there.
 
 from __future__ import annotations
 
+import collections
 import csv
 import sys
 from collections.abc import Iterable
@@ -106,8 +107,9 @@ def render() -> str:
 
 def states(rows: list[Row]) -> str:
     """Of which commits the rows are."""
-    names = sorted({row.get("state") or "" for row in rows} - {""})
-    return f"Measured at {', '.join(names)}.\n" if names else ""
+    counts = collections.Counter(row.get("state") or "" for row in rows)
+    named = [f"{count} at {name}" for name, count in sorted(counts.items()) if name]
+    return f"\nMeasured with the engines of these commits: {', '.join(named)}.\n" if named else ""
 
 
 def grid(name: str, rows: list[Row], down: str, across: str, corner: str) -> str:

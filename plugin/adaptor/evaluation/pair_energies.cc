@@ -73,9 +73,11 @@ WorkLimit limit_of(const SceneContact& contact, const mjModel* m, std::size_t k,
   const double along = inverse_mass(m, scratch.pair(k).geoms).along;
   const PairEnergy::Now now(scratch.reports[k]);
   const double moving = now.moving(along) - lift(m, scratch.reports[k], along);
-  return WorkLimit::of(scratch.energies[k], scratch.dissipated, contact.options().exit_speed,
-                       moving)
-      .for_bodies(along, fall_of(m));
+  WorkLimit limit =
+      WorkLimit::of(scratch.energies[k], scratch.dissipated, contact.options().exit_speed, moving)
+          .for_bodies(along, fall_of(m));
+  limit.slow = std::min(limit.slow, std::max(0.0, now.elastic - scratch.energies[k].stored));
+  return limit;
 }
 
 void lend(const SceneContact& contact, const mjModel* m, const GeomPair& geoms,
