@@ -109,7 +109,8 @@ struct PairEnergy {
   /// The end of a step whose method is exact enough: what the law holds more, or less, was put in
   /// by motion, or given back.
   void follow(double elapsed, const Now& now) noexcept {
-    const double explained = stored + found + 0.5 * elapsed * (power + now.power);
+    const double put_in = 0.5 * elapsed * (power + now.power);
+    const double explained = stored + found + std::max(kRoom * put_in, put_in / kRoom);
     found = std::min(found, now.elastic);
     stored = std::max(0.0, now.elastic - found - unpaid);
     doubtful = std::max(0.0, stored + found - explained);

@@ -76,7 +76,7 @@ TEST(PairEnergy, OnlyWhatMotionDoesNotExplainIsDoubtful) {
   EXPECT_EQ(energy.stored, 0.05);
   EXPECT_EQ(energy.payable(), 0.0);
   energy.follow(1e-3, now(0.25, 100.0, 0.5));
-  EXPECT_NEAR(energy.payable(), 0.25 - 0.05 - 0.05, 1e-15);
+  EXPECT_NEAR(energy.payable(), 0.25 - 0.05 - 1.5 * 0.05, 1e-15);
 }
 
 // A step by the law gives back as much as the law holds less, and no more: what no motion had put
