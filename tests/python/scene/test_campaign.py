@@ -116,9 +116,7 @@ def test_scenes_that_made_energy_make_none(part, seed):
 @pytest.mark.skipif(
     not hasattr(mujoco.mjtIntegrator, "mjINT_DISCRETE"), reason="other scenes have these numbers"
 )
-@pytest.mark.parametrize(
-    "seed", [601, 623, 910, 1121, 4350, 4385, 4746, 5691, 6095, 7005, 7301]
-)
+@pytest.mark.parametrize("seed", [601, 623, 910, 1121, 4350, 4385, 4746, 5691, 6095, 7005, 7301])
 def test_scenes_that_ended_with_more_end_with_less(part, seed):
     scenes = part("generated_scenes")
     row = scenes.examine({"seed": seed})
