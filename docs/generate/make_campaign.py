@@ -59,9 +59,9 @@ are added: a sum above zero was made. A scene fails when that is ever more than 
 and elastic energy there was, when a force is not a finite number, or MuJoCo warns. That MuJoCo
 warns is no failure where it does so with its own contact, or without any: from the last state in
 which nothing is more than twice as fast as with native contact, and only if contact has given
-nothing to the motion until then. {alone} warn without any contact: springs too stiff for the step,
-which stay still until something moves them, and which native contact does not touch. Of {all}
-scenes {cells} were run, and {failed} fail. By integrator:
+nothing to the motion until then: springs too stiff for the step, which stay still until something
+moves them, and which native contact does not touch. Of {all} scenes {cells} were run, {alone} warn
+without any contact ({tried} that warn were tried), and {failed} fail. By integrator:
 """,
     "models_of_others": """\
 ## Models of others
@@ -98,10 +98,11 @@ def render() -> str:
         failed = sum(not is_sound(part, row) for row in rows)
         words = {"cells": len(rows), "failed": failed, "steps": getattr(part, "STEPS", "")}
         words["alone"] = sum(row.get("alone") == "1" for row in rows)
+        words["tried"] = sum(bool(row.get("alone")) for row in rows)
         words["models"] = len({tuple(row[key] for key in part.KEYS[:2]) for row in rows})
         words["all"] = sum(1 for _ in part.cases()) if "{all}" in TEXTS[name] else ""
-        text += "\n" + TEXTS[name].format(**words) + states(rows)
-        text += "\n" + tables[name](rows)
+        text += "\n" + TEXTS[name].format(**words)
+        text += "\n" + tables[name](rows) + states(rows)
     return text
 
 
