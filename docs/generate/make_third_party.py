@@ -31,7 +31,7 @@ of half their range. All geoms have {material} and the friction that the file gi
 Of {scenes} scenes {clean} run without a MuJoCo warning, and {refused} are refused.
 
 Two numbers in a cell are volumetric / native: the most contacts at a time (sites / contact points), the deepest
-penetration [mm], the median processor time of a step [us], and MuJoCo's warnings. *Hulls*: meshes that bound no solid, for which
+penetration [mm], the median time of a step [us], and MuJoCo's warnings. *Hulls*: meshes that bound no solid, for which
 their convex hull stands. Native depths are those of contact points between hulls. The times are of a machine with other
 work to do: take their ratio, {median:.1f} in the median and {worst:.1f} at worst ({worst_scene}).
 """  # noqa: E501

@@ -5,8 +5,8 @@
 
 The wheels (56, 40, 527 and 26 MB) go into the folder given, without what they depend on: their
 MJCF is all that is needed. Each scene is compiled by MuJoCo, gets its data, and is then attached
-without a key in it. The two contacts step in turns, and the processor time of the thread counts,
-whatever else the machine does. Writes one row a scene to results/third_party.csv, of which
+without a key in it. The two contacts step in turns, and the processor time
+of the thread counts. Writes one row a scene to results/third_party.csv, of which
 docs/generate/make_third_party.py makes the page. Needs MuJoCo 3.3 or later, to put the parts of
 robosuite together.
 """
@@ -38,6 +38,7 @@ PACKAGES = {
     "gymnasium-robotics": "1.4.2",
 }
 STEPS = 2000
+BLOCK = 10  # steps of one contact before the other's turn
 MATERIAL = {"stiffness": 1e9}  # k_v [N/m^3]; friction stays that of the geoms
 OPTIONS = {"mesh": "exact_or_hull"}
 SWING = 0.2  # of half the range of each actuator
@@ -216,10 +217,13 @@ def examine(make: Callable[[], mujoco.MjModel], steps: int) -> dict[str, Any]:
         row["pairs"] = len(contact.description["pairs"])
     passive = passive_callback()
     ours = passive.value
-    for _ in range(steps):
-        for kind, one in runs.items():
-            passive.value = ours if kind == "volumetric" else None
-            one.step()
+    for timed in (False, True):
+        for one in runs.values():
+            one.reset()
+        for _ in range(0, steps, BLOCK):
+            for kind, one in runs.items():
+                passive.value = ours if kind == "volumetric" else None
+                one.time() if timed else one.look()
     passive.value = ours
     for kind, one in runs.items():
         row |= {f"{kind}_{name}": value for name, value in one.numbers().items()}
@@ -240,32 +244,49 @@ class Run:
 
     model: mujoco.MjModel
     contact: vc.Contact | None = None
-    spent: list[int] = field(default_factory=list)  # processor time of each step [ns]
+    spent: list[float] = field(default_factory=list)  # processor time of a step, by blocks [ns]
     contacts: int = 0
     depth: float = 0.0
 
     def __post_init__(self) -> None:
         self.data = mujoco.MjData(self.model)
+
+    def reset(self) -> None:
+        """Back to the begin."""
         if self.model.nkey:
             mujoco.mj_resetDataKeyframe(self.model, self.data, 0)
-
-    def step(self) -> None:
-        """One step, and what touches after it."""
-        data = self.data
-        low, high = self.model.actuator_ctrlrange.T
-        wave = np.sin(np.pi * data.time + np.arange(self.model.nu))
-        data.ctrl[:] = 0.5 * (low + high) + 0.5 * SWING * (high - low) * wave
-        begin = time.thread_time_ns()
-        mujoco.mj_step(self.model, data)
-        end = time.thread_time_ns()
-        self.spent.append(end - begin - (time.thread_time_ns() - end))  # less that of the clock
-        if self.contact is not None:
-            sites = self.contact.sites(data)
-            self.contacts = max(self.contacts, len(sites))
-            self.depth = max(self.depth, sites["depth"].max(initial=0.0))
         else:
-            self.contacts = max(self.contacts, data.ncon)
-            self.depth = max(self.depth, -min(data.contact.dist[: data.ncon], default=0.0))
+            mujoco.mj_resetData(self.model, self.data)
+
+    def controls(self) -> list[np.ndarray]:
+        """Of the steps of a block."""
+        low, high = self.model.actuator_ctrlrange.T
+        times = self.data.time + self.model.opt.timestep * np.arange(BLOCK)
+        waves = np.sin(np.pi * times[:, None] + np.arange(self.model.nu))
+        return list(0.5 * (low + high) + 0.5 * SWING * (high - low) * waves)
+
+    def time(self) -> None:
+        """The steps of a block and nothing between them."""
+        controls = self.controls()
+        begin = time.thread_time_ns()
+        for control in controls:
+            self.data.ctrl[:] = control
+            mujoco.mj_step(self.model, self.data)
+        self.spent.append((time.thread_time_ns() - begin) / BLOCK)
+
+    def look(self) -> None:
+        """The steps of a block, and what touches after each."""
+        for control in self.controls():
+            self.data.ctrl[:] = control
+            mujoco.mj_step(self.model, self.data)
+            if self.contact is not None:
+                sites = self.contact.sites(self.data)
+                self.contacts = max(self.contacts, len(sites))
+                self.depth = max(self.depth, sites["depth"].max(initial=0.0))
+            else:
+                touching = self.data.contact.dist[: self.data.ncon]
+                self.contacts = max(self.contacts, self.data.ncon)
+                self.depth = max(self.depth, -min(touching, default=0.0))
 
     def numbers(self) -> dict[str, Any]:
         """Of all steps together."""
