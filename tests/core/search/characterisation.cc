@@ -53,9 +53,9 @@ std::vector<Case> cases_of(const Example& a, const Example& b, const Effort& eff
 
 double length_of(const VolumeMetrics& m) { return std::sqrt(m.second_moment().trace() / m.volume); }
 
-class Judge {
+class EngineJudge {
  public:
-  Judge(const Example& a, const Example& b, Engine engine, const Effort& effort)
+  EngineJudge(const Example& a, const Example& b, Engine engine, const Effort& effort)
       : a_(a), b_(b), effort_(effort) {
     options_.engine = engine;
     if (engine == Engine::kOctree) options_.tolerance = effort.octree_tolerance;
@@ -216,7 +216,7 @@ std::vector<Characterisation> characterise(const Example& a, const Example& b,
     const bool octree = engine == Engine::kOctree;
     const auto most =
         static_cast<std::size_t>(slow ? effort.slow_octree_poses : effort.octree_poses);
-    Judge engine_judge(first, second, engine, effort);
+    EngineJudge engine_judge(first, second, engine, effort);
     for (std::size_t i = 0; i < (octree ? std::min(cases.size(), most) : cases.size()); ++i) {
       const Case& c = cases[i];
       engine_judge.compare(mirror ? c.X_AB.inverse() : c.X_AB,

@@ -23,9 +23,9 @@ constexpr int kCloser = 2;            // level of the judge where both orders di
 constexpr int kHalvings = 3;
 constexpr int kCells = kMostCellsInStep;
 
-class Judge {
+class CaseJudge {
  public:
-  Judge(const SearchCase& c, SearchOutcome& outcome, InterferenceWorkspace& workspace)
+  CaseJudge(const SearchCase& c, SearchOutcome& outcome, InterferenceWorkspace& workspace)
       : c_(c), outcome_(outcome), workspace_(workspace) {
     options_.most_cells = kCells;
     if (c.family == SearchFamily::kComposed) options_.tolerance = 1e-2;
@@ -257,7 +257,7 @@ class Judge {
 
 SearchOutcome PairSearch::run(const SearchCase& c, int level, std::uint64_t seed) {
   SearchOutcome outcome{.family = c.family, .failures = {}};
-  Judge(c, outcome, workspace_).run(result_, mirrored_, level, seed);
+  CaseJudge(c, outcome, workspace_).run(result_, mirrored_, level, seed);
   return outcome;
 }
 
