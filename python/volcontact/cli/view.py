@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from volcontact.cli.arguments import add_drive, add_file, drive_of, plain_command, positive, scene
 from volcontact.cli.terminal import Terminal
@@ -155,7 +155,8 @@ def _stage(arguments: argparse.Namespace, terminal: Terminal) -> Stage:
         return _recorded(arguments)
     if arguments.scene_of_folder is not None:
         raise ValueError(f"--scene is for a folder, and {arguments.scene} is a scene: leave it out")
-    drive, contact = drive_of(arguments), arguments.contact or "volumetric"
+    drive = drive_of(arguments)
+    contact: Literal["volumetric", "native"] = arguments.contact or "volumetric"
     if arguments.record is None:
         return Stage(arguments.scene, contact=contact, drive=drive)
     with terminal.progress() as bars:

@@ -7,7 +7,7 @@ from pathlib import Path
 from scipy import stats
 from synthetic_tosses import scene, tosses
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks" / "field"))
 import identify_coverage as bench
 
 REPETITIONS = 3
