@@ -132,8 +132,7 @@ TEST_P(NoEnergyFromNothing, HoldsInEveryStep) {
       push(pair.a, pair.report.wrench_on_A());
       push(pair.b, pair.report.wrench_on_B());
       if (!step.is_pair_solved(k)) continue;
-      pair.energy.solve(step.work(k), step.friction_work(k), step.released_at_most(k),
-                        step.lent(k));
+      pair.energy.solve(step.work(k), step.friction_work(k), step.released_at_most(k));
       stored += pair.energy.stored;
       overdraft += PairEnergy::kOverdraft * held[k];
       if (step.work(k) > 0.5 * held[k]) ++limited;
