@@ -402,7 +402,7 @@ previous one, and a matrix with the same slopes is factored once per step. The h
 
 Instructions per step of our part, before and after the latest changes (callgrind, 600 or 1,000
 steps): hand, block 2.02 to 1.23 million; can in bins 404 to 254 thousand; assembly peg 1.28 to 1.18
-million; humanoid 1.86 to 1.76 million; walker 146 to 135 thousand. In one step of five the dry
+million. In one step of five the dry
 friction of the hand's joints went from one direction to the other and back for all twelve guesses;
 now it is assumed to hold in between. The cells of the can on one face of a box all had one place in
 a hash table. The bounds of the peg's meshes are computed only near others.

@@ -46,34 +46,32 @@ class BlockMatrix {
     }
   }
 
-  /// After `factor`: solves in place for `kSides` right sides, of each block K x kSides numbers.
-  template <int kSides = 1>
+  /// After `factor`: solves for one right side, K numbers a block, in place.
   void solve(double* x) const {
-    using Part = Eigen::Matrix<double, K, kSides>;
-    const auto of = [x](int i) { return Eigen::Map<Part>(x + K * kSides * i); };
     for (int i = 0; i < count_; ++i) {
-      Eigen::Map<Part> out = of(i);
-      for (int k = 0; k < i; ++k) out.noalias() -= at(i, k) * of(k);
+      Eigen::Map<Vector> out = of(x, i);
+      for (int k = 0; k < i; ++k) out.noalias() -= at(i, k) * of(x, k);
       const Block& block = at(i, i);
       for (int r = 0; r < K; ++r) {
-        for (int c = 0; c < r; ++c) out.row(r) -= block(r, c) * out.row(c);
-        if (is_symmetric_) out.row(r) *= inverse(i)[r];
+        for (int c = 0; c < r; ++c) out[r] -= block(r, c) * out[c];
+        if (is_symmetric_) out[r] *= inverse(i)[r];
       }
     }
     for (int i = count_ - 1; i >= 0; --i) {
-      Eigen::Map<Part> out = of(i);
+      Eigen::Map<Vector> out = of(x, i);
       const Block& block = at(i, i);
       for (int r = K - 1; r >= 0; --r) {
         for (int c = r + 1; c < K; ++c) {
-          out.row(r) -= (is_symmetric_ ? block(c, r) : block(r, c)) * out.row(c);
+          out[r] -= (is_symmetric_ ? block(c, r) : block(r, c)) * out[c];
         }
-        out.row(r) *= inverse(i)[r];
+        out[r] *= inverse(i)[r];
       }
-      for (int k = 0; k < i; ++k) of(k).noalias() -= upper(k, i).transpose() * out;
+      for (int k = 0; k < i; ++k) of(x, k).noalias() -= upper(k, i).transpose() * out;
     }
   }
 
  private:
+  static Eigen::Map<Vector> of(double* x, int i) { return Eigen::Map<Vector>(x + K * i); }
   const Block& at(int i, int k) const { return blocks_[index(i, k)]; }
   // The transpose of block (k, i) of U, k < i.
   const Block& upper(int k, int i) const { return is_symmetric_ ? at(i, k) : at(k, i); }

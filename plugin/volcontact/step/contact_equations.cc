@@ -10,11 +10,6 @@ namespace volcontact {
 namespace {
 
 using Vector = Eigen::Map<Eigen::VectorXd>;
-constexpr std::size_t kFriction = 3;  // the first coordinate of friction
-
-Eigen::Map<Vec3> part(std::vector<double>& numbers, std::size_t first) {
-  return Eigen::Map<Vec3>(&numbers[first]);
-}
 
 // The lower triangular L of L L', of a matrix that may be semidefinite.
 Mat3 root_of(Mat3 rest) {
@@ -26,13 +21,6 @@ Mat3 root_of(Mat3 rest) {
     rest -= out.col(k) * out.col(k).transpose();
   }
   return out;
-}
-
-// Of the block of Lambda of two places, the rows and columns from these on.
-Mat3 part_of(const ContactSpace& space, int i, Eigen::Index row, int k, Eigen::Index column) {
-  if (space.is_symmetric() && k > i)
-    return space.delassus(k, i).block<3, 3>(column, row).transpose();
-  return space.delassus(i, k).block<3, 3>(row, column);
 }
 
 }  // namespace
@@ -47,153 +35,86 @@ void ContactEquations::solve(ContactSpace& space, double step, std::vector<doubl
 }
 
 void ContactEquations::make_slopes(int places) {
-  slopes_.normal.assign(size(places), Mat3::Zero());
-  slopes_.friction.assign(size(places), Mat3::Zero());
+  slopes_.assign(size(places), ContactSpace::Square::Zero());
   for (const Column& column : columns) {
-    Squares& block = column.first % kRows == 0 ? slopes_.normal : slopes_.friction;
-    block[size(column.first / kRows)].noalias() += column.numbers * column.numbers.transpose();
+    const int at = column.first % kRows;
+    slopes_[size(column.first / kRows)].block<3, 3>(at, at).noalias() +=
+        column.numbers * column.numbers.transpose();
   }
 }
 
 void ContactEquations::forget() {
-  normal_by_dofs_.is_valid = by_dofs_.is_valid = false;
-  normal_.is_valid = friction_.is_valid = is_coupled_ = false;
+  for (Factored* factored :
+       {static_cast<Factored*>(&normal_by_dofs_), static_cast<Factored*>(&by_dofs_),
+        static_cast<Factored*>(&normal_by_forces_), static_cast<Factored*>(&by_forces_)}) {
+    factored->is_valid = false;
+  }
 }
 
 bool ContactEquations::has_friction() const {
-  return std::any_of(slopes_.friction.begin(), slopes_.friction.end(),
-                     [](const Mat3& slope) { return !slope.isZero(0.0); });
+  return std::any_of(slopes_.begin(), slopes_.end(), [](const ContactSpace::Square& slope) {
+    return !slope.bottomRightCorner<3, 3>().isZero(0.0);
+  });
 }
 
-// L of the places that have this block.
-void ContactEquations::take_factors(const Squares& slopes, ByForces& out) const {
-  out.slopes = slopes;
-  out.factors.resize(slopes.size());
+bool ContactEquations::is_of_slopes(const Factored& factored) const {
+  return factored.is_valid && factored.slopes == slopes_;
+}
+
+template <int K>
+void ContactEquations::factor(const ContactSpace& space, double step, ByForces<K>& out) const {
+  using Block = typename BlockMatrix<K>::Block;
+  out.is_valid = false;
+  out.slopes = slopes_;
+  out.factors.resize(slopes_.size());
   out.active.clear();
-  for (std::size_t place = 0; place < slopes.size(); ++place) {
-    if (slopes[place].isZero(0.0)) continue;
-    out.active.push_back(static_cast<int>(place));
-    out.factors[place] = root_of(slopes[place]);
-  }
-}
-
-// 1 + h L' Lambda L of the normal forces.
-void ContactEquations::factor_normal(const ContactSpace& space, double step) {
-  if (normal_.is_valid && normal_.slopes == slopes_.normal) return;
-  normal_.is_valid = friction_.is_valid = is_coupled_ = false;
-  take_factors(slopes_.normal, normal_);
-  const bool is_symmetric = space.is_symmetric();
-  const int count = static_cast<int>(normal_.active.size());
-  normal_.matrix.reset(count, is_symmetric);
-  for (int i = 0; i < count; ++i) {
-    const int place = normal_.active[size(i)];
-    const Mat3 left = step * normal_.factors[size(place)].transpose();
-    for (int k = 0; k < (is_symmetric ? i + 1 : count); ++k) {
-      const int other = normal_.active[size(k)];
-      const Mat3 moved =
-          space.delassus(place, other).topLeftCorner<3, 3>() * normal_.factors[size(other)];
-      normal_.matrix(i, k).noalias() = left * moved;
-    }
-    normal_.matrix(i, i).diagonal().array() += 1.0;
-  }
-  normal_.matrix.factor();
-  normal_.is_valid = true;
-}
-
-// How friction moves the places of friction when the normal forces answer.
-void ContactEquations::couple(const ContactSpace& space, double step) {
-  const auto has_slope = [this](int place) { return !slopes_.friction[size(place)].isZero(0.0); };
-  const auto are_same = [&] {
-    const auto count = std::count_if(slopes_.friction.begin(), slopes_.friction.end(),
-                                     [](const Mat3& slope) { return !slope.isZero(0.0); });
-    return count == std::ssize(friction_.active) &&
-           std::all_of(friction_.active.begin(), friction_.active.end(), has_slope);
-  };
-  if (is_coupled_ && are_same()) return;
-  is_coupled_ = friction_.is_valid = false;
-  friction_.active.clear();
   for (int place = 0; place < space.places(); ++place) {
-    if (has_slope(place)) friction_.active.push_back(place);
+    const ContactSpace::Square& slope = slopes_[size(place)];
+    if (slope.isZero(0.0)) continue;
+    out.active.push_back(place);
+    ContactSpace::Square& factor = out.factors[size(place)];
+    factor.setZero();
+    factor.topLeftCorner<3, 3>() = root_of(slope.topLeftCorner<3, 3>());
+    if (K > 3) factor.bottomRightCorner<3, 3>() = root_of(slope.bottomRightCorner<3, 3>());
   }
-  const std::size_t normals = normal_.active.size(), count = friction_.active.size();
   const bool is_symmetric = space.is_symmetric();
-  forth_.resize(count * normals);
-  back_.resize(count * normals);
-  mobility_.resize(count * count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const int place = friction_.active[i];
-    for (std::size_t a = 0; a < normals; ++a) {
-      const int other = normal_.active[a];
-      const Mat3& factor = normal_.factors[size(other)];
-      back_[i * normals + a].noalias() =
-          factor.transpose() * part_of(space, other, 0, place, kFriction);
-      forth_[i * normals + a] =
-          is_symmetric
-              ? back_[i * normals + a]
-              : Mat3(factor.transpose() * part_of(space, place, kFriction, other, 0).transpose());
-    }
-    if (normals > 0) normal_.matrix.solve<3>(back_[i * normals].data());
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t k = 0; k < (is_symmetric ? i + 1 : count); ++k) {
-      Mat3 answered = Mat3::Zero();
-      for (std::size_t a = 0; a < normals; ++a) {
-        answered.noalias() += forth_[i * normals + a].transpose() * back_[k * normals + a];
-      }
-      mobility_[i * count + k] =
-          part_of(space, friction_.active[i], kFriction, friction_.active[k], kFriction) -
-          step * answered;
-    }
-  }
-  is_coupled_ = true;
-}
-
-// 1 + h L' Lambda L of friction, with that Lambda.
-void ContactEquations::factor_friction(const ContactSpace& space, double step) {
-  if (friction_.is_valid && friction_.slopes == slopes_.friction) return;
-  friction_.is_valid = false;
-  take_factors(slopes_.friction, friction_);
-  const bool is_symmetric = space.is_symmetric();
-  const int count = static_cast<int>(friction_.active.size());
-  friction_.matrix.reset(count, is_symmetric);
+  const int count = static_cast<int>(out.active.size());
+  out.matrix.reset(count, is_symmetric);
   for (int i = 0; i < count; ++i) {
-    const Mat3 left = step * friction_.factors[size(friction_.active[size(i)])].transpose();
+    const int place = out.active[size(i)];
+    const Block left = step * out.factors[size(place)].template topLeftCorner<K, K>();
     for (int k = 0; k < (is_symmetric ? i + 1 : count); ++k) {
-      const Mat3 moved =
-          mobility_[size(i * count + k)] * friction_.factors[size(friction_.active[size(k)])];
-      friction_.matrix(i, k).noalias() = left * moved;
+      const int other = out.active[size(k)];
+      const Block moved = space.delassus(place, other).template topLeftCorner<K, K>() *
+                          out.factors[size(other)].template topLeftCorner<K, K>();
+      out.matrix(i, k).noalias() = left.transpose() * moved;
     }
-    friction_.matrix(i, i).diagonal().array() += 1.0;
+    out.matrix(i, i).diagonal().array() += 1.0;
   }
-  friction_.matrix.factor();
-  friction_.is_valid = true;
+  out.matrix.factor();
+  out.is_valid = true;
 }
 
-// Friction, and how the normal forces in `right_` answer.
-void ContactEquations::solve_friction(const ContactSpace& space, double step,
-                                      std::vector<double>& force) {
-  couple(space, step);
-  factor_friction(space, step);
-  const std::size_t normals = normal_.active.size(), count = friction_.active.size();
-  friction_right_.resize(3 * count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t place = size(friction_.active[i]);
-    Vec3 answered = Vec3::Zero();
-    for (std::size_t a = 0; a < normals; ++a) {
-      answered.noalias() += forth_[i * normals + a].transpose() * part(right_, 3 * a);
-    }
-    const Vec3 motion = part(response_, size(kRows) * place + kFriction);
-    part(friction_right_, 3 * i) =
-        friction_.factors[place].transpose() * (motion - step * answered);
+template <int K>
+void ContactEquations::solve_blocks(const ContactSpace& space, double step, ByForces<K>& by,
+                                    std::vector<double>& force) {
+  using Part = typename BlockMatrix<K>::Vector;
+  if (!is_of_slopes(by)) factor(space, step, by);
+  const auto factor_of = [&](int place) {
+    return by.factors[size(place)].template topLeftCorner<K, K>();
+  };
+  const int count = static_cast<int>(by.active.size());
+  right_.resize(size(K * count));
+  for (int i = 0; i < count; ++i) {
+    const int place = by.active[size(i)];
+    const Eigen::Map<const Part> motion(&response_[size(kRows * place)]);
+    Eigen::Map<Part>(&right_[size(K * i)]).noalias() = factor_of(place).transpose() * motion;
   }
-  friction_.matrix.solve(friction_right_.data());
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t place = size(friction_.active[i]);
-    const Vec3 borne = friction_.factors[place] * part(friction_right_, 3 * i);
-    part(force, size(kRows) * place + kFriction) -= borne;
-    for (std::size_t a = 0; a < normals; ++a) {
-      part(right_, 3 * a).noalias() -= step * (back_[i * normals + a] * borne);
-    }
+  by.matrix.solve(right_.data());
+  for (int i = 0; i < count; ++i) {
+    const int place = by.active[size(i)];
+    Eigen::Map<Part>(&force[size(kRows * place)]).noalias() -=
+        factor_of(place) * Eigen::Map<const Part>(&right_[size(K * i)]);
   }
 }
 
@@ -205,19 +126,10 @@ void ContactEquations::solve_for_forces(const ContactSpace& space, double step,
   velocity.resize(size(rows));
   response_.resize(size(rows));
   space.move_by_delassus(force.data(), response_.data());
-  factor_normal(space, step);
-  const std::size_t normals = normal_.active.size();
-  right_.resize(3 * normals);
-  for (std::size_t a = 0; a < normals; ++a) {
-    const std::size_t place = size(normal_.active[a]);
-    part(right_, 3 * a).noalias() =
-        normal_.factors[place].transpose() * part(response_, size(kRows) * place);
-  }
-  normal_.matrix.solve(right_.data());
-  if (has_friction()) solve_friction(space, step, force);
-  for (std::size_t a = 0; a < normals; ++a) {
-    const std::size_t place = size(normal_.active[a]);
-    part(force, size(kRows) * place).noalias() -= normal_.factors[place] * part(right_, 3 * a);
+  if (has_friction()) {
+    solve_blocks(space, step, by_forces_, force);
+  } else {
+    solve_blocks(space, step, normal_by_forces_, force);
   }
   space.move_by_delassus(force.data(), velocity.data());
 }
@@ -225,33 +137,22 @@ void ContactEquations::solve_for_forces(const ContactSpace& space, double step,
 // Adds h J' C J of one place to the matrix.
 void ContactEquations::add_slope(const ContactSpace& space, int place, double step,
                                  EnvelopeMatrix& matrix) const {
-  const Mat3 normal = step * slopes_.normal[size(place)];
-  const Mat3 friction = step * slopes_.friction[size(place)];
-  const bool rubs = !friction.isZero(0.0);
-  const std::span<const ContactSpace::Move> moves = space.moves(place);
-  for (std::size_t i = 0; i < moves.size(); ++i) {
-    const ContactSpace::Move& from = moves[i];
-    const Vec3 pressed = normal * from.column.head<3>();
-    const Vec3 rubbed = friction * from.column.tail<3>();
-    for (std::size_t k = i; k < moves.size(); ++k) {
-      const ContactSpace::Move& to = moves[k];
-      double both = to.column.head<3>().dot(pressed);
-      if (rubs) both += to.column.tail<3>().dot(rubbed);
-      matrix.add_both(std::max(from.dof, to.dof), std::min(from.dof, to.dof), both);
+  const ContactSpace::Square slope = step * slopes_[size(place)];
+  for (const ContactSpace::Move& from : space.moves(place)) {
+    const ContactSpace::Block response = slope * from.column;
+    for (const ContactSpace::Move& to : space.moves(place)) {
+      if (to.dof >= from.dof) matrix.add_both(to.dof, from.dof, to.column.dot(response));
     }
   }
 }
 
 void ContactEquations::factor(ContactSpace& space, double step, ByDofs& out) const {
-  if (out.is_valid && out.slopes == slopes_) return;
   out.is_valid = false;
   out.slopes = slopes_;
   out.matrix.reset(space.envelope(), space.is_symmetric());
   out.matrix.add(space.matrix().matrix());
   for (int place = 0; place < space.places(); ++place) {
-    const bool bears =
-        !slopes_.normal[size(place)].isZero(0.0) || !slopes_.friction[size(place)].isZero(0.0);
-    if (bears) add_slope(space, place, step, out.matrix);
+    if (!slopes_[size(place)].isZero(0.0)) add_slope(space, place, step, out.matrix);
   }
   out.matrix.factor();
   out.is_valid = true;
@@ -262,19 +163,19 @@ void ContactEquations::solve_for_dofs(ContactSpace& space, double step, std::vec
   const int rows = space.rows(), n = space.dofs();
   make_slopes(space.places());
   ByDofs& by = has_friction() ? by_dofs_ : normal_by_dofs_;
-  factor(space, step, by);
+  if (!is_of_slopes(by)) factor(space, step, by);
   // What the contacts would bear at the velocities of now.
   force.assign(constant.begin(), constant.end());
   velocity.resize(size(rows));
   Vector u(velocity.data(), rows);
   u = space.velocity();
   const auto bear = [&](int place) {
-    const std::size_t first = size(place * kRows);
-    part(force, first).noalias() -= slopes_.normal[size(place)] * part(velocity, first);
-    part(force, first + kFriction).noalias() -=
-        slopes_.friction[size(place)] * part(velocity, first + kFriction);
+    Eigen::Map<ContactSpace::Block>(&force[size(place * kRows)]).noalias() -=
+        slopes_[size(place)] * u.segment<kRows>(place * kRows);
   };
-  for (int place = 0; place < rows / kRows; ++place) bear(place);
+  for (int place = 0; place < rows / kRows; ++place) {
+    if (!slopes_[size(place)].isZero(0.0)) bear(place);
+  }
   right_.resize(size(n));
   Vector right(right_.data(), n);
   right = space.known();

@@ -9,9 +9,8 @@
 namespace volcontact {
 
 /// The equations of a linearly implicit step: f = e - C u' at contact places, u' = u_free + h
-/// Lambda f, with C = L L' positive semidefinite, of blocks of three coordinates of a place: motion
-/// along n and turns about t_1 and t_2, and friction. docs/theory.md, "Implicit step". Memory is
-/// reused from solution to solution.
+/// Lambda f, with C = L L' positive semidefinite, of blocks of three coordinates of a place.
+/// docs/theory.md, "Implicit step". Memory is reused from solution to solution.
 struct ContactEquations {
   /// A part c c' of C: the numbers of c and the first of the three coordinates they are for.
   struct Column {
@@ -38,48 +37,39 @@ struct ContactEquations {
                       std::vector<double>& velocity);
 
  private:
-  using Squares = std::vector<Mat3>;
-  // C by places, its two blocks.
-  struct Slopes {
-    Squares normal, friction;
-
-    bool operator==(const Slopes&) const = default;
-  };
-  struct ByDofs {
-    Slopes slopes;
-    bool is_valid = false;
-    EnvelopeMatrix matrix;
-  };
-  // One of the two blocks of each place that has it; factored under these C.
-  struct ByForces {
+  using Squares = std::vector<ContactSpace::Square>;
+  // A matrix that was factored, of these C by places.
+  struct Factored {
     Squares slopes;
     bool is_valid = false;
-    std::vector<int> active;  // the places that have it
-    Squares factors;          // L by place
-    BlockMatrix<3> matrix;
+  };
+  struct ByDofs : Factored {
+    EnvelopeMatrix matrix;
+  };
+  template <int K>
+  struct ByForces : Factored {
+    BlockMatrix<K> matrix;
+    Squares factors;          // L of C = L L'
+    std::vector<int> active;  // the places with columns
   };
 
   void make_slopes(int places);
   bool has_friction() const;
+  bool is_of_slopes(const Factored& factored) const;
   void add_slope(const ContactSpace& space, int place, double step, EnvelopeMatrix& matrix) const;
   void factor(ContactSpace& space, double step, ByDofs& out) const;
-  void take_factors(const Squares& slopes, ByForces& out) const;
-  void factor_normal(const ContactSpace& space, double step);
-  void couple(const ContactSpace& space, double step);
-  void factor_friction(const ContactSpace& space, double step);
-  void solve_friction(const ContactSpace& space, double step, std::vector<double>& force);
+  template <int K>
+  void factor(const ContactSpace& space, double step, ByForces<K>& out) const;
+  template <int K>
+  void solve_blocks(const ContactSpace& space, double step, ByForces<K>& by,
+                    std::vector<double>& force);
 
-  Slopes slopes_;
+  Squares slopes_;  // C by places
   // Without and with friction: one of the two comes back as it was, under other constants.
   ByDofs normal_by_dofs_, by_dofs_;
-  // Friction alone changes from pass to pass: it is solved for on what moves once the normal forces
-  // have answered.
-  ByForces normal_, friction_;
-  bool is_coupled_ = false;
-  Squares forth_;     // by friction place and normal place: L' Lambda
-  Squares back_;      // likewise: (1 + h L' Lambda L)^-1 L' Lambda, of the normal forces
-  Squares mobility_;  // of two friction places, when the normal forces answer
-  std::vector<double> right_, friction_right_, response_;
+  ByForces<3> normal_by_forces_;  // by the first three coordinates of each place alone
+  ByForces<kRows> by_forces_;
+  std::vector<double> right_, response_;
 };
 
 }  // namespace volcontact

@@ -104,9 +104,7 @@ void ContactSpace::make_free_row(int place, int end) {
   for (const Carried& one : carried(place)) {
     std::copy_n(one.moved.data(), kRows, &dense_[size(kRows * one.dof)]);
   }
-  free_block(place, place) = free_mobility_[size(place)];
   for (int other = 0; other < end; ++other) {
-    if (other == place) continue;
     Square& out = free_block(place, other);
     out.setZero();
     for (const Carried& one : carried(other)) {

@@ -156,17 +156,14 @@ ImplicitStep::Load ImplicitStep::load(std::size_t i) const {
           std::hypot(f[3], f[4], slope.lever > 0.0 ? f[5] / slope.lever : 0.0)};
 }
 
-// Shortens what friction was solved to hold to what it can hold. Returns whether it held more.
-bool ImplicitStep::bound_friction() {
-  bool changed = false;
+// Shortens what friction was solved to hold to what it can hold.
+void ImplicitStep::bound_friction() {
   for (std::size_t i = 0; i < island_.size(); ++i) {
     const double share = load(i).share();
     if (share == 1.0) continue;
     double* f = &force_[i * size(kRows)];
     for (int k = 3; k < kRows; ++k) f[k] *= share;
-    changed = true;
   }
-  return changed;
 }
 
 // Makes dampers of what friction cannot hold, so weak that it can, and solves again.

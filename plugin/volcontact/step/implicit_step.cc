@@ -18,7 +18,6 @@ void ImplicitStep::add(const ContactModel& model, ContactReport& report, std::si
                        int body_a, int body_b, const Twist& driven, bool is_stiff) {
   const SiteLaws laws(model, report, site);
   sites_.push_back({laws, &model, &report, site, laws.tangent()});
-  sites_.back().friction_at_begin = sites_.back().tangent.friction;
   sites_.back().is_stiff = is_stiff;
   sites_.back().pair = limits_.size() - 1;
   places_.push_back(
@@ -176,26 +175,18 @@ void ImplicitStep::solve_contacts(FrictionBound bound, double step) {
   }
   const bool rubs = std::any_of(island_.begin(), island_.end(),
                                 [this](int i) { return sites_[size(i)].laws.has_friction(); });
-  if (!rubs) return;
-  for (int pass = 0; pass < kFrictionPasses; ++pass) {
+  for (int pass = 0; rubs && pass < kFrictionPasses; ++pass) {
     before_ = force_;
     set_friction(step);
     solve_active(true, step);
     if (is_settled()) break;
   }
-  damp_friction(step);
-  if (bound == FrictionBound::kCut && bound_friction()) space_.move(force_, velocity_);
+  if (rubs) damp_friction(step);
+  if (rubs && bound == FrictionBound::kCut) bound_friction();
+  space_.move(force_, velocity_);
 }
 
-// Whatever was solved under other guesses of the native constraints.
 void ImplicitStep::solve_island(ImplicitParts parts, double step, double resting) {
-  for_each_pair([](WorkLimit& limit) {
-    limit.share = 1.0;
-    limit.acts = true;
-  });
-  for (std::size_t i = 0; i < island_.size(); ++i) {
-    site(i).tangent.friction = site(i).friction_at_begin;
-  }
   space_.build_mobility();
   equations_.forget();
   make_points(parts, step, resting);
@@ -214,7 +205,11 @@ void ImplicitStep::solve_with_constraints(const Mechanism& mechanism,
                                     [this](int i) { return sites_[size(i)].is_stiff; });
   mass_ = islands_.mass(island);
   constraints.select(islands_, island);
-  for_each_pair([is_stiff](WorkLimit& limit) { limit.is_solved = is_stiff; });
+  for_each_pair([is_stiff](WorkLimit& limit) {
+    limit.share = 1.0;
+    limit.acts = true;
+    limit.is_solved = is_stiff;
+  });
   // Where forces are held, positions move with the mean of the velocities before and after.
   if (is_stiff) set_drift(mechanism, parts == ImplicitParts::kHeld ? step : 0.5 * step);
   space_.build(mechanism, places_, islands_, island, known);

@@ -83,7 +83,6 @@ class ImplicitStep {
     ContactReport* report;
     std::size_t index;
     SiteTangent tangent;
-    FrictionSlope friction_at_begin = {};
     std::array<Point, 4> points{};
     int point_count = 0;
     Mat3 rolls = Mat3::Zero();  // L of L L', the damping of turns where the points have none
@@ -142,7 +141,7 @@ class ImplicitStep {
   void set_friction(double step);
   void set_damper(Site& site, double normal_force, const Vec3& along, double spin,
                   double speed) const;
-  bool bound_friction();
+  void bound_friction();
   void damp_friction(double step);
   struct Load {
     double strength = 0.0, viscous = 0.0;  // of the friction law
