@@ -73,7 +73,7 @@ void solve_implicit(const SceneContact& contact, const mjModel* m, mjData* d,
   for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
     if (!implicit.is_pair_solved(k)) continue;
     scratch.energies[k].solve(implicit.work(k), implicit.friction_work(k),
-                              implicit.released_at_most(k));
+                              implicit.released_at_most(k), implicit.lent(k));
     scratch.held[k] = 1;
   }
 }
@@ -97,7 +97,7 @@ void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
     now.unpaid = read_energies(contact, begin, account.since_begin(), is_rk4, scratch);
     release(account, now, scratch);
     scratch.dissipated = 0.0;
-    find_unpaid_pairs(contact, m, scratch);
+    find_unpaid_pairs(contact, m, false, scratch);
     postpone_stiff(scratch);
     return;
   }
@@ -114,7 +114,7 @@ void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
     scratch.dissipated = least_dissipated(account.begin().energy(), account.since_begin(), elastic);
   }
   const bool overdraws =
-      is_rk4 ? find_unpaid_pairs(contact, m, scratch) : foresee_work(contact, m, d, scratch);
+      is_rk4 ? find_unpaid_pairs(contact, m, true, scratch) : foresee_work(contact, m, d, scratch);
   now.implicit = now.implicit || overdraws;
   if (now.implicit) solve_implicit(contact, m, d, scratch);
   const bool limited = !is_rk4 && limit_explicit(contact, m, scratch);

@@ -12,8 +12,8 @@ namespace volcontact::adaptor {
 namespace {
 
 // The pairs that are looked at: left to the explicit force, of what hangs on joints or may be
-// driven.
-bool choose_pairs(const mjModel* m, EvaluationScratch& scratch) {
+// driven, and what may give back more than it holds.
+bool choose_pairs(const SceneContact& contact, const mjModel* m, EvaluationScratch& scratch) {
   scratch.foreseen.assign(scratch.energies.size(), 0);
   bool some = false;
   auto stiff = scratch.stiff.begin();
@@ -22,7 +22,10 @@ bool choose_pairs(const mjModel* m, EvaluationScratch& scratch) {
     const auto end = stiff + std::ssize(report.sites);
     const bool is_explicit = report.touching() && std::find(stiff, end, 1) == end;
     stiff = end;
-    if (!is_explicit || !(m->nu > 0 || scratch.pair(k).is_jointed)) continue;
+    if (!is_explicit) continue;
+    if (m->nu == 0 && !scratch.pair(k).is_jointed && !may_overdraw(contact, m, k, scratch)) {
+      continue;
+    }
     scratch.foreseen[k] = 1;
     some = true;
   }
@@ -65,13 +68,11 @@ Twist acceleration_at(const mjModel* m, const mjData* d, const MechanismTrees& t
 }
 
 // Adds the work that the explicit forces of a site will do.
-void add_work(const SiteReport& site, const Twist& acceleration, double step, double fall,
-              WorkLimit& limit) {
+void add_work(const SiteReport& site, const Twist& acceleration, double step, WorkLimit& limit) {
   const Vec3& n = site.normal;
   const double impulse = step * site.normal_force;
   const double parting = -site.approach_speed, gained = step * acceleration.linear.dot(n);
   limit.normal_work += impulse * (parting + 0.5 * gained);
-  limit.slack += 0.5 * impulse * fall;
   if (impulse > 0.0) limit.exit = std::max(limit.exit, parting + gained);
   const Vec3 friction = site.force_on_A - site.normal_force * n;
   const Vec3 slip = site.slip + 0.5 * step * (acceleration.linear - acceleration.linear.dot(n) * n);
@@ -99,10 +100,10 @@ void know_forces(const SceneContact& contact, const mjModel* m, mjData* d,
 
 bool foresee_work(const SceneContact& contact, const mjModel* m, mjData* d,
                   EvaluationScratch& scratch) {
-  if (!choose_pairs(m, scratch)) return false;
+  if (!choose_pairs(contact, m, scratch)) return false;
   know_forces(contact, m, d, scratch);
   const double* accelerations = foreseen_acceleration(contact, m, d, scratch);
-  const double step = m->opt.timestep, fall = fall_of(m);
+  const double step = m->opt.timestep;
   bool some = false;
   auto stiff = scratch.stiff.begin();
   for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
@@ -118,11 +119,12 @@ bool foresee_work(const SceneContact& contact, const mjModel* m, mjData* d,
                                sites[i].metrics.centroid);
       };
       const Twist of_a = of(geoms.a), of_b = of(geoms.b);
-      add_work(sites[i], {of_a.angular - of_b.angular, of_a.linear - of_b.linear}, step, fall,
-               limit);
+      add_work(sites[i], {of_a.angular - of_b.angular, of_a.linear - of_b.linear}, step, limit);
+      const double gained = step * (of_a.linear - of_b.linear).dot(sites[i].normal);
+      lend(contact, m, geoms, sites[i], gained - sites[i].approach_speed, limit);
     }
     // Friction has no part in what a slow exit may release.
-    const double own = std::max(0.0, limit.stored + limit.slack - limit.normal_work);
+    const double own = std::max(0.0, limit.at_any_speed() - limit.normal_work);
     if (limit.is_kept() && limit.drawn_by_friction() <= own) continue;
     std::fill(begin, stiff, 1);
     some = true;

@@ -11,6 +11,18 @@
 namespace volcontact::adaptor {
 namespace {
 
+// What lifting bodies of that inverse mass out of the contacts of a pair takes at least [J].
+double lift(const mjModel* m, const ContactReport& report, double inverse_mass) {
+  const Eigen::Map<const Vec3> gravity(m->opt.gravity);
+  double most = 0.0;
+  for (const SiteReport& site : report.sites) {
+    const double area = site.metrics.area_vector.norm();
+    if (!(area > 0.0)) continue;
+    most = std::max(most, std::abs(site.normal.dot(gravity)) * site.metrics.volume / area);
+  }
+  return most / inverse_mass;
+}
+
 struct ExplicitShare {
   double share, released_at_most;
   bool slowly;  // whether it needs what may be released
@@ -20,18 +32,33 @@ struct ExplicitShare {
 ExplicitShare share_of(const SceneContact& contact, const mjModel* m, std::size_t k,
                        const PairEnergy::Now& now, const EvaluationScratch& scratch) {
   const double h = m->opt.timestep;
-  const double fall = fall_of(m);
   const double along = inverse_mass(m, scratch.pair(k).geoms).along;
   WorkLimit limit = limit_of(contact, m, k, scratch);
+  for (const SiteReport& site : scratch.reports[k].sites) {
+    lend(contact, m, scratch.pair(k).geoms, site, -site.approach_speed, limit);
+  }
   const double slow = std::exchange(limit.slow, 0.0);
   const auto share_now = [&] {
-    return explicit_share(limit, now.force, -now.approach(), along, fall, h);
+    return explicit_share(limit, now.force, -now.approach(), along, h);
   };
   const bool slowly = share_now() < 1.0;  // whether it needs what bodies that part slowly get
   limit.slow = slow;
   const double share = share_now();
   const double exit = h * share * now.force * along - now.approach();
   return {share, exit <= contact.options().exit_speed ? slow : 0.0, slowly};
+}
+
+// What the stages of a Runge-Kutta step do too much if the contact of a pair ends within it [J].
+double end_excess_of(const mjModel* m, const PairEnergy::Now& now, const ContactReport& report) {
+  double force = 0.0, stiffness = 0.0;  // of the elastic forces
+  for (std::size_t i = 0; i < report.inputs.size(); ++i) {
+    const VolumeMetrics& metrics = report.sites[i].metrics;
+    if (!(metrics.volume > 0.0)) continue;
+    force += report.inputs[i].normal_out.elastic;
+    stiffness += report.inputs[i].normal_out.elastic * metrics.area_vector.norm() / metrics.volume;
+  }
+  const double share = force > 0.0 ? now.force / force : 0.0;
+  return end_excess(now.elastic, force, stiffness, share, -now.approach(), m->opt.timestep);
 }
 
 // What turns may put into the contact of a pair in a step beside its power, of what it holds.
@@ -45,9 +72,34 @@ WorkLimit limit_of(const SceneContact& contact, const mjModel* m, std::size_t k,
                    const EvaluationScratch& scratch) {
   const double along = inverse_mass(m, scratch.pair(k).geoms).along;
   const PairEnergy::Now now(scratch.reports[k]);
-  return WorkLimit::of(scratch.energies[k], scratch.dissipated, contact.options().exit_speed,
-                       now.moving(along))
-      .for_bodies(along, fall_of(m));
+  const double moving = now.moving(along) - lift(m, scratch.reports[k], along);
+  WorkLimit limit =
+      WorkLimit::of(scratch.energies[k], scratch.dissipated, contact.options().exit_speed, moving)
+          .for_bodies(along, fall_of(m));
+  limit.slow = std::min(limit.slow, std::max(0.0, now.elastic - scratch.energies[k].stored));
+  return limit;
+}
+
+void lend(const SceneContact& contact, const mjModel* m, const GeomPair& geoms,
+          const SiteReport& site, double parting, WorkLimit& limit) {
+  const MechanismTrees& trees = contact.trees();
+  double mass = 0.0;  // of what hangs on the two
+  for (const int geom : {geoms.a, geoms.b}) {
+    const int tree = trees.tree_of_body[size(m->geom_bodyid[geom])];
+    if (tree != MechanismTrees::kNone) mass += trees.mass[size(tree)];
+  }
+  const double h = m->opt.timestep;
+  const double fall = h * std::abs(site.normal.dot(Eigen::Map<const Vec3>(m->opt.gravity)));
+  limit.lend(h * site.normal_force, mass, fall, parting);
+}
+
+bool may_overdraw(const SceneContact& contact, const mjModel* m, std::size_t k,
+                  const EvaluationScratch& scratch) {
+  const PairEnergy::Now now(scratch.reports[k]);
+  const double impulse = m->opt.timestep * now.force;
+  const double at_most = kBall * inverse_mass(m, scratch.pair(k).geoms).along;
+  const double work = impulse * (0.5 * impulse * at_most - now.approach());
+  return work > limit_of(contact, m, k, scratch).at_any_speed();
 }
 
 double read_energies(const SceneContact& contact, const double* committed, double elapsed,
@@ -90,7 +142,8 @@ double read_energies(const SceneContact& contact, const double* committed, doubl
   return unpaid;
 }
 
-bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m, EvaluationScratch& scratch) {
+bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m, bool begins,
+                       EvaluationScratch& scratch) {
   constexpr double kRounding = 1e-9;
   bool some = false;
   std::size_t first = 0;  // of the pair's sites
@@ -102,12 +155,14 @@ bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m, Evaluation
     PairEnergy& energy = scratch.energies[k];
     const PairEnergy::Now now(report);
     const double unpaid = now.elastic - energy.stored - energy.found;
-    if (energy.found == 0.0 && unpaid <= kRounding * now.elastic) {
+    const double moving = now.moving(inverse_mass(m, scratch.pair(k).geoms).along);
+    const bool errs = begins && end_excess_of(m, now, report) > PairEnergy::kOverdraft * moving;
+    if (!errs && energy.found == 0.0 && unpaid <= kRounding * now.elastic) {
       energy.act(now);
       continue;
     }
     const auto [share, released_at_most, slowly] = share_of(contact, m, k, now, scratch);
-    if (share == 1.0) {
+    if (share == 1.0 && !errs) {
       energy.act(now);
       if (slowly) energy.slow = released_at_most;
       continue;
@@ -129,7 +184,7 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m, EvaluationScr
     energy.rubbed = now.bristle;
     energy.force = share * now.force;
     energy.power = share * now.power;
-    energy.slow = released_at_most;
+    energy.slow = slowly ? released_at_most : 0.0;
     if (share == 1.0) continue;
     limited = true;
     scratch.held[k] = 1;
@@ -140,9 +195,12 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m, EvaluationScr
 }
 
 double pay_for(double made, EvaluationScratch& scratch) {
-  double payable = 0.0;
-  for (const PairEnergy& energy : scratch.energies) payable += energy.payable();
-  if (!(made > PairEnergy::kOverdraft * payable && payable > 0.0)) return 0.0;
+  double held = 0.0, payable = 0.0;
+  for (const PairEnergy& energy : scratch.energies) {
+    held += energy.held();
+    payable += energy.payable();
+  }
+  if (!(made > PairEnergy::kOverdraft * held && payable > 0.0)) return 0.0;
   const double share = std::min(1.0, made / payable);
   for (PairEnergy& energy : scratch.energies) energy.pay(share);
   return share * payable;

@@ -17,9 +17,21 @@ double read_energies(const SceneContact& contact, const double* committed, doubl
 WorkLimit limit_of(const SceneContact& contact, const mjModel* m, std::size_t k,
                    const EvaluationScratch& scratch);
 
-/// Runge-Kutta's stages are exact enough, but for what no motion put in: pairs that would give it
-/// back count as stiff. Returns whether there are some.
-bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m, EvaluationScratch& scratch);
+/// Lends to a pair of geoms what gravity does while the explicit force of a site acts that parts at
+/// that speed.
+void lend(const SceneContact& contact, const mjModel* m, const GeomPair& geoms,
+          const SiteReport& site, double parting, WorkLimit& limit);
+
+/// Whether the explicit forces of a pair may do more work than it holds: as if on a ball, which
+/// gives way by turning, too.
+bool may_overdraw(const SceneContact& contact, const mjModel* m, std::size_t k,
+                  const EvaluationScratch& scratch);
+
+/// Runge-Kutta's stages are exact enough, but for what no motion put in, and at the end of a touch:
+/// pairs that would give back more than they got count as stiff. `begins`: whether a step begins
+/// here. Returns whether there are some.
+bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m, bool begins,
+                       EvaluationScratch& scratch);
 
 /// The same bound for pairs whose forces are explicit. Returns whether some are less than their
 /// laws say.

@@ -53,6 +53,7 @@ class ImplicitStep {
   double work(std::size_t i) const { return limits_[i].work(); }
   double friction_work(std::size_t i) const { return limits_[i].friction_work; }
   double released_at_most(std::size_t i) const { return limits_[i].released_at_most(); }
+  double lent(std::size_t i) const { return limits_[i].lent(); }
 
   /// Solves, with the known forces of contact_space.h, and puts the results into the reports: the
   /// forces, and as `taken` the power that the contact takes from the motion over the step.

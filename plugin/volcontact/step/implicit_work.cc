@@ -34,9 +34,8 @@ void ImplicitStep::add_up_work(double step, double resting) {
     limit.normal_work += impulse.head<3>().dot(mean.head<3>());
     limit.friction_work += impulse.tail<3>().dot(mean.tail<3>());
     limit.from_free += impulse.head<3>().dot(mean_of_free.head<3>());
-    // What gravity does meanwhile: no more than to the weight that may rest on the pair.
-    limit.slack += 0.5 * std::min(impulse[0], resting * mass_) * resting +
-                   kRounding * impulse.cwiseAbs().dot(begin.cwiseAbs() + end.cwiseAbs());
+    limit.lend(impulse[0], mass_, resting, end[0]);
+    limit.slack += kRounding * impulse.cwiseAbs().dot(begin.cwiseAbs() + end.cwiseAbs());
     limit.pushes = limit.pushes || impulse[0] > 0.0;
     if (impulse[0] > 0.0) limit.exit = std::max(limit.exit, end[0]);
     from_free += impulse.dot(mean_of_free);

@@ -11,9 +11,9 @@
 namespace volcontact {
 
 /// What a pair of geoms holds of the energy of the bodies, from evaluation to evaluation while they
-/// touch: docs/theory.md, "No energy from nothing". Kept in seven numbers.
+/// touch: docs/theory.md, "No energy from nothing". Kept in eight numbers.
 struct PairEnergy {
-  static constexpr int kNumbers = 7;
+  static constexpr int kNumbers = 8;
   /// What a pair may give back above what it got, of the most it ever held, or less: of the energy
   /// there is. An explicit step errs by more, by up to h^2 k/m of it, as often too little as too
   /// much; what would be too much is held back.
@@ -28,9 +28,10 @@ struct PairEnergy {
   double most = 0.0;    ///< largest `stored` of this touch [J]
   double rubbed = 0.0;  ///< put into bristles by sliding, and not given back [J]
   // Of an explicit step, whose work is known at its end: force, and its power at the begin.
-  double force = 0.0;  ///< f_n of all sites [N]
-  double power = 0.0;  ///< sum of f_n v_n, > 0 while approaching [W]
-  double slow = 0.0;   ///< what it may release in the step [J]
+  double force = 0.0;   ///< f_n of all sites [N]
+  double power = 0.0;   ///< sum of f_n v_n, > 0 while approaching [W]
+  double slow = 0.0;    ///< what it may release in the step [J]
+  double unpaid = 0.0;  ///< what the law held at the begin and no motion had put in [J]
 
   bool is_solved = false;  ///< by an implicit step, whose work is in already; not kept
   double released = 0.0;   ///< to bodies that part slowly, of what was dissipated [J]; not kept
@@ -85,10 +86,12 @@ struct PairEnergy {
       stored = std::min(0.0, stored + std::max(0.0, rubbed - now.bristle));
     }
     bristle = was_solved() ? std::min(rubbed, now.bristle) : now.bristle;
-    put(may_have_waited && work > 0.0 ? work / 6.0 : work, kMostOwed * most);
+    if (!was_solved())
+      put(may_have_waited && work > 0.0 ? work / 6.0 : work, 0.0, kMostOwed * most);
     force = power = slow = 0.0;
     rubbed = std::min(rubbed, now.bristle);
     if (!now.is_within) keep_within(now.elastic + ahead);
+    most = std::max(most, stored);
   }
 
   /// Whether motion can have put in what the law holds `now`, in a step of `elapsed` seconds. A
@@ -103,13 +106,14 @@ struct PairEnergy {
                               kRoom * elapsed * power_at_most;
   }
 
-  /// The end of a step whose method is exact enough: what the law holds was put in by motion.
+  /// The end of a step whose method is exact enough: what the law holds more, or less, was put in
+  /// by motion, or given back.
   void follow(double elapsed, const Now& now) noexcept {
     const double put_in = 0.5 * elapsed * (power + now.power);
-    doubtful =
-        std::max(0.0, now.elastic - (stored + found) - std::max(kRoom * put_in, put_in / kRoom));
+    const double explained = stored + found + std::max(kRoom * put_in, put_in / kRoom);
     found = std::min(found, now.elastic);
-    stored = now.elastic - found;
+    stored = std::max(0.0, now.elastic - found - unpaid);
+    doubtful = std::max(0.0, stored + found - explained);
     most = std::max(most, stored);
     bristle = now.bristle;
     act(now);
@@ -120,35 +124,37 @@ struct PairEnergy {
     rubbed = now.bristle;
     force = std::max(now.force, std::numeric_limits<double>::min());
     power = now.power;
+    unpaid = std::max(0.0, now.elastic - stored - found);
   }
 
+  double held() const noexcept { return std::max(0.0, stored) + found; }
   /// The most that can be taken off what is held, for what the contacts have made [J].
-  double payable() const noexcept { return std::min(std::max(0.0, stored) + found, doubtful); }
+  double payable() const noexcept { return std::min(held(), doubtful); }
   void pay(double share) noexcept {
-    const double held = std::max(0.0, stored) + found;
-    const double left = held > 0.0 ? 1.0 - share * payable() / held : 1.0;
+    const double left = held() > 0.0 ? 1.0 - share * payable() / held() : 1.0;
+    unpaid += (1.0 - left) * held();
     if (stored > 0.0) stored *= left;
     found *= left;
   }
 
   /// An implicit step that does `work` on the bodies, of which friction does `friction_work`, and
-  /// may release that much.
-  void solve(double work, double friction_work = 0.0, double may_release = 0.0) noexcept {
+  /// may release that much. `lent`: what it may do more, and owes.
+  void solve(double work, double friction_work = 0.0, double may_release = 0.0,
+             double lent = 0.0) noexcept {
     is_solved = true;
-    force = power = 0.0;
+    force = power = unpaid = 0.0;
     slow = may_release;
     rubbed = std::max(0.0, rubbed - friction_work);
-    put(-work, kOverdraft * most);  // once, and not in every step anew
+    put(-work, lent, lent);  // once, and not in every step anew
     slow = 0.0;
-    most = std::max(most, stored);
   }
 
   void write(double* row) const noexcept {
-    const double numbers[kNumbers] = {stored, found, most, rubbed, force, power, slow};
+    const double numbers[kNumbers] = {stored, found, most, rubbed, force, power, slow, unpaid};
     std::copy(std::begin(numbers), std::end(numbers), row);
   }
   static PairEnergy from(const double* row) noexcept {
-    return {row[0], row[1], row[2], row[3], row[4], row[5], row[6]};
+    return {row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7]};
   }
   /// Takes over what another pair has kept: the solids of both have become one.
   PairEnergy& operator+=(const PairEnergy& other) noexcept {
@@ -159,18 +165,23 @@ struct PairEnergy {
     force += other.force;
     power += other.power;
     slow += other.slow;
+    unpaid += other.unpaid;
     return *this;
   }
 
-  /// Work done on the contact. What it gives back at a slow exit was found; the rest of that had
-  /// been dissipated, and is so no more. Steps may owe what they err by.
-  void put(double work, double owed = 0.0) noexcept {
+  /// Work done on the contact. What it gives back at a slow exit was found; the rest of that,
+  /// beyond what is lent, had been dissipated, and is so no more. Steps may owe what they err by;
+  /// what is owed stays.
+  void put(double work, double lent, double owed) noexcept {
+    const double least = std::min(-owed, stored);
     stored += work;
     const double given = std::clamp(-stored, 0.0, found);
     stored += given;
     found -= given;
-    released += std::clamp(-owed - stored, 0.0, slow);
-    stored = std::max(stored, -owed);
+    const double freed = std::clamp(std::min(-lent - stored, -work - given), 0.0, slow);
+    stored += freed;
+    released += freed;
+    stored = std::max(stored, least);
   }
 
   /// No more can be stored than the law holds at the present pose.
@@ -178,13 +189,13 @@ struct PairEnergy {
     found = std::min(found, elastic);
     const double lost = stored + found - elastic;
     if (lost > 0.0) stored -= lost;
-    most = std::max(most, stored);
   }
 };
 
 /// What the contacts of one pair may do on the bodies in one step, and what they do.
 struct WorkLimit {
   double stored = 0.0;      ///< at any speed [J]
+  double overdraft = 0.0;   ///< that much above it: what a step errs by [J]
   double slow = 0.0;        ///< besides, while the bodies part slower than `exit_speed` [J]
   double exit_speed = 0.0;  ///< [m/s]
   double rubbed = 0.0;      ///< by friction, from its bristles [J]
@@ -207,17 +218,26 @@ struct WorkLimit {
   Tried low, high;
   bool is_high_known = false;
 
-  /// `dissipated`: by all contacts of the scene so far [J]; `moving`: kinetic energy of the bodies
-  /// along the contact, of which with what is stored a part may be overdrawn [J].
+  /// `dissipated`: by all contacts of the scene so far [J]; `moving`: kinetic energy that the
+  /// bodies will have along the contact when they part, of which with what is stored a part may be
+  /// overdrawn [J].
   static WorkLimit of(const PairEnergy& energy, double dissipated, double exit_speed,
                       double moving = HUGE_VAL) noexcept {
     WorkLimit limit;
     const double there = std::max(0.0, energy.stored) + energy.found + moving;
-    limit.stored = energy.stored + PairEnergy::kOverdraft * std::min(energy.most, there);
+    limit.stored = energy.stored;
+    limit.overdraft = PairEnergy::kOverdraft * std::min(energy.most, std::max(0.0, there));
     limit.slow = energy.found + std::max(0.0, dissipated);
     limit.exit_speed = exit_speed;
     limit.rubbed = energy.rubbed;
     return limit;
+  }
+
+  /// Lends, to an `impulse`, what gravity does meanwhile where it changes the speed along it by
+  /// `fall`: no more than to the weight of what may rest on the contact, and nothing to what parts
+  /// faster.
+  void lend(double impulse, double mass, double fall, double parting) noexcept {
+    if (parting <= fall) slack += 0.5 * std::clamp(impulse, 0.0, mass * fall) * fall;
   }
 
   /// No more a step than bodies of that inverse mass need to get as fast as that, and to be lifted
@@ -228,7 +248,9 @@ struct WorkLimit {
   }
 
   double released_at_most() const noexcept { return exit <= exit_speed ? slow : 0.0; }
-  double allowed() const noexcept { return stored + slack + released_at_most(); }
+  double lent() const noexcept { return std::max(overdraft, slack); }
+  double at_any_speed() const noexcept { return stored + lent(); }
+  double allowed() const noexcept { return at_any_speed() + released_at_most(); }
   /// What friction gives beyond what its bristles hold; what it dissipates pays for nothing.
   double drawn_by_friction() const noexcept { return std::max(0.0, friction_work - rubbed); }
   /// What is drawn from the pair.
@@ -286,8 +308,8 @@ struct WorkLimit {
     const auto of_work = [&](double most) {
       return std::clamp((most - low.work) / (high.work - low.work), 0.0, 1.0);
     };
-    const double fast = of_work(kAim * (stored + slack));
-    const double slowly = of_work(kAim * (stored + slack + slow));
+    const double fast = of_work(kAim * at_any_speed());
+    const double slowly = of_work(kAim * (at_any_speed() + slow));
     if (high.exit <= exit_speed) return slowly;
     if (low.exit >= exit_speed) return fast;
     const double parting = (kAim * exit_speed - low.exit) / (high.exit - low.exit);
@@ -295,25 +317,42 @@ struct WorkLimit {
   }
 };
 
+/// What the stages of a Runge-Kutta step do too much where a touch ends within it: the first has
+/// the force of the begin and a sixth of the step, whatever is stored [J]. Of elastic forces that
+/// hold `energy` and grow by `stiffness`, as a power of the depth, at the parting speed `parting`;
+/// with damping a `share` of them acts.
+inline double end_excess(double energy, double force, double stiffness, double share,
+                         double parting, double step) noexcept {
+  if (!(force > 0.0 && parting > 0.0)) return 0.0;
+  constexpr double kLeast = 0.5, kMost = 0.9;  // of an edge-on face, and nearly a jump
+  const double ratio = std::clamp(stiffness * energy / (force * force), kLeast, kMost);
+  const double power = ratio / (1.0 - ratio);
+  const double steps = (power + 1.0) * energy / (force * parting * step);  // to the end
+  if (steps >= 1.0) return 0.0;
+  const double middle = std::pow(std::max(0.0, 1.0 - 0.5 / steps), power);
+  const double work = step * share * force * parting * (1.0 + 4.0 * middle) / 6.0;
+  return std::max(0.0, work - energy);
+}
+
 /// The part of the explicit normal force of a pair that keeps the limit, when `force` acts for
-/// `step` at the parting speed `parting`, `mobility` is the inverse mass and free motion changes
-/// speeds by `fall`.
+/// `step` at the parting speed `parting` and `mobility` is the inverse mass.
 inline double explicit_share(const WorkLimit& limit, double force, double parting, double mobility,
-                             double fall, double step) noexcept {
+                             double step) noexcept {
   const double impulse = step * force;
   if (!(impulse > 0.0)) return 1.0;
+  const double stored = limit.at_any_speed();
   // Work of a share s: a s^2 + b s.
-  const double a = 0.5 * impulse * impulse * mobility, b = impulse * (parting - 0.5 * fall);
+  const double a = 0.5 * impulse * impulse * mobility, b = impulse * parting;
   const auto share_for = [&](double allowed) {
     if (a + b <= allowed) return 1.0;
     if (!(allowed > 0.0)) return b < 0.0 && a > 0.0 ? std::min(1.0, -b / a) : 0.0;
     return std::min(1.0, 2.0 * allowed / (b + std::sqrt(b * b + 4.0 * a * allowed)));
   };
-  const double fast = share_for(limit.stored);
+  const double fast = share_for(stored);
   if (fast >= 1.0 || !(limit.slow > 0.0)) return fast;
   const double room = limit.exit_speed - parting;
   const double slow = mobility > 0.0 ? std::max(0.0, room) / (impulse * mobility) : 1.0;
-  return std::max(fast, std::min({slow, share_for(limit.stored + limit.slow), 1.0}));
+  return std::max(fast, std::min({slow, share_for(stored + limit.slow), 1.0}));
 }
 
 }  // namespace volcontact

@@ -22,7 +22,7 @@ TEST(PairEnergy, KeepsWhatWentInButNoMoreThanTheLawHolds) {
   EXPECT_EQ(energy.stored, 5.0);
   energy.take_in(1e-3, now(3.0));
   EXPECT_EQ(energy.stored, 3.0);
-  EXPECT_EQ(energy.most, 5.0);
+  EXPECT_EQ(energy.most, 3.0);  // what was lost does not measure what may be overdrawn
 }
 
 // h f (v + v')/2.
@@ -79,6 +79,53 @@ TEST(PairEnergy, OnlyWhatMotionDoesNotExplainIsDoubtful) {
   EXPECT_NEAR(energy.payable(), 0.25 - 0.05 - 1.5 * 0.05, 1e-15);
 }
 
+// A step by the law gives back as much as the law holds less, and no more: what no motion had put
+// in stays unpaid, and so does what was paid for other things.
+TEST(PairEnergy, WhatWasUnpaidStaysSo) {
+  PairEnergy energy;
+  energy.stored = energy.most = 0.8;
+  energy.act(now(1.0, 100.0, -0.4));
+  energy.follow(1e-3, now(0.7, 70.0, -0.5));
+  EXPECT_NEAR(energy.stored, 0.5, 1e-15);
+  energy.act(now(0.7, 70.0, -0.5));
+  energy.pay(0.0);
+  energy.doubtful = HUGE_VAL;
+  energy.pay(0.2);
+  EXPECT_NEAR(energy.stored, 0.4, 1e-15);
+  energy.follow(1e-3, now(0.6, 60.0, -0.5));
+  EXPECT_NEAR(energy.stored, 0.3, 1e-15);
+}
+
+// What was dissipated pays for what is given in this step beyond what is lent.
+TEST(PairEnergy, SlowExitReleasesBeforeItOwes) {
+  PairEnergy energy;
+  energy.stored = energy.most = 1.0;
+  energy.solve(1.25, 0.0, 0.5, 0.125);
+  EXPECT_EQ(energy.stored, -0.125);
+  EXPECT_EQ(energy.released, 0.125);
+  energy.stored = -0.5;
+  energy.released = 0.0;
+  energy.solve(0.125, 0.0, 0.5);
+  EXPECT_EQ(energy.released, 0.125);
+}
+
+// A body that hovers deep in another, where nobody put anything in, would be lifted in every step
+// by half of what it falls in it.
+TEST(PairEnergy, WhatIsLentIsLentOnce) {
+  PairEnergy energy;
+  double given = 0.0;
+  for (int step = 0; step < 100; ++step) {
+    WorkLimit limit = WorkLimit::of(energy, 0.0, 0.1);
+    limit.lend(0.3, 2.0, 0.01, 0.0);  // more than the weight
+    EXPECT_EQ(limit.slack, 0.5 * 2.0 * 0.01 * 0.01);
+    energy.solve(limit.allowed(), 0.0, 0.0, limit.lent());
+    given += limit.allowed();
+    energy.solve(0.0);  // does not push: nothing is lent, and what was stays owed
+    energy.take_in(1e-3, now(100.0));
+  }
+  EXPECT_NEAR(given, 1e-4, 1e-15);
+}
+
 TEST(WorkLimit, IsNearlyKeptWhereWorkHangsOnRounding) {
   WorkLimit limit;
   limit.stored = 1e-9;
@@ -103,10 +150,11 @@ TEST(PairEnergy, ExplicitStepOwesWhatItGaveTooMuch) {
 TEST(PairEnergy, SolvedStepOverdrawsOnceOnly) {
   PairEnergy energy;
   energy.solve(-1.0);
+  energy.take_in(1e-3, now(2.0));
   double given = 0.0;
   for (int step = 0; step < 100; ++step) {
     const double work = WorkLimit::of(energy, 0.0, 0.1).allowed();
-    energy.solve(work);
+    energy.solve(work, 0.0, 0.0, WorkLimit::of(energy, 0.0, 0.1).lent());
     given += work;
   }
   EXPECT_NEAR(given, 1.0 + PairEnergy::kOverdraft, 1e-12);
@@ -120,6 +168,7 @@ TEST(PairEnergy, RowsAreWhatTheyWere) {
   energy.rubbed = 4.5;
   energy.force = 5.0;
   energy.power = 6.0;
+  energy.unpaid = 7.0;
   double row[PairEnergy::kNumbers], again[PairEnergy::kNumbers];
   energy.write(row);
   PairEnergy::from(row).write(again);
@@ -194,24 +243,47 @@ TEST(ExplicitShare, GivesBackWhatIsStored) {
   constexpr double kForce = 300.0, kParting = 0.5, kMass = 2.0, kStep = 1e-2;
   WorkLimit limit;
   limit.stored = 0.6;
-  const double share = explicit_share(limit, kForce, kParting, 1.0 / kMass, 0.0, kStep);
+  const double share = explicit_share(limit, kForce, kParting, 1.0 / kMass, kStep);
   const double impulse = kStep * share * kForce;
   EXPECT_NEAR(impulse * (kParting + 0.5 * impulse / kMass), limit.stored, 1e-12);
   limit.stored = 1e3;
-  EXPECT_EQ(explicit_share(limit, kForce, kParting, 1.0 / kMass, 0.0, kStep), 1.0);
+  EXPECT_EQ(explicit_share(limit, kForce, kParting, 1.0 / kMass, kStep), 1.0);
 }
 
 TEST(ExplicitShare, ApproachIsNotHindered) {
-  EXPECT_EQ(explicit_share(WorkLimit(), 300.0, -2.0, 0.5, 0.0, 1e-3), 1.0);
+  EXPECT_EQ(explicit_share(WorkLimit(), 300.0, -2.0, 0.5, 1e-3), 1.0);
 }
 
 TEST(ExplicitShare, WhatWasFoundComesOutSlowly) {
   WorkLimit limit;
   limit.slow = 1e6;
   limit.exit_speed = 0.1;
-  const double share = explicit_share(limit, 1e5, 0.0, 0.5, 0.0, 1e-3);
+  const double share = explicit_share(limit, 1e5, 0.0, 0.5, 1e-3);
   EXPECT_NEAR(1e-3 * share * 1e5 * 0.5, 0.1, 1e-12);
-  EXPECT_EQ(explicit_share(limit, 1e5, 0.2, 0.5, 0.0, 1e-3), 0.0);
+  EXPECT_EQ(explicit_share(limit, 1e5, 0.2, 0.5, 1e-3), 0.0);
+}
+
+// Power laws of the depth, undamped and at constant speed, that end within the step: the work of
+// the stages against what is stored.
+TEST(EndExcess, IsWhatTheStagesDoTooMuch) {
+  constexpr double kStep = 2e-3, kSpeed = 1.5, kRate = 1e6;
+  double worst = 0.0;
+  for (const double power : {1.0, 2.0, 3.0}) {
+    for (double depth = 1e-4; depth < kStep * kSpeed; depth += 1e-4) {
+      const auto force = [&](double x) { return kRate * std::pow(std::max(0.0, x), power); };
+      const double energy = depth * force(depth) / (power + 1.0);
+      const double stiffness = power * force(depth) / depth;
+      const double way = kStep * kSpeed;
+      const double work =
+          way * (force(depth) + 4.0 * force(depth - 0.5 * way) + force(depth - way)) / 6.0;
+      EXPECT_NEAR(end_excess(energy, force(depth), stiffness, 1.0, kSpeed, kStep),
+                  std::max(0.0, work - energy), 1e-9 * energy)
+          << power << " " << depth;
+      worst = std::max(worst, (work - energy) / (kRate * way * way));
+    }
+    EXPECT_EQ(end_excess(1.0, 1.0, 1.0, 1.0, -kSpeed, kStep), 0.0);  // it comes in
+  }
+  EXPECT_NEAR(worst, 1.0 / 72.0, 1e-4);
 }
 
 }  // namespace

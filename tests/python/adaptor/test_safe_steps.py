@@ -173,8 +173,14 @@ def test_runge_kutta_steps_stiff_contact(speed, step, stiffness):
             depth = 2.0 * 9.81 / both
             assert data.qpos[2] == pytest.approx(0.1 - depth, abs=1e-3 * depth)
             np.testing.assert_allclose(data.qvel, 0.0, atol=1e-9)
+        # What damping has taken is not in the book of the pair; an edge that comes up slowly draws
+        # a little of it, and at rest nothing more is drawn.
         if rests:
-            assert contact.energy(data).released == pytest.approx(0.0, abs=1e-9 * start)
+            released = contact.energy(data).released
+            assert released <= 2e-3 * start
+            for _ in range(100):
+                mujoco.mj_step(model, data)
+            assert contact.energy(data).released == pytest.approx(released, abs=1e-9 * start)
 
 
 def test_runge_kutta_drains_what_emerges_within_a_step():

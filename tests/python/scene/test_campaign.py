@@ -113,6 +113,17 @@ def test_scenes_that_made_energy_make_none(part, seed):
 # more than what still moved (623, 5691); a body that gives way by turning (7005); lifts that cost
 # nothing (6095, 7301) or were not counted (601); books that follow the law though nobody paid
 # (4350).
+@pytest.mark.skipif(
+    not hasattr(mujoco.mjtIntegrator, "mjINT_DISCRETE"), reason="other scenes have these numbers"
+)
+@pytest.mark.parametrize("seed", [601, 623, 910, 1121, 4350, 4385, 4746, 5691, 6095, 7005, 7301])
+def test_scenes_that_ended_with_more_end_with_less(part, seed):
+    scenes = part("generated_scenes")
+    row = scenes.examine({"seed": seed})
+    assert scenes.is_sound(row), row["gain"]
+    assert row["speed"] > 0.0
+
+
 # A spring that is too stiff for the step stays still beside everything until the body falls on
 # something: native contact has nothing there.
 def test_what_mujoco_cannot_step_without_contact_is_told(part):
