@@ -340,6 +340,7 @@ int volcontact_get_energy(const mjModel* m, const mjData* d, volcontact_energy* 
     energy->driven = account.driven;
     energy->made = account.made;
     energy->released = account.released;
+    energy->owed = account.owed;
     energy->dropped = dropped(*contact, m, d);
     energy->forgotten = forgotten(*contact, m, d);
     return 0;

@@ -80,8 +80,9 @@ typedef struct volcontact_energy_ {
   double numerical;      // driven - work - dissipated - change of elastic [J]
   double unpaid;         // what the laws hold besides `elastic`, which no motion put in [J]
   double driven;         // work of mocap bodies on the contacts since the start [J]
-  double made;           // work + change of elastic - driven - released, of the last step [J]
+  double made;           // work + change of elastic - driven - released - lent, in a step [J]
   double released;       // of what was dissipated, to bodies that part slowly, since the start [J]
+  double owed;           // lent by finite steps and not given back [J]
 } volcontact_energy;
 
 // mjVERSION_HEADER of the MuJoCo this library was compiled for.

@@ -85,6 +85,7 @@ class RawEnergy(ctypes.Structure):
         ("driven", ctypes.c_double),
         ("made", ctypes.c_double),
         ("released", ctypes.c_double),
+        ("owed", ctypes.c_double),
     )
 
 

@@ -62,15 +62,17 @@ class Energy(NamedTuple):
         work: done on the scene by the contact forces, those written to the target array, since
             the start [J].
         numerical: what of -work is neither stored nor dissipated [J]; made by the finite step, it
-            vanishes with it. Negative where steps that are too large give energy to the motion.
+            vanishes with it. Negative where a step gives energy to the motion, such as what it
+            lends a body that comes to rest.
         unpaid: what the laws would hold besides `elastic`, in overlaps that no motion made [J]; no
             body gets it back.
         driven: work that mocap bodies did on the contacts since the start [J].
-        made: what the contacts did and stored in the last step, less what mocap bodies did on them
-            and what was released [J]: the audit of a step. Contact takes energy, so it is negative,
-            up to what gravity does meanwhile and an explicit step errs by.
+        made: what the contacts did and stored in the last step, less what mocap bodies did on them,
+            what was lent and what was released [J]: the audit of a step. Contact takes energy, so it
+            is negative, up to what an explicit step errs by.
         released: to bodies that part slowly, of what had been dissipated, since the start [J]: what
             it takes to bring bodies out of an overlap that no motion made.
+        owed: lent by finite steps, as to a body that comes to rest, and not given back yet [J].
     """
 
     elastic: float
@@ -83,6 +85,7 @@ class Energy(NamedTuple):
     driven: float = 0.0
     made: float = 0.0
     released: float = 0.0
+    owed: float = 0.0
 
 
 def load(
@@ -397,6 +400,7 @@ class Contact(Closing):
             raw.driven,
             raw.made,
             raw.released,
+            raw.owed,
         )
 
     def dropped(self, data: mujoco.MjData) -> int:

@@ -262,7 +262,7 @@ def audited(
         scale = kinetic + now.elastic + 1e-6
         if before is not None:
             made = (now.work - before.work) + (now.elastic - before.elastic)
-            made -= now.released - before.released
+            made -= (now.owed - before.owed) + (now.released - before.released)
             gain = made / max(scale, held)
             if not math.isfinite(gain):
                 return row | {"gain": math.inf, "step": step, "warnings": warnings_in(data)}

@@ -94,7 +94,7 @@ void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
   const double* begin = account.continues() ? account.begin().states() : nullptr;
   if (account.is_within_step()) {
     hold_solved(m, d, our, scratch);
-    now.unpaid = read_energies(contact, begin, account.since_begin(), is_rk4, scratch);
+    read_energies(contact, begin, account.since_begin(), is_rk4, scratch, now);
     release(account, now, scratch);
     scratch.dissipated = 0.0;
     find_unpaid_pairs(contact, m, false, scratch);
@@ -102,7 +102,7 @@ void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
     return;
   }
   now.implicit = find_stiff_sites(contact, m, d, scratch);
-  now.unpaid = read_energies(contact, begin, account.since_begin(), is_rk4, scratch);
+  read_energies(contact, begin, account.since_begin(), is_rk4, scratch, now);
   release(account, now, scratch);
   scratch.dissipated = 0.0;
   if (begin) {
@@ -275,6 +275,7 @@ void fill_slot(const SceneContact& contact, const mjModel* m, mjData* d, const U
   now.elastic -= now.unpaid;
   const SleepingEnergy asleep = energy_asleep(contact, committed, scratch);
   now.elastic += asleep.elastic + asleep.bristle;
+  now.owed += asleep.owed;
   now.slide_energy += asleep.bristle;
   double later = 0.0, friction_later = 0.0;  // power of the last forces at the present velocities
   if (account.continues()) {

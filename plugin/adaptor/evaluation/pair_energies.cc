@@ -102,11 +102,10 @@ bool may_overdraw(const SceneContact& contact, const mjModel* m, std::size_t k,
   return work > limit_of(contact, m, k, scratch).at_any_speed();
 }
 
-double read_energies(const SceneContact& contact, const double* committed, double elapsed,
-                     bool is_rk4, EvaluationScratch& scratch) {
+void read_energies(const SceneContact& contact, const double* committed, double elapsed,
+                   bool is_rk4, EvaluationScratch& scratch, EnergyAccount& account) {
   const std::size_t count = scratch.cull.near.size();
   scratch.energies.assign(count, PairEnergy());
-  double unpaid = 0.0;
   std::size_t first = 0;  // of the pair's sites
   for (std::size_t k = 0; k < count; ++k) {
     const ContactReport& report = scratch.reports[k];
@@ -137,9 +136,9 @@ double read_energies(const SceneContact& contact, const double* committed, doubl
     } else {
       energy.take_in(elapsed, now, is_rk4);
     }
-    unpaid += now.elastic - energy.stored - energy.found;
+    account.unpaid += now.elastic - energy.held();
+    account.owed += energy.owed();
   }
-  return unpaid;
 }
 
 bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m, bool begins,

@@ -9,9 +9,9 @@
 namespace volcontact::adaptor {
 
 /// What the pairs hold of the energy of the bodies, after the step that ends here, into
-/// `scratch.energies`. Returns the elastic energy that nobody paid [J].
-double read_energies(const SceneContact& contact, const double* committed, double elapsed,
-                     bool is_rk4, EvaluationScratch& scratch);
+/// `scratch.energies`; what nobody paid, and what is owed, into `now`.
+void read_energies(const SceneContact& contact, const double* committed, double elapsed,
+                   bool is_rk4, EvaluationScratch& scratch, EnergyAccount& now);
 
 /// What the contacts of the pair at place k of `near` may do on the bodies in the coming step.
 WorkLimit limit_of(const SceneContact& contact, const mjModel* m, std::size_t k,

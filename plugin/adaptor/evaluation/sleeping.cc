@@ -150,7 +150,8 @@ SleepingEnergy energy_asleep(const SceneContact& contact, const double* committe
     const SiteMemory rows = pool.rows_of(id, 0.0);
     for (int i = 0; i < rows.count; ++i) {
       const PairEnergy energy = PairEnergy::from(rows.rows + std::ptrdiff_t{i} * rows.stride);
-      sum.elastic += energy.stored + energy.found;
+      sum.elastic += energy.held();
+      sum.owed += energy.owed();
       sum.bristle += energy.rubbed;
     }
   }

@@ -31,6 +31,7 @@ void hold_together(const SceneContact& contact, const mjModel* m, mjData* d,
 struct SleepingEnergy {
   double elastic = 0.0;  ///< of the volumes
   double bristle = 0.0;
+  double owed = 0.0;  ///< of what was lent to them
 };
 SleepingEnergy energy_asleep(const SceneContact& contact, const double* committed,
                              const EvaluationScratch& scratch);

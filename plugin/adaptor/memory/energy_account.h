@@ -31,14 +31,13 @@ inline EnergyAccount accounted(const EnergyAccount& before, const ByChannel& mea
 }
 
 /// The same where one of the two is of an implicit step: the forces of `before` acted all the time,
-/// and all that they took from the motion counts, less what is stored now more than then.
-inline EnergyAccount accounted_whole(const EnergyAccount& before, double elapsed,
+/// and all that they took from the motion, `taken`, counts, less what is stored now more than then.
+inline EnergyAccount accounted_whole(const EnergyAccount& before, ByChannel taken, double elapsed,
                                      const EnergyAccount& now) {
-  ByChannel taken = before.taken;
   taken.normal += before.stored;
   EnergyAccount out = accounted(before, taken, elapsed, now);
   const auto of_volumes = [](const EnergyAccount& e) {
-    return e.elastic - e.slide_energy - e.spin_energy;
+    return e.elastic - e.owed - e.slide_energy - e.spin_energy;
   };
   out.dissipated.normal -= of_volumes(now) - of_volumes(before);
   return out;
@@ -71,9 +70,9 @@ inline void add_work(const EnergyAccount& before, double work, double driven, En
   const double spent = now.dissipated.sum() - before.dissipated.sum();
   now.work = before.work + work;
   now.driven = before.driven + driven;
-  const double made = work + (now.elastic - before.elastic) - driven;
-  now.numerical = before.numerical - made - spent;
-  now.made = made - (now.released - before.released);
+  const double taken = work + (now.elastic - before.elastic) - driven;
+  now.numerical = before.numerical - taken - spent;
+  now.made = taken - (now.owed - before.owed) - (now.released - before.released);
 }
 
 /// Opens the slot of an evaluation and says how the account goes on from its predecessors.
@@ -110,14 +109,15 @@ class AccountKeeper {
   double since_begin() const { return completes_ ? 2.0 * elapsed_ : elapsed_; }
 
   /// What the contacts have made in the step that ends here: their work, and what they hold more
-  /// than before, beyond what was driven and released [J]. 0 within a step, and where it cannot be
-  /// told. `now` knows what is held and released; the others as in write().
+  /// than before, beyond what was lent, driven and released [J]. 0 within a step, and where it cannot be
+  /// told. `now` knows what is held, owed and released; the others as in write().
   double made(const EnergyAccount& now, double later, double driven) const {
     if (!continues() || is_within_step_ || (completes_ && !has_last_)) return 0.0;
     const EnergyAccount before = begin().energy();
     const double work = completes_ ? work_of_stages(before, last_.last_power)
                                    : elapsed_ * std::midpoint(before.force_power, later);
-    return work + (now.elastic - before.elastic) - driven - (now.released - before.released);
+    return work + (now.elastic - before.elastic) - (now.owed - before.owed) - driven -
+           (now.released - before.released);
   }
 
   /// Writes the account of this evaluation: a whole Runge-Kutta step by its own rule, which is
@@ -138,7 +138,7 @@ class AccountKeeper {
     } else if (completes_) {
       const EnergyAccount start = begin().energy(), middle = block_.slot(1).energy();
       if (start.implicit) {
-        now = accounted_whole(start, 2.0 * elapsed_, now);
+        now = accounted_whole(start, start.taken, 2.0 * elapsed_, now);
       } else {
         const ByChannel& end = now.implicit && has_last_ ? last_.taken : now.taken;
         const ByChannel ends = between(start.taken, end, 0.5);
@@ -149,11 +149,13 @@ class AccountKeeper {
     } else {
       const EnergyAccount before = block_.slot(1).energy();
       const bool whole = before.implicit || now.implicit;
-      const ByChannel mean = mean_taken(before, now, friction_later);
-      now = whole ? accounted_whole(before, elapsed_, now) : accounted(before, mean, elapsed_, now);
+      // Of an implicit step `taken` is the mean of the step that follows, not of this one.
+      const ByChannel mean = mean_taken(before, whole ? before : now, friction_later);
+      now = whole ? accounted_whole(before, mean, elapsed_, now)
+                  : accounted(before, mean, elapsed_, now);
       add_work(before, elapsed_ * std::midpoint(before.force_power, later), driven, now);
       // The law's damping over a step is what its forces took in it, not what it says at the ends.
-      if (!whole && mean.normal > 0.0) {
+      if (!before.implicit && mean.normal > 0.0) {
         now.dissipated.normal += now.numerical - before.numerical;
         now.numerical = before.numerical;
       }

@@ -21,17 +21,17 @@ namespace volcontact::adaptor {
 
 /// Sizes of the block, in numbers.
 struct UserdataLayout {
-  static constexpr int kVersion = 9;
+  static constexpr int kVersion = 10;
   static constexpr int kHeader = 9;
   /// A Runge-Kutta step and the one before it, which a step that is redone needs.
   static constexpr int kSlots = 5;
   /// Time, step, stage, elastic energy, dissipated x4, power x4, taken x4, bristle energy x2,
   /// power into the elastic energy, whether the step is implicit, work, numerical, power of the
   /// forces x2, elastic energy that nobody paid, work of mocap bodies, energy made in the step,
-  /// energy released, so far and by the step that follows, power of friction.
+  /// energy released, so far and by the step that follows, power of friction, energy lent.
   /// Behind it the generalized forces, those of friction alone, the mocap bodies, the law states
   /// and the energies of the pairs.
-  static constexpr int kSlotHead = 30;
+  static constexpr int kSlotHead = 31;
   /// A HeldSite.
   static constexpr int kSolvedRow = 11;
 
@@ -94,6 +94,7 @@ struct EnergyAccount {
                            ///< start [J]
   double releasing = 0.0;  ///< in the step that follows [J]
   double friction_power = 0.0;  ///< of the friction that was written, at the evaluation [W]
+  double owed = 0.0;            ///< lent by finite steps and not given back [J]
 };
 
 /// What an evaluation was for the integrator.
@@ -121,7 +122,8 @@ class Slot {
   EnergyAccount energy() const {
     return {p_[3],  channels(4),   channels(8), channels(12), p_[16], p_[17],
             p_[18], p_[19] != 0.0, p_[20],      p_[21],       p_[22], p_[23],
-            p_[24], p_[25],        p_[26],      p_[27],       p_[28], p_[29]};
+            p_[24], p_[25],        p_[26],      p_[27],       p_[28], p_[29],
+            p_[30]};
   }
   void set_energy(const EnergyAccount& e) const {
     p_[3] = e.elastic;
@@ -142,6 +144,7 @@ class Slot {
     p_[27] = e.released;
     p_[28] = e.releasing;
     p_[29] = e.friction_power;
+    p_[30] = e.owed;
   }
 
  private:

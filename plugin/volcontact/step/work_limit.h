@@ -94,15 +94,15 @@ struct PairEnergy {
     most = std::max(most, stored);
   }
 
-  /// Whether motion can have put in what the law holds `now`, in a step of `elapsed` seconds. A
-  /// potential takes in work by turns, too, which power does not know: `by_turns`, at most, of what
+  /// Whether motion can have put in what the law holds `now`, but for what was unpaid before, in a
+  /// step of `elapsed` seconds. A potential takes in work by turns, too, which power does not know: `by_turns`, at most, of what
   /// it holds.
   bool explains(double elapsed, const Now& now, double by_turns = 0.0) const noexcept {
     const double before = force > 0.0 ? power / force : 0.0;
     const double power_at_most =
         std::max(force, now.force) * std::max({0.0, before, now.approach()});
     const double overdraft = kOverdraft + by_turns;
-    return now.elastic <= stored + found + overdraft * std::max(most, now.elastic) +
+    return now.elastic <= stored + found + unpaid + overdraft * std::max(most, now.elastic) +
                               kRoom * elapsed * power_at_most;
   }
 
@@ -128,6 +128,8 @@ struct PairEnergy {
   }
 
   double held() const noexcept { return std::max(0.0, stored) + found; }
+  /// What was lent, and is not repaid [J].
+  double owed() const noexcept { return std::max(0.0, -stored); }
   /// The most that can be taken off what is held, for what the contacts have made [J].
   double payable() const noexcept { return std::min(held(), doubtful); }
   void pay(double share) noexcept {

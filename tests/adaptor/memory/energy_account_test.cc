@@ -114,6 +114,42 @@ TEST(EnergyAccount, WhatTheLawsDoNotKnowIsNumerical) {
   EXPECT_DOUBLE_EQ(now.numerical, 0.25 + 0.3);
 }
 
+// Two steps of 0.1 s: the first explicit or implicit as `before` says, the second not looked at.
+EnergyAccount after_one_step(EnergyAccount before, EnergyAccount now, double later,
+                             double friction_later) {
+  std::vector<double> numbers(static_cast<std::size_t>(UserdataLayout{}.size()), 0.0);
+  const UserdataBlock block{numbers.data() + numbers.size(), {}};
+  block.claim();
+  AccountKeeper(block, 0.0, 0.1, false).write(before, 0.0, 0.0, 0.0);
+  AccountKeeper(block, 0.1, 0.1, false).write(now, later, friction_later, 0.0);
+  return block.slot(0).energy();
+}
+
+TEST(EnergyAccount, FrictionOfAnExplicitStepIsWhatItDidWhateverFollows) {
+  EnergyAccount before, now;
+  before.taken.slide = 5.0;
+  before.force_power = before.friction_power = -5.0;
+  now.taken.slide = 1.0;  // by the forces of the next step
+  for (const bool implicit : {false, true}) {
+    now.implicit = implicit;
+    const EnergyAccount after = after_one_step(before, now, -3.0, -3.0);
+    EXPECT_DOUBLE_EQ(after.dissipated.slide, 0.1 * 4.0);
+    EXPECT_NEAR(after.numerical, 0.0, 1e-15);
+  }
+}
+
+TEST(EnergyAccount, WhatIsLentIsMadeByTheStep) {
+  EnergyAccount before, now;
+  before.implicit = true;
+  before.taken.normal = -2.0;
+  before.force_power = 2.0;
+  now.owed = 0.2;
+  const EnergyAccount after = after_one_step(before, now, 2.0, 0.0);
+  EXPECT_NEAR(after.dissipated.normal, 0.0, 1e-15);
+  EXPECT_NEAR(after.numerical, -0.2, 1e-15);
+  EXPECT_NEAR(after.made, 0.0, 1e-15);
+}
+
 TEST(EnergyAccount, WhatABristleGivesBackIsDissipatedElsewhere) {
   const EnergyAccount before{0.5, {1.0, 2.0, 3.0, 4.0}, {}, {}, 0.7, 0.2};
   EnergyAccount now;

@@ -85,6 +85,7 @@ TEST(PairEnergy, WhatWasUnpaidStaysSo) {
   PairEnergy energy;
   energy.stored = energy.most = 0.8;
   energy.act(now(1.0, 100.0, -0.4));
+  EXPECT_TRUE(energy.explains(1e-3, now(0.99, 99.0, -0.4)));  // nothing new came in
   energy.follow(1e-3, now(0.7, 70.0, -0.5));
   EXPECT_NEAR(energy.stored, 0.5, 1e-15);
   energy.act(now(0.7, 70.0, -0.5));
