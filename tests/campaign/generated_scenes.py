@@ -35,6 +35,7 @@ COLUMNS = (
 )
 SCENES = 10_000
 STEPS = 150
+MOST_TURN = 1.0  # [rad] or [m] in a step: with native contact, too, the scene is lost
 INTEGRATORS = ("Euler", "implicit", "implicitfast", "discrete", "RK4")
 
 
@@ -283,6 +284,8 @@ def warnings_in(data: mujoco.MjData) -> int:
 def is_sound(row: dict[str, Any]) -> bool:
     """Contact made at most a thousandth of the energy that there was, in any step."""
     if row.get("refused") or int(row.get("native_warnings") or 0):
+        return True
+    if float(row["native_speed"]) * float(row["timestep"]) > MOST_TURN:
         return True
     warned = int(row.get("warnings") or 0) and not int(row.get("alone") or 0)
     return not warned and not int(row.get("dropped") or 0) and float(row["gain"]) <= 1e-3

@@ -284,7 +284,7 @@ void fill_slot(const SceneContact& contact, const mjModel* m, mjData* d, const U
   }
   bool kept = keep_sites(contact, committed, our.slot(0).states(), scratch);
   if (contact.is_implicit()) {
-    const double paid = pay_for(account.made(now, later, driven), scratch);
+    const double paid = pay_for(m, d, account.made(now, later, driven), scratch);
     now.elastic -= paid;
     now.unpaid += paid;
     kept = keep_energies(contact, committed, our.slot(0).states(), scratch) && kept;

@@ -125,7 +125,12 @@ bool foresee_work(const SceneContact& contact, const mjModel* m, mjData* d,
     }
     // Friction has no part in what a slow exit may release.
     const double own = std::max(0.0, limit.at_any_speed() - limit.normal_work);
-    if (limit.is_kept() && limit.drawn_by_friction() <= own) continue;
+    if (limit.is_kept() && limit.drawn_by_friction() <= own) {
+      if (limit.work() > limit.at_any_speed()) {
+        scratch.energies[k].slow = limit.released_at_most();
+      }
+      continue;
+    }
     std::fill(begin, stiff, 1);
     some = true;
   }

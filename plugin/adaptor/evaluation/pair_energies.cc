@@ -2,6 +2,7 @@
 #include "adaptor/evaluation/pair_energies.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "adaptor/evaluation/report_sums.h"
@@ -59,6 +60,13 @@ double end_excess_of(const mjModel* m, const PairEnergy::Now& now, const Contact
   }
   const double share = force > 0.0 ? now.force / force : 0.0;
   return end_excess(now.elastic, force, stiffness, share, -now.approach(), m->opt.timestep);
+}
+
+// Kinetic energy of all bodies [J].
+double kinetic_energy(const mjModel* m, mjData* d, std::vector<double>& row) {
+  row.resize(static_cast<std::size_t>(m->nv));
+  mj_mulM(m, d, row.data(), d->qvel);
+  return 0.5 * std::inner_product(row.begin(), row.end(), d->qvel, 0.0);
 }
 
 // What turns may put into the contact of a pair in a step beside its power, of what it holds.
@@ -183,7 +191,7 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m, EvaluationScr
     energy.rubbed = now.bristle;
     energy.force = share * now.force;
     energy.power = share * now.power;
-    energy.slow = slowly ? released_at_most : 0.0;
+    if (slowly) energy.slow = released_at_most;  // else what was foreseen
     if (share == 1.0) continue;
     limited = true;
     scratch.held[k] = 1;
@@ -193,13 +201,20 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m, EvaluationScr
   return limited;
 }
 
-double pay_for(double made, EvaluationScratch& scratch) {
+double pay_for(const mjModel* m, mjData* d, double made, EvaluationScratch& scratch) {
   double held = 0.0, payable = 0.0;
   for (const PairEnergy& energy : scratch.energies) {
     held += energy.held();
     payable += energy.payable();
   }
-  if (!(made > PairEnergy::kOverdraft * held && payable > 0.0)) return 0.0;
+  if (!(made > PairEnergy::kOverdraft * held)) return 0.0;
+  // Beside so much there is no doubt, whatever motion may explain.
+  if (made > payable &&
+      made > PairEnergy::kOverdraft * (held + kinetic_energy(m, d, scratch.row))) {
+    for (PairEnergy& energy : scratch.energies) energy.doubtful = HUGE_VAL;
+    payable = held;
+  }
+  if (!(payable > 0.0)) return 0.0;
   const double share = std::min(1.0, made / payable);
   for (PairEnergy& energy : scratch.energies) energy.pay(share);
   return share * payable;

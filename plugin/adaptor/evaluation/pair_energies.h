@@ -40,7 +40,7 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m, EvaluationScr
 /// Takes off what the pairs hold as much as the contacts have `made` in the step that ends here, as
 /// far as they hold it, and returns what that is [J]: what a solved step could not foresee, and
 /// what an explicit one errs by, is paid for.
-double pay_for(double made, EvaluationScratch& scratch);
+double pay_for(const mjModel* m, mjData* d, double made, EvaluationScratch& scratch);
 
 /// Writes the rows behind those of the sites; false when there was no room for all.
 bool keep_energies(const SceneContact& contact, const double* committed, double* states,

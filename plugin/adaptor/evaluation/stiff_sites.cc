@@ -12,10 +12,10 @@
 namespace volcontact::adaptor {
 namespace {
 
-// How much an impulse along the normal at a point changes the speed there of one body against the
+// How much an impulse in a direction at a point changes the speed there of one body against the
 // other, at the present pose [1/kg].
 double mobility_along(const mjModel* m, mjData* d, const GeomPair& geoms, const Vec3& point,
-                      const Vec3& normal, std::vector<double>& row) {
+                      const Vec3& direction, std::vector<double>& row) {
   const auto nv = static_cast<std::size_t>(m->nv);
   row.assign(2 * nv, 0.0);
   for (const int geom : {geoms.a, geoms.b}) {
@@ -28,19 +28,33 @@ double mobility_along(const mjModel* m, mjData* d, const GeomPair& geoms, const 
     for (; dof >= 0; dof = m->dof_parentid[dof]) {
       const Vec3 angular = vec3_at(d->cdof, 2 * dof);
       const Vec3 way = vec3_at(d->cdof, 2 * dof + 1) + angular.cross(offset);
-      row[static_cast<std::size_t>(dof)] += sign * normal.dot(way);
+      row[static_cast<std::size_t>(dof)] += sign * direction.dot(way);
     }
   }
   mj_solveM(m, d, row.data() + nv, row.data(), 1);
   return std::inner_product(row.begin(), row.begin() + m->nv, row.begin() + m->nv, 0.0);
 }
 
+// The same along the patch at most, of bodies that yield by turning, too, or, where they hang on
+// joints, by what these leave.
+double sliding_mobility(const mjModel* m, mjData* d, const PairContact& pair,
+                        const SiteReport& site, const InverseMass& inverse,
+                        std::vector<double>& row) {
+  const double of_balls = kBall * inverse.along;
+  if (!pair.is_jointed) return of_balls;
+  const Vec3 across = site.force_on_A - site.normal_force * site.normal;
+  const Vec3& way = site.slip.isZero(0.0) ? across : site.slip;
+  if (way.isZero(0.0)) return of_balls;
+  return std::max(of_balls, mobility_along(m, d, pair.geoms, site.metrics.centroid,
+                                           way.normalized(), row));
+}
+
 // Whether friction without memory would throw the bodies back in an explicit step, faster than they
 // slide or spin now: h c > 2 m, with c the friction per slip. Once the slip is so small they would
 // chatter for ever. `most`: h c/m that a step holds.
-bool reverses_slip(const SiteReport& site, const InverseMass& inverse, double h) {
+bool reverses_slip(const SiteReport& site, const InverseMass& inverse, double sliding, double h) {
   const double across = (site.force_on_A - site.normal_force * site.normal).norm();
-  if (h * across * kBall * inverse.along > kEulerDamper * site.slip.norm()) return true;
+  if (h * across * sliding > kEulerDamper * site.slip.norm()) return true;
   const double torque = std::abs(site.torque_on_A.dot(site.normal));
   return h * torque * inverse.about > kEulerDamper * std::abs(site.spin);
 }
@@ -48,13 +62,12 @@ bool reverses_slip(const SiteReport& site, const InverseMass& inverse, double h)
 // Whether friction that follows the patch shakes the bodies in an explicit step, where it could
 // stop them in it: what slides faster is slowed by what friction can hold, whatever holds it.
 bool shakes(const PairContact& pair, ContactReport& report, std::size_t site,
-            const InverseMass& inverse, double h) {
+            const InverseMass& inverse, double sliding, double h) {
   const SiteReport& at = report.sites[site];
   const double slip = at.slip.norm(), spin = std::abs(at.spin);
   if (slip == 0.0 && spin == 0.0 && at.bristle_energy.sum() == 0.0) return false;
   const FrictionSlope slope =
       SiteLaws(pair.model, report, site).friction_slope(at.normal_force, at.slip, at.spin);
-  const double sliding = kBall * inverse.along;
   if (!(h * slope.strength * sliding > kEulerDamper * slip ||
         h * slope.strength * slope.lever * inverse.about > kEulerDamper * spin)) {
     return false;
@@ -71,8 +84,12 @@ bool is_stiff(const mjModel* m, mjData* d, const PairContact& pair, ContactRepor
   const Friction* friction = pair.model.laws().friction.get();
   if (friction && !most.friction_is_explicit) {
     if (shakes_at_rest(pair, h)) return true;
-    if (friction->states().empty() && reverses_slip(report.sites[site], inverse, h)) return true;
-    if (pair.friction_follows_patch && shakes(pair, report, site, inverse, h)) return true;
+    const double sliding =
+        sliding_mobility(m, d, pair, report.sites[site], inverse, scratch.row);
+    if (friction->states().empty() && reverses_slip(report.sites[site], inverse, sliding, h)) {
+      return true;
+    }
+    if (pair.friction_follows_patch && shakes(pair, report, site, inverse, sliding, h)) return true;
   }
   const VolumeMetrics& metrics = report.sites[site].metrics;
   const SiteInputs& inputs = report.inputs[site];

@@ -112,11 +112,14 @@ def test_scenes_that_made_energy_make_none(part, seed):
 # Touches that end within a step of Runge-Kutta (910, 1121, 4385, 4746), or with a debt that grew to
 # more than what still moved (623, 5691); a body that gives way by turning (7005); lifts that cost
 # nothing (6095, 7301) or were not counted (601); books that follow the law though nobody paid
-# (4350).
+# (4350); explicit friction on a limb that yields more easily than its mass says (9157);
+# work that motion explains and the step made all the same (5331).
 @pytest.mark.skipif(
     not hasattr(mujoco.mjtIntegrator, "mjINT_DISCRETE"), reason="other scenes have these numbers"
 )
-@pytest.mark.parametrize("seed", [601, 623, 910, 1121, 4350, 4385, 4746, 5691, 6095, 7005, 7301])
+@pytest.mark.parametrize(
+    "seed", [601, 623, 910, 1121, 4350, 4385, 4746, 5331, 5691, 6095, 7005, 7301, 9157]
+)
 def test_scenes_that_ended_with_more_end_with_less(part, seed):
     scenes = part("generated_scenes")
     row = scenes.examine({"seed": seed})
