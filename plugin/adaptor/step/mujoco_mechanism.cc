@@ -89,7 +89,8 @@ void MujocoMechanism::fly(int dof, std::vector<DofEntry>& out) const {
   for (int i = 0; i < 6; ++i) {
     if (metric_.is_held(dof + i)) return;
   }
-  if (!matrix_of_free_body(m_, d_, damping_, m_->dof_jntid[dof], matrix)) return;
+  const mjData* made = metric_.is_known() ? metric_.ahead() : d_;
+  if (!matrix_of_free_body(m_, made, damping_, m_->dof_jntid[dof], matrix)) return;
   for (int i = 0; i < 6; ++i) {
     for_row_of_mass(m_, d_, dof + i, [&](int other, double value) {
       mass[6 * i + other - dof] = mass[6 * (other - dof) + i] = value;

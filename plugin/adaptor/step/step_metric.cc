@@ -12,8 +12,8 @@ void StepMetric::read(const mjModel* m, const mjData* ahead) {
   rows_.clear();
   entries_.clear();
   fluid_ = nullptr;
-  is_known_ = ahead != nullptr;
-  if (!is_known_) return;
+  ahead_ = ahead;
+  if (!is_known()) return;
   const std::size_t dofs = size(static_cast<int>(m->nv));
   const StepDiagonal own = step_diagonal(ahead);
   diagonal_.assign(dofs, 0.0);
@@ -48,7 +48,7 @@ void StepMetric::read(const mjModel* m, const mjData* ahead) {
 }
 
 void StepMetric::shift(std::span<double> forces) const {
-  if (!is_known_) return;
+  if (!is_known()) return;
   std::transform(forces.begin(), forces.end(), shift_.begin(), forces.begin(), std::minus<>());
 }
 

@@ -27,7 +27,10 @@ class StepMetric {
   void read(const mjModel* m, const mjData* ahead);
 
   /// Whether there is anything: else damping is all that the integrator takes implicitly.
-  bool is_known() const { return is_known_; }
+  bool is_known() const { return ahead_ != nullptr; }
+  /// Where it is taken from, with all that MuJoCo has when it makes the step: what it has not made
+  /// yet in the data of the step is stale there.
+  const mjData* ahead() const { return ahead_; }
   /// The part of N that joins no degrees of freedom.
   double diagonal(int dof) const { return diagonal_[static_cast<std::size_t>(dof)]; }
   /// Of fluids, where the mass matrix of `dof` has entries, in the order of these; may be null.
@@ -39,10 +42,10 @@ class StepMetric {
   /// Takes s off the forces t.
   void shift(std::span<double> forces) const;
   /// Whether a constraint or a row acts on it, so that its body does not fly alone.
-  bool is_held(int dof) const { return is_known_ && held_[static_cast<std::size_t>(dof)] != 0; }
+  bool is_held(int dof) const { return is_known() && held_[static_cast<std::size_t>(dof)] != 0; }
 
  private:
-  bool is_known_ = false;
+  const mjData* ahead_ = nullptr;
   std::vector<double> diagonal_, shift_;
   const double* fluid_ = nullptr;
   std::vector<Row> rows_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace volcontact {
@@ -33,8 +34,9 @@ class BlockMatrix {
   /// In place: blocks of L below the diagonal, and of U, transposed, above it.
   void factor() {
     for (int k = 0; k < count_; ++k) {
+      const Vector whole = (*this)(k, k).diagonal();
       subtract_before(k, k);
-      factor_block(k);
+      factor_block(k, whole);
       for (int i = k + 1; i < count_; ++i) {
         subtract_before(i, k);
         divide(k, (*this)(i, k), true);
@@ -87,11 +89,15 @@ class BlockMatrix {
   }
 
   // L and U of a block of the diagonal, L with ones on its diagonal where it is not symmetric.
-  void factor_block(int k) {
+  // `whole`: its diagonal at first. Where rounding has made the matrix singular, a pivot is what
+  // rounding leaves of it.
+  void factor_block(int k, const Vector& whole) {
     Block& block = (*this)(k, k);
     Vector& inverse = inverse_[static_cast<std::size_t>(k)];
     for (int c = 0; c < K; ++c) {
-      inverse[c] = 1.0 / (is_symmetric_ ? std::sqrt(block(c, c)) : block(c, c));
+      const double pivot =
+          std::max(block(c, c), std::numeric_limits<double>::epsilon() * whole[c]);
+      inverse[c] = 1.0 / (is_symmetric_ ? std::sqrt(pivot) : pivot);
       for (int r = c + 1; r < K; ++r) block(r, c) *= inverse[c];
       for (int j = c + 1; j < K; ++j) {
         const double by = is_symmetric_ ? block(j, c) : block(c, j);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -104,7 +105,7 @@ class EnvelopeMatrix {
     for (int k = 0; k < size(); ++k) {
       const double* const pivot = at(k, first(k));
       double& diagonal = (*this)(k, k);
-      diagonal = 1.0 / std::sqrt(diagonal - dot(pivot, pivot, k - first(k)));
+      diagonal = 1.0 / std::sqrt(pivot_left(diagonal, dot(pivot, pivot, k - first(k))));
       for (int i = k + 1; i <= last_[static_cast<std::size_t>(k)]; ++i) {
         if (first(i) > k) continue;
         const int from = std::max(first(i), first(k));
@@ -126,8 +127,13 @@ class EnvelopeMatrix {
         mirrored(i, k) -= dot(at(k, from), above + skipped, count);
       }
       double& diagonal = (*this)(i, i);
-      diagonal = 1.0 / (diagonal - dot(left, above, i - first(i)));
+      diagonal = 1.0 / pivot_left(diagonal, dot(left, above, i - first(i)));
     }
+  }
+
+  // Where rounding has made the matrix singular, what rounding leaves.
+  static double pivot_left(double diagonal, double taken) {
+    return std::max(diagonal - taken, std::numeric_limits<double>::epsilon() * diagonal);
   }
 
   // In two sums, side by side; rows are short.

@@ -59,5 +59,28 @@ TEST(BlockMatrix, SolvesForNothing) {
   matrix.solve(nullptr);
 }
 
+// Stiffnesses of 1e30 along directions that are nearly one: in doubles there is no inverse.
+TEST(BlockMatrix, StaysFiniteWhereRoundingHasMadeItSingular) {
+  test::Random random(3);
+  for (const bool is_symmetric : {true, false}) {
+    for (int run = 0; run < 200; ++run) {
+      MatrixXd root(6, 2);
+      for (double& x : root.reshaped()) x = 1e15 * random.uniform(0.9, 1.1);
+      const MatrixXd dense = MatrixXd::Identity(6, 6) + root * root.transpose();
+      BlockMatrix<3> matrix;
+      matrix.reset(2, is_symmetric);
+      for (int i = 0; i < 2; ++i) {
+        for (int k = 0; k < (is_symmetric ? i + 1 : 2); ++k) {
+          matrix(i, k) = dense.block<3, 3>(3 * i, 3 * k);
+        }
+      }
+      matrix.factor();
+      VectorXd x = VectorXd::Ones(6);
+      matrix.solve(x.data());
+      ASSERT_TRUE(x.allFinite()) << run;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace volcontact::block_matrix_test

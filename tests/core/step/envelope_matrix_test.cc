@@ -93,5 +93,30 @@ TEST(EnvelopeMatrix, AddsANarrowerOne) {
   }
 }
 
+// Constraints of 1e15 along directions that are nearly one: in doubles 1 + G G' has no inverse.
+TEST(EnvelopeMatrix, StaysFiniteWhereRoundingHasMadeItSingular) {
+  constexpr int kCount = 4;
+  test::Random random(3);
+  for (const bool is_symmetric : {true, false}) {
+    for (int run = 0; run < 200; ++run) {
+      MatrixXd root(kCount, 2);
+      for (double& x : root.reshaped()) x = 1e15 * random.uniform(0.9, 1.1);
+      const MatrixXd dense = MatrixXd::Identity(kCount, kCount) + root * root.transpose();
+      EnvelopeMatrix matrix;
+      matrix.reset(std::vector<int>(kCount, 0), is_symmetric);
+      for (int i = 0; i < kCount; ++i) {
+        for (int k = 0; k <= i; ++k) {
+          matrix(i, k) = dense(i, k);
+          if (!is_symmetric && k < i) matrix.mirrored(i, k) = dense(k, i);
+        }
+      }
+      matrix.factor();
+      Eigen::VectorXd x = Eigen::VectorXd::Ones(kCount);
+      matrix.solve(x.data(), 0, kCount);
+      ASSERT_TRUE(x.allFinite()) << run;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace volcontact::envelope_matrix_test
