@@ -284,9 +284,11 @@ void fill_slot(const SceneContact& contact, const mjModel* m, mjData* d, const U
   }
   bool kept = keep_sites(contact, committed, our.slot(0).states(), scratch);
   if (contact.is_implicit()) {
-    const double paid = pay_for(m, d, account.made(now, later, driven), scratch);
+    const double made = account.made(now, later, driven);
+    const double paid = pay_for(m, d, made, scratch);
     now.elastic -= paid;
     now.unpaid += paid;
+    now.released += release_for(made - paid, scratch);
     kept = keep_energies(contact, committed, our.slot(0).states(), scratch) && kept;
   }
   if (now.implicit || m->opt.integrator == mjINT_RK4) {

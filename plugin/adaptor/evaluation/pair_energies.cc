@@ -220,6 +220,12 @@ double pay_for(const mjModel* m, mjData* d, double made, EvaluationScratch& scra
   return share * payable;
 }
 
+double release_for(double made, const EvaluationScratch& scratch) {
+  double most = 0.0;
+  for (const PairEnergy& energy : scratch.energies) most += energy.releases;
+  return std::clamp(made, 0.0, most);
+}
+
 bool keep_energies(const SceneContact& contact, const double* committed, double* states,
                    EvaluationScratch& scratch) {
   const SitePool<double> pool(states + contact.sites().size(), contact.energies());

@@ -42,6 +42,10 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m, EvaluationScr
 /// what an explicit one errs by, is paid for.
 double pay_for(const mjModel* m, mjData* d, double made, EvaluationScratch& scratch);
 
+/// What the contacts have `made` beyond all that is paid for, as far as bodies that part slowly may
+/// get it of what was dissipated [J]: a normal that turns in the step tells it late.
+double release_for(double made, const EvaluationScratch& scratch);
+
 /// Writes the rows behind those of the sites; false when there was no room for all.
 bool keep_energies(const SceneContact& contact, const double* committed, double* states,
                    EvaluationScratch& scratch);

@@ -35,6 +35,7 @@ struct PairEnergy {
 
   bool is_solved = false;  ///< by an implicit step, whose work is in already; not kept
   double released = 0.0;   ///< to bodies that part slowly, of what was dissipated [J]; not kept
+  double releases = 0.0;   ///< what it may have released more in the step that ended [J]; not kept
   /// Of the bristles at the begin of the step, as far as sliding put it in [J]; not kept.
   double bristle = HUGE_VAL;
   /// Of what is held, as much as may be there although no motion put it in [J]; not kept.
@@ -88,6 +89,7 @@ struct PairEnergy {
     bristle = was_solved() ? std::min(rubbed, now.bristle) : now.bristle;
     if (!was_solved())
       put(may_have_waited && work > 0.0 ? work / 6.0 : work, 0.0, kMostOwed * most);
+    releases = slow - released;
     force = power = slow = 0.0;
     rubbed = std::min(rubbed, now.bristle);
     if (!now.is_within) keep_within(now.elastic + ahead);
