@@ -63,9 +63,10 @@ def sunk(model: mujoco.MjModel, data: mujoco.MjData, sites: np.ndarray) -> Itera
             speeds.append(float(np.linalg.norm(velocity[3:])))
         if depth > SINKS * sizes[small] and max(speeds) < _AT_REST:
             a, b = (name_of(model, "geom", geom) for geom in geoms)
+            percent = 100 * depth / sizes[small]
             yield (
                 f"{a} and {b} rest {1e3 * depth:.3g} mm deep in each other, "
-                f"{100 * depth / sizes[small]:.2g} % of the size of the smaller one: give their "
+                f"{percent:.{'2g' if percent < 100 else '0f'}} % of the size of the smaller one: give their "
                 "materials more stiffness if that is not meant"
             )
 
