@@ -66,8 +66,8 @@ def sunk(model: mujoco.MjModel, data: mujoco.MjData, sites: np.ndarray) -> Itera
             percent = 100 * depth / sizes[small]
             yield (
                 f"{a} and {b} rest {1e3 * depth:.3g} mm deep in each other, "
-                f"{percent:.{'2g' if percent < 99.5 else '0f'}} % of the size of the smaller one: give their "
-                "materials more stiffness if that is not meant"
+                f"{percent:.{'2g' if percent < 99.5 else '0f'}} % of the size of the smaller one: "
+                "give their materials more stiffness if that is not meant"
             )
 
 

@@ -68,8 +68,8 @@ class Energy(NamedTuple):
             body gets it back.
         driven: work that mocap bodies did on the contacts since the start [J].
         made: what the contacts did and stored in the last step, less what mocap bodies did on them,
-            what was lent and what was released [J]: the audit of a step. Contact takes energy, so it
-            is negative, up to what an explicit step errs by.
+            what was lent and what was released [J]: the audit of a step. Contact takes energy, so
+            it is negative, up to what an explicit step errs by.
         released: to bodies that part slowly, of what had been dissipated, since the start [J]: what
             it takes to bring bodies out of an overlap that no motion made.
         owed: lent by finite steps, as to a body that comes to rest, and not given back yet [J].

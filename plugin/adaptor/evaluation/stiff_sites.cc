@@ -45,8 +45,8 @@ double sliding_mobility(const mjModel* m, mjData* d, const PairContact& pair,
   const Vec3 across = site.force_on_A - site.normal_force * site.normal;
   const Vec3& way = site.slip.isZero(0.0) ? across : site.slip;
   if (way.isZero(0.0)) return of_balls;
-  return std::max(of_balls, mobility_along(m, d, pair.geoms, site.metrics.centroid,
-                                           way.normalized(), row));
+  return std::max(of_balls,
+                  mobility_along(m, d, pair.geoms, site.metrics.centroid, way.normalized(), row));
 }
 
 // Whether friction without memory would throw the bodies back in an explicit step, faster than they
@@ -84,8 +84,7 @@ bool is_stiff(const mjModel* m, mjData* d, const PairContact& pair, ContactRepor
   const Friction* friction = pair.model.laws().friction.get();
   if (friction && !most.friction_is_explicit) {
     if (shakes_at_rest(pair, h)) return true;
-    const double sliding =
-        sliding_mobility(m, d, pair, report.sites[site], inverse, scratch.row);
+    const double sliding = sliding_mobility(m, d, pair, report.sites[site], inverse, scratch.row);
     if (friction->states().empty() && reverses_slip(report.sites[site], inverse, sliding, h)) {
       return true;
     }

@@ -109,8 +109,8 @@ class AccountKeeper {
   double since_begin() const { return completes_ ? 2.0 * elapsed_ : elapsed_; }
 
   /// What the contacts have made in the step that ends here: their work, and what they hold more
-  /// than before, beyond what was lent, driven and released [J]. 0 within a step, and where it cannot be
-  /// told. `now` knows what is held, owed and released; the others as in write().
+  /// than before, beyond what was lent, driven and released [J]. 0 within a step, and where it
+  /// cannot be told. `now` knows what is held, owed and released; the others as in write().
   double made(const EnergyAccount& now, double later, double driven) const {
     if (!continues() || is_within_step_ || (completes_ && !has_last_)) return 0.0;
     const EnergyAccount before = begin().energy();

@@ -120,10 +120,9 @@ class Slot {
   void set_stage(Stage stage) const { p_[2] = static_cast<int>(stage); }
 
   EnergyAccount energy() const {
-    return {p_[3],  channels(4),   channels(8), channels(12), p_[16], p_[17],
-            p_[18], p_[19] != 0.0, p_[20],      p_[21],       p_[22], p_[23],
-            p_[24], p_[25],        p_[26],      p_[27],       p_[28], p_[29],
-            p_[30]};
+    return {p_[3],         channels(4), channels(8), channels(12), p_[16], p_[17], p_[18],
+            p_[19] != 0.0, p_[20],      p_[21],      p_[22],       p_[23], p_[24], p_[25],
+            p_[26],        p_[27],      p_[28],      p_[29],       p_[30]};
   }
   void set_energy(const EnergyAccount& e) const {
     p_[3] = e.elastic;

@@ -95,8 +95,7 @@ class BlockMatrix {
     Block& block = (*this)(k, k);
     Vector& inverse = inverse_[static_cast<std::size_t>(k)];
     for (int c = 0; c < K; ++c) {
-      const double pivot =
-          std::max(block(c, c), std::numeric_limits<double>::epsilon() * whole[c]);
+      const double pivot = std::max(block(c, c), std::numeric_limits<double>::epsilon() * whole[c]);
       inverse[c] = 1.0 / (is_symmetric_ ? std::sqrt(pivot) : pivot);
       for (int r = c + 1; r < K; ++r) block(r, c) *= inverse[c];
       for (int j = c + 1; j < K; ++j) {

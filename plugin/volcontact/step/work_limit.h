@@ -97,8 +97,8 @@ struct PairEnergy {
   }
 
   /// Whether motion can have put in what the law holds `now`, but for what was unpaid before, in a
-  /// step of `elapsed` seconds. A potential takes in work by turns, too, which power does not know: `by_turns`, at most, of what
-  /// it holds.
+  /// step of `elapsed` seconds. A potential takes in work by turns, too, which power does not know:
+  /// `by_turns`, at most, of what it holds.
   bool explains(double elapsed, const Now& now, double by_turns = 0.0) const noexcept {
     const double before = force > 0.0 ? power / force : 0.0;
     const double power_at_most =
