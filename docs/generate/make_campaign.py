@@ -61,8 +61,8 @@ warns is no failure where it does so with its own contact, or without any: from 
 which nothing is more than twice as fast as with native contact, and only if contact has given
 nothing to the motion until then: springs too stiff for the step, which stay still until something
 moves them, and which native contact does not touch. Nor does a scene count in which native contact
-lets anything move by more than a radian or a metre in a step. Of {all} scenes {cells} were run, {alone} warn
-without any contact ({tried} that warn were tried), and {failed} fail. By integrator:
+lets anything move by more than a radian or a metre in a step. Of {all} scenes {cells} were run,
+{alone} warn without any contact ({tried} that warn were tried), and {failed} fail. By integrator:
 """,
     "models_of_others": """\
 ## Models of others
