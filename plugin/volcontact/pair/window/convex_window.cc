@@ -75,6 +75,7 @@ constexpr int kMaxMoves = 8;         // from a common point on the faces into th
 constexpr double kFlush = 1e-6;      // faces that lean less, and overlap less, make a thin layer
 constexpr double kRound = 3.5;       // longest by shortest way out of a well-rounded overlap
 constexpr double kThinnest = 1e-14;  // squared relative length below which one rounding cannot see
+constexpr double kTooThin = 1e2 * kThinnest;  // where the second look is a first one, too
 
 struct Solid2 {
   ConvexView view;
@@ -282,17 +283,26 @@ class WindowSearch {
         if (!(depth > 0.0 && depth < kFlush * size)) continue;
         const FlushFaces faces{one.normal, one.offset, two.normal, depth, size};
         if (!find_common_point_in_layer(solids_[0].view, b.view, b.X, faces, start)) continue;
-        move_to_middle(one.normal, start);
-        // Off the edges, along the layer.
+        // Off the edges, along the layer. A place on one of the two faces may be out of it by
+        // rounding, and so may be all of a line along it.
         for (int step = 0; step < kMaxMoves && !inside(start); ++step) {
+          go_between(one, two, start);
+          move_to_middle(one.normal, start);
+          if (inside(start)) break;
           const Vec3 way = way_from_faces(start, &one, &two);
           if (!move_to_middle(way - way.dot(one.normal) * one.normal, start)) break;
-          move_to_middle(one.normal, start);
         }
+        move_to_middle(one.normal, start);
         if (inside(start)) return true;
       }
     }
     return false;
+  }
+
+  // Half way between two faces that look at each other.
+  static void go_between(const PlaneFace& one, const PlaneFace& two, Vec3& x) {
+    const double to_one = one.offset - one.normal.dot(x), to_two = two.offset - two.normal.dot(x);
+    x += 0.5 * (to_one - to_two) * one.normal;
   }
 
   // A common point may lie on faces, at worst in a sharp corner of the overlap: from there go away
@@ -371,12 +381,13 @@ class WindowSearch {
   void round_off(LinesWindow& window) {
     Vec3 c = window.center;
     Mat3 spread = Mat3::Identity();
+    bool first_look = true;  // no frame of the overlap's own, or one far too thick for it
     for (int step = 0; step < kMaxRoundings; ++step) {
       ChordSums s;
       look_from(c);
       double m[9];
       for (int i = 0; i < 9; ++i) m[i] = spread(i / 3, i % 3);
-      VOLCONTACT_SIMD_CALL(path_, chords, view_, m, step == 0, s);
+      VOLCONTACT_SIMD_CALL(path_, chords, view_, m, first_look, s);
       // In a very thin overlap what an ellipsoid was made of may be gone by rounding in the next
       // one.
       if (!(s.total > 0.0)) break;
@@ -400,7 +411,8 @@ class WindowSearch {
       c = step_inside(c, spread * shift);
       const Eigen::LLT<Mat3> factor(second);
       spread = spread * Mat3(factor.matrixL());
-      if (step > 0 && s.longest < kRound * s.shortest) break;
+      if (!first_look && s.longest < kRound * s.shortest) break;
+      first_look = step == 0 && s.shortest * s.shortest < kTooThin * s.longest * s.longest;
     }
     if (!(window.volume > 0.0) || !inside(c)) return;
     window.kind = LinesWindow::Kind::kOverlap;
