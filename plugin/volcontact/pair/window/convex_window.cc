@@ -68,14 +68,15 @@ alignas(64) constexpr ChordAxes kAxes = {
 namespace volcontact {
 namespace {
 
-constexpr int kMaxRoundings = 12;    // how often the frame is made anew
+constexpr int kMaxRoundings = 12;  // how often the frame is made anew
+constexpr int kMaxInLayer = 32;    // the same in a layer between plane faces
+constexpr double kEven = 1.1;      // mean of squares of axes by the square of their mean, of a ball
 constexpr double kRounding = 1e-12;  // of a common point, per its distance from both frames
 constexpr int kMaxTurns = 5;         // in search of a place behind both planes of an edge
 constexpr int kMaxMoves = 8;         // from a common point on the faces into the overlap
 constexpr double kFlush = 1e-6;      // faces that lean less, and overlap less, make a thin layer
 constexpr double kRound = 3.5;       // longest by shortest way out of a well-rounded overlap
 constexpr double kThinnest = 1e-14;  // squared relative length below which one rounding cannot see
-constexpr double kTooThin = 1e2 * kThinnest;  // where the second look is a first one, too
 
 struct Solid2 {
   ConvexView view;
@@ -164,6 +165,12 @@ class WindowSearch {
     return static_cast<int>(
         std::count_if(faces_.active.planes.begin(), faces_.active.planes.end(),
                       [=](const PlaneFace& plane) { return plane.owner == owner; }));
+  }
+
+  // Of the smaller solid, about.
+  double size() const {
+    return std::cbrt(
+        std::min(solids_[0].view.own_metrics().volume, solids_[1].view.own_metrics().volume));
   }
 
   bool inside(const Vec3& x) const {
@@ -278,10 +285,8 @@ class WindowSearch {
         if (two.owner != Owner::kB || (one.normal + two.normal).norm() > kFlush) continue;
         const Solid2& b = solid(Owner::kB);
         const double depth = one.offset + b.view.support_height(b.X, -one.normal);
-        const double size =
-            std::cbrt(std::min(solids_[0].view.own_metrics().volume, b.view.own_metrics().volume));
-        if (!(depth > 0.0 && depth < kFlush * size)) continue;
-        const FlushFaces faces{one.normal, one.offset, two.normal, depth, size};
+        if (!(depth > 0.0 && depth < kFlush * size())) continue;
+        const FlushFaces faces{one.normal, one.offset, two.normal, depth, size()};
         if (!find_common_point_in_layer(solids_[0].view, b.view, b.X, faces, start)) continue;
         // Off the edges, along the layer. A place on one of the two faces may be out of it by
         // rounding, and so may be all of a line along it.
@@ -330,9 +335,7 @@ class WindowSearch {
   // The direction that leaves every near face, but for two, at the largest angle. The size of the
   // solids counts, too: a face may pass through the origin of both.
   Vec3 way_from_faces(const Vec3& x, const PlaneFace* but_one, const PlaneFace* but_two) const {
-    const double size = std::cbrt(
-        std::min(solids_[0].view.own_metrics().volume, solids_[1].view.own_metrics().volume));
-    const double distance = kRounding * (x.norm() + solids_[1].X.translation.norm() + size);
+    const double distance = kRounding * (x.norm() + solids_[1].X.translation.norm() + size());
     faces_.near.clear();
     for (const PlaneFace& plane : faces_.active.planes) {
       if (&plane == but_one || &plane == but_two) continue;
@@ -377,17 +380,42 @@ class WindowSearch {
     }
   }
 
+  // The frame of the first look; true in a layer between two plane faces, which has one as flat as
+  // this. From the unit ball few chords would run along the layer, perhaps one, and what they tell
+  // is far too flat across or along it.
+  bool first_frame(const Vec3& c, Mat3& spread) const {
+    for (const PlaneFace& one : faces_.active.planes) {
+      if (one.owner != Owner::kA) continue;
+      for (const PlaneFace& two : faces_.active.planes) {
+        if (two.owner != Owner::kB || (one.normal + two.normal).norm() > kFlush) continue;
+        const double height = one.offset - one.normal.dot(c) + two.offset - two.normal.dot(c);
+        if (!(height > 0.0 && height < kFlush * size())) continue;
+        spread = basis_with_z((one.normal - two.normal).normalized());
+        spread.col(2) *= height / size();
+        return true;
+      }
+    }
+    spread = Mat3::Identity();
+    return false;
+  }
+
+  // Whether an ellipsoid of these second moments is about a ball.
+  static bool is_even(const Mat3& second, const Eigen::LLT<Mat3>& factor) {
+    const double mean = std::cbrt(factor.matrixLLT().diagonal().prod());
+    return second.trace() < 3.0 * kEven * mean * mean;
+  }
+
   // Chords from the point c in directions spread * axis, and what they tell of the overlap.
   void round_off(LinesWindow& window) {
     Vec3 c = window.center;
-    Mat3 spread = Mat3::Identity();
-    bool first_look = true;  // no frame of the overlap's own, or one far too thick for it
-    for (int step = 0; step < kMaxRoundings; ++step) {
+    Mat3 spread;
+    const bool layer = first_frame(c, spread);
+    for (int step = 0; step < (layer ? kMaxInLayer : kMaxRoundings); ++step) {
       ChordSums s;
       look_from(c);
       double m[9];
       for (int i = 0; i < 9; ++i) m[i] = spread(i / 3, i % 3);
-      VOLCONTACT_SIMD_CALL(path_, chords, view_, m, first_look, s);
+      VOLCONTACT_SIMD_CALL(path_, chords, view_, m, step == 0, s);
       // In a very thin overlap what an ellipsoid was made of may be gone by rounding in the next
       // one.
       if (!(s.total > 0.0)) break;
@@ -411,8 +439,9 @@ class WindowSearch {
       c = step_inside(c, spread * shift);
       const Eigen::LLT<Mat3> factor(second);
       spread = spread * Mat3(factor.matrixL());
-      if (!first_look && s.longest < kRound * s.shortest) break;
-      first_look = step == 0 && s.shortest * s.shortest < kTooThin * s.longest * s.longest;
+      // No chord may come near the axis of a layer that is seen far too high, and none is long.
+      const bool even = !layer || is_even(second, factor);
+      if (step > 0 && even && s.longest < kRound * s.shortest) break;
     }
     if (!(window.volume > 0.0) || !inside(c)) return;
     window.kind = LinesWindow::Kind::kOverlap;

@@ -24,17 +24,20 @@ const Csg kPlate = box(.3, .2, .05) - tube(.05, .1, at(.1, 0, 0)) - tube(.04, .1
 
 // A slab laid over both holes of a plate, which it dips into.
 TEST(Shell, ASlabOverTwoHoles) {
-  const double depth = 1e-3, area = .4 * .3 - kPi * (.05 * .05 + .04 * .04);
-  const Interference out = sweep(Box({.half_sizes = {.2, .15, .1}}), kPlate, at(0, 0, depth - .15));
-  ASSERT_EQ(out.sites.size(), 1u);
-  const VolumeMetrics& m = out.total;
-  EXPECT_NEAR(m.volume, area * depth, 1e-5 * area * depth);
-  EXPECT_NEAR(m.area, area, 2.0 * depth);
-  EXPECT_LE((m.normal() - Vec3::UnitZ()).norm(), 1e-6);
-  EXPECT_NEAR(m.area_vector.norm(), area, 1e-5 * area);
-  EXPECT_NEAR(m.depth, depth, 1e-9);
-  EXPECT_NEAR(m.depth_moment, 0.5 * depth * depth * area, 1e-3 * depth * depth * area);
-  EXPECT_LE(m.volume_error, 1e-3 * m.volume);
+  const double area = .4 * .3 - kPi * (.05 * .05 + .04 * .04);
+  for (const double depth : {1e-3, 1e-9}) {
+    const Interference out =
+        sweep(Box({.half_sizes = {.2, .15, .1}}), kPlate, at(0, 0, depth - .15));
+    ASSERT_EQ(out.sites.size(), 1u);
+    const VolumeMetrics& m = out.total;
+    EXPECT_NEAR(m.volume, area * depth, 1e-5 * area * depth);
+    EXPECT_NEAR(m.area, area, 2.0 * depth);
+    EXPECT_LE((m.normal() - Vec3::UnitZ()).norm(), 1e-6);
+    EXPECT_NEAR(m.area_vector.norm(), area, 1e-5 * area);
+    EXPECT_NEAR(m.depth, depth, 1e-6 * depth);
+    EXPECT_NEAR(m.depth_moment, 0.5 * depth * depth * area, 1e-3 * depth * depth * area);
+    EXPECT_LE(m.volume_error, 1e-3 * m.volume);
+  }
 }
 
 // Columns in a cap are a parabola along every curve of its plane side.

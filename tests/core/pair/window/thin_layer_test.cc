@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/support/csg_solids.h"
 #include "core/support/evaluated.h"
 #include "core/support/random.h"
 #include "volcontact/pair/window/convex_window.h"
@@ -27,10 +28,10 @@ struct Case {
   }
 
   // Where the line at x, along y, lies in both footprints.
-  bool common(double x, double& low, double& high) const {
+  bool common(double radius, double x, double& low, double& high) const {
     const Vec3 &u = X.rotation.col(0), &v = X.rotation.col(1);
     const Vec3 middle = X.translation - kThick * X.rotation.col(2);
-    high = std::sqrt(kRadius * kRadius - x * x);
+    high = std::sqrt(radius * radius - x * x);
     low = -high;
     if (!box) {
       const double square = kLong * kLong - (x - middle.x()) * (x - middle.x());
@@ -49,21 +50,22 @@ struct Case {
     return low < high;
   }
 
-  double volume() const {
+  // Of what lies over a disc.
+  double volume(double radius = kRadius) const {
     constexpr int kStrips = 20000;
-    constexpr double kStep = 2.0 * kRadius / kStrips;
+    const double step = 2.0 * radius / kStrips;
     double sum = 0.0;
     for (int i = 0; i < kStrips; ++i) {
-      const double x = (i + 0.5) * kStep - kRadius;
+      const double x = (i + 0.5) * step - radius;
       double low, high;
-      if (!common(x, low, high)) continue;
+      if (!common(radius, x, low, high)) continue;
       const double one = reach(x, low), other = reach(x, high), most = std::max(one, other);
       if (!(most > 0.0)) continue;
       sum +=
           (high - low) * (std::min(one, other) >= 0.0 ? 0.5 * (one + other)
                                                       : 0.5 * most * most / std::abs(one - other));
     }
-    return sum * kStep;
+    return sum * step;
   }
 };
 
@@ -79,16 +81,16 @@ Case random_case(test::Random& random, double lean, double depth, double nearest
 }
 
 // Both orders, to the error that they claim and 1e-5 of the sum over strips.
-void expect_right(const Case& c, int number) {
-  const Cylinder a({.radius = kRadius, .half_length = kEnd});
+void expect_right(const Shape& a, const Case& c, double expected, int number) {
   const Shape b = c.box ? Shape(Box({.half_sizes = {kWide, kLong, kThick}}))
                         : Shape(Cylinder({.radius = kLong, .half_length = kThick}));
-  const double expected = c.volume();
   const double slack = 1e-5 * expected + 1e-15;
   const VolumeMetrics ab = evaluated(a, b, c.X).total, ba = evaluated(b, a, c.X.inverse()).total;
   EXPECT_NEAR(ab.volume, expected, ab.volume_error + slack) << number;
   EXPECT_NEAR(ba.volume, expected, ba.volume_error + slack) << number;
 }
+
+const Cylinder kDrum({.radius = kRadius, .half_length = kEnd});
 
 TEST(ThinLayer, FacesNearlyInOnePlaneAreRightToTheirClaims) {
   test::Random random(11);
@@ -96,8 +98,9 @@ TEST(ThinLayer, FacesNearlyInOnePlaneAreRightToTheirClaims) {
   for (int i = 0; i < 600; ++i) {
     const double lean = random.log_uniform(1e-11, 1e-8);
     const Case c = random_case(random, lean, lean * random.uniform(0.01, 0.3), 0.2);
-    expect_right(c, i);
-    touching += c.volume() > 0.0 ? 1 : 0;
+    const double expected = c.volume();
+    expect_right(kDrum, c, expected, i);
+    touching += expected > 0.0 ? 1 : 0;
   }
   EXPECT_GT(touching, 400);
 }
@@ -106,7 +109,23 @@ TEST(ThinLayer, ANanometreIsRightToItsClaim) {
   test::Random random(12);
   for (int i = 0; i < 600; ++i) {
     const double lean = i % 3 == 0 ? 0.0 : random.log_uniform(1e-10, 1e-7);
-    expect_right(random_case(random, lean, 1e-9, 0.0), i);
+    const Case c = random_case(random, lean, 1e-9, 0.0);
+    expect_right(kDrum, c, c.volume(), i);
+  }
+}
+
+// The same on the rim of a bore in the drum's end, a tube or a cone.
+TEST(ThinLayer, OnTheRimOfABore) {
+  constexpr double kBore = 0.15;
+  const Csg drum(kDrum);
+  const Csg tube = drum - testing::tube(kBore, 0.5),
+            cone = drum - testing::cone(0.05, 0.25, 0.1, testing::at(0, 0, kEnd));
+  test::Random random(13);
+  for (int i = 0; i < 400; ++i) {
+    const double lean = i % 4 == 0 ? 0.0 : random.log_uniform(1e-10, 1e-8);
+    Case c = random_case(random, lean, 1e-9, 0.0);
+    c.box = true;
+    expect_right(i % 2 == 0 ? tube : cone, c, c.volume() - c.volume(kBore), i);
   }
 }
 
