@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "volcontact/pair/quadrature/outer_rule.h"
 #include "volcontact/pair/sections/even_turn.h"
@@ -25,6 +26,8 @@ constexpr double kWhole = 0.999;   // share of a solid in the overlap, that is a
 // Of the smaller solid. An overlap of 1e-9 is not to be missed, and from a far corner of a thin one
 // the window sees a small part of it.
 constexpr double kLeastSeen = 1e-12;
+constexpr double kSamePlace = 1e-9;   // of the height of an overlap
+constexpr double kRounding = 2e-15;   // of a place, per size
 constexpr int kLeastArcs = 4;         // where no corners are known
 constexpr double kWidestAngle = 2.3;  // of an arc between corners [rad]
 
@@ -115,8 +118,16 @@ class LinesRun {
 
   bool is_flat(Owner owner) const { return !s_.faces.active.has_rounds(owner); }
 
-  // Length to which places are known.
-  double tolerance() const { return 1e-9 * (window_.spread.transpose() * frame_.t).norm(); }
+  // Length to which places are known: part of the height of the overlap, but in a thin layer more
+  // than that by rounding.
+  double tolerance() const {
+    const double height = (window_.spread.transpose() * frame_.t).norm();
+    return std::max(kSamePlace * height, kRounding * reach());
+  }
+  // How far from the origins places lie.
+  double reach() const {
+    return window_.spread.norm() + frame_.center.norm() + X_AB_.translation.norm();
+  }
 
   // The normal of the one plane that a flat solid turns towards the other, from B to A; zero if
   // there is none or more than one.
@@ -344,9 +355,12 @@ class LinesRun {
     }
     result.depth_moment = sums.depth_moment;
     result.depth = std::max(sums.high, s_.breaks.high) - std::min(sums.low, s_.breaks.low);
-    result.volume_error = std::max(error_, open_) + outer_rule::kInnerError * result.volume;
-    if (std::max(error_, open_) > options_.tolerance * result.volume)
-      result.status = Status::kApproximate;
+    // Of the pose, and of places that are worked out from it.
+    const double rounding = std::numeric_limits<double>::epsilon() * reach() *
+                            std::max(result.area, result.counter_area);
+    const double error = std::max(error_, open_) + rounding;
+    result.volume_error = error + outer_rule::kInnerError * result.volume;
+    if (error > options_.tolerance * result.volume) result.status = Status::kApproximate;
     return transformed(result, Pose{Mat3::Identity(), frame_.center});
   }
 

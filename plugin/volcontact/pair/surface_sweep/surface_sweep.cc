@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcontact/pair/surface_sweep/face_edge.h"
 #include "volcontact/pair/surface_sweep/sweep_depth.h"
 
 namespace volcontact {
@@ -11,12 +12,13 @@ namespace {
 
 constexpr double kMargin = 0.02;                   // of the box around what the window leaves
 constexpr double kTargets[] = {1e-4, 1e-6, 1e-8};  // of a flux, relative
-constexpr double kGood = 1e-4;       // error of V at which the first target will do, relative
-constexpr double kWorst = 1e-3;      // error of V with which an answer is one, relative
-constexpr double kSamePlace = 1e-6;  // of the box: two ends in one place
-constexpr int kRounds = 4;           // of looking at curves that neighbours tell of
-constexpr double kSpeck = 1e-10;     // of V: a region that is none
-constexpr double kContained = 1e-6;  // of V: all of a solid
+constexpr double kGood = 1e-4;        // error of V at which the first target will do, relative
+constexpr double kWorst = 1e-3;       // error of V with which an answer is one, relative
+constexpr double kSamePlace = 1e-6;   // of the box: two ends in one place
+constexpr int kRounds = 4;            // of looking at curves that neighbours tell of
+constexpr double kSpeck = 1e-10;      // of V: a region that is none
+constexpr double kContained = 1e-6;   // of V: all of a solid
+constexpr double kBesideEdge = 1e-5;  // of the box: how far from an edge to look for surface
 constexpr double kDoubt = 5.0;  // error of V by how far the surface is from closed, as measured
 
 class SweepRun {
@@ -43,8 +45,11 @@ class SweepRun {
     const Pose X_WA = window_.X_AW.inverse();
     if (!s_.solids.read(*shapes_[0], X_WA, *shapes_[1], X_WA * X_AB_, half)) return false;
     if (!make_families()) return false;
+    bool looked = views_[0].convex && views_[1].convex;  // they have one region
     for (const double target : kTargets) {
       if (!sweep(target)) return false;
+      if (!looked && look_along_edges() && !sweep(target)) return false;
+      looked = true;
       find_regions();
       if (!(volume_ > 0.0)) return false;
       if (error_ <= kGood * volume_) break;
@@ -219,6 +224,58 @@ class SweepRun {
       }
     }
     return false;
+  }
+
+  // A region may be so small that the first curves miss it in all its faces. Most have an edge in
+  // a plane. True when there is surface along one that has not been looked at.
+  bool look_along_edges() {
+    const auto count = static_cast<int>(s_.family_of.size());
+    const double beside = kBesideEdge * s_.solids.half.norm();
+    bool more = false;
+    for (int f = 0; f < count; ++f) {
+      if (s_.family_of[f] < 0 || s_.solids.faces[f].kind != SweepFace::Kind::kPlane) continue;
+      for (int g = 0; g < count; ++g) {
+        const SweepFace& other = s_.solids.faces[g];
+        if (g == f || other.twin != g) continue;
+        if (g < f && other.kind == SweepFace::Kind::kPlane) continue;  // its curves tell as much
+        FaceCurve curves[2];
+        if (!curves_beside_edge(s_.solids.faces[f], other, beside, curves)) continue;
+        for (const FaceCurve& curve : curves) {
+          if (!curve.circle && !meets_box(curve, s_.solids.half)) continue;
+          find_spans(s_.solids, curve, f, s_.patch.curve, other_);
+          for (int i = 0; i < other_.count; ++i) {
+            const SweepSpans::Span& span = other_.span[i];
+            more |= is_new(f, curve.at(0.5 * (span.low.t + span.high.t)));
+          }
+        }
+      }
+    }
+    return more;
+  }
+
+  static bool meets_box(const FaceCurve& line, const Vec3& half) {
+    double low = -kInfinity, high = kInfinity;
+    for (int i = 0; i < 3; ++i) {
+      const double to_middle = -line.p[i] / line.u[i], way = std::abs(half[i] / line.u[i]);
+      low = std::max(low, to_middle - way);
+      high = std::min(high, to_middle + way);
+    }
+    return !(low > high);
+  }
+
+  // Whether there is surface at a place of a face on a curve that was not known to have it.
+  bool is_new(int f, const Vec3& x) {
+    const int k = s_.family_of[f];
+    const CurveFamily& family = s_.families[k];
+    double u, t;
+    family.locate(x, u, t);
+    if (span_at(f, family, u, t) < 0) return false;
+    for (const SweepStretch& stretch : s_.patches[k].stretches) {
+      if (u >= stretch.low && u <= stretch.high && stretch.count == spans_.count) return false;
+    }
+    s_.patches[k].hints.push_back(u);
+    s_.patches[k].swept = false;
+    return true;
   }
 
   // Which stretch of a curve (in spans_) reaches to t; -1 for none.

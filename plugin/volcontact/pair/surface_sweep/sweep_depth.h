@@ -72,12 +72,14 @@ class SweepDepth {
     ray.u = d;
     ray.v = Vec3::Zero();
     find_spans(solids_, ray, -1, s_, spans_);
+    // In a thin layer all of it may be near.
     const double near = 1e-7 * solids_.half.norm();
+    double length = 0.0;
     for (int i = 0; i < spans_.count; ++i) {
       const SweepSpans::Span& span = spans_.span[i];
-      if (span.low.t <= near && span.high.t > near) return span.high.t;
+      if (span.low.t <= near) length = std::max(length, span.high.t);
     }
-    return 0.0;
+    return length;
   }
 
   // Columns start at a few places alone, and the longest may be at none of them: from the longest

@@ -22,7 +22,7 @@ constexpr int kMostSteps = 60;              // in search of one
 constexpr double kStraightArc = 0.5 * kPi;  // the longest for one Gauss rule [rad]
 constexpr double kRounding = 1e-15;         // of fluxes, per size
 
-constexpr double kLineNode = 0.28867513459481288;  // of the rule with two nodes, from the middle
+constexpr double kLineNode = 0.38729833462074169;  // of the rule with three nodes, from the middle
 
 class FaceSweep {
  public:
@@ -332,37 +332,31 @@ class FaceSweep {
   void add_span(const SweepSpans::Span& span, double u, double weight, int strip, SweepFlux& sum) {
     const FaceCurve curve = family_.curve(u);
     const double low = span.low.t, length = span.high.t - low;
-    const auto add = [&](double t, double share, bool place) {
+    const auto add = [&](double t, double share, bool place, bool flux) {
       const Vec3 x = curve.at(t);
       const Vec3 n = span.side * weight * share * length * family_.element(u, t, x);
-      if (place) {
-        surface_.places.push_back({x, n, strip});
-      } else {
-        sum.add(x, n);
-      }
+      if (place) surface_.places.push_back({x, n, strip});
+      if (flux) sum.add(x, n);
     };
     surface_.tips.push_back({curve.at(low), strip});
     surface_.tips.push_back({curve.at(span.high.t), strip});
-    add(low + (0.5 - kLineNode) * length, 0.5, true);
-    add(low + (0.5 + kLineNode) * length, 0.5, true);
-    if (!curve.circle) {
-      // Degree 5 is exact: the terms are of degree 4 at most.
-      constexpr double kNode = 0.38729833462074169;
-      add(low + 0.5 * length, 4.0 / 9.0, false);
-      add(low + (0.5 - kNode) * length, 5.0 / 18.0, false);
-      add(low + (0.5 + kNode) * length, 5.0 / 18.0, false);
-      return;
-    }
+    // Degree 5: the terms are of degree 4 at most, and so is the square of a column where the
+    // overlap is a cap.
+    const bool line = !curve.circle;
+    add(low + 0.5 * length, 4.0 / 9.0, true, line);
+    add(low + (0.5 - kLineNode) * length, 5.0 / 18.0, true, line);
+    add(low + (0.5 + kLineNode) * length, 5.0 / 18.0, true, line);
+    if (line) return;
     if (span.low.face < 0 && span.high.face < 0) {  // all round: even steps are exact
       constexpr int kSteps = 12;
-      for (int i = 0; i < kSteps; ++i) add(2.0 * kPi * i / kSteps, 1.0 / kSteps, false);
+      for (int i = 0; i < kSteps; ++i) add(2.0 * kPi * i / kSteps, 1.0 / kSteps, false, true);
       return;
     }
     const int parts = std::max(1, static_cast<int>(std::ceil(length / kStraightArc)));
     for (int i = 0; i < parts; ++i) {
       for (int k = 0; k < LegendreTable::kCount; ++k) {
         add(low + length * (i + OuterRule::kNodes[k]) / parts, OuterRule::kWeights[k] / parts,
-            false);
+            false, true);
       }
     }
   }

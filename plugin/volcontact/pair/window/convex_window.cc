@@ -68,7 +68,9 @@ alignas(64) constexpr ChordAxes kAxes = {
 namespace volcontact {
 namespace {
 
-constexpr int kMaxRoundings = 12;    // how often the frame is made anew
+constexpr int kMaxRoundings = 12;  // how often the frame is made anew
+constexpr int kMaxInLayer = 32;    // the same in a layer between plane faces
+constexpr double kEven = 1.1;      // mean of squares of axes by the square of their mean, of a ball
 constexpr double kRounding = 1e-12;  // of a common point, per its distance from both frames
 constexpr int kMaxTurns = 5;         // in search of a place behind both planes of an edge
 constexpr int kMaxMoves = 8;         // from a common point on the faces into the overlap
@@ -163,6 +165,12 @@ class WindowSearch {
     return static_cast<int>(
         std::count_if(faces_.active.planes.begin(), faces_.active.planes.end(),
                       [=](const PlaneFace& plane) { return plane.owner == owner; }));
+  }
+
+  // Of the smaller solid, about.
+  double size() const {
+    return std::cbrt(
+        std::min(solids_[0].view.own_metrics().volume, solids_[1].view.own_metrics().volume));
   }
 
   bool inside(const Vec3& x) const {
@@ -277,22 +285,29 @@ class WindowSearch {
         if (two.owner != Owner::kB || (one.normal + two.normal).norm() > kFlush) continue;
         const Solid2& b = solid(Owner::kB);
         const double depth = one.offset + b.view.support_height(b.X, -one.normal);
-        const double size =
-            std::cbrt(std::min(solids_[0].view.own_metrics().volume, b.view.own_metrics().volume));
-        if (!(depth > 0.0 && depth < kFlush * size)) continue;
-        const FlushFaces faces{one.normal, one.offset, two.normal, depth, size};
+        if (!(depth > 0.0 && depth < kFlush * size())) continue;
+        const FlushFaces faces{one.normal, one.offset, two.normal, depth, size()};
         if (!find_common_point_in_layer(solids_[0].view, b.view, b.X, faces, start)) continue;
-        move_to_middle(one.normal, start);
-        // Off the edges, along the layer.
+        // Off the edges, along the layer. A place on one of the two faces may be out of it by
+        // rounding, and so may be all of a line along it.
         for (int step = 0; step < kMaxMoves && !inside(start); ++step) {
+          go_between(one, two, start);
+          move_to_middle(one.normal, start);
+          if (inside(start)) break;
           const Vec3 way = way_from_faces(start, &one, &two);
           if (!move_to_middle(way - way.dot(one.normal) * one.normal, start)) break;
-          move_to_middle(one.normal, start);
         }
+        move_to_middle(one.normal, start);
         if (inside(start)) return true;
       }
     }
     return false;
+  }
+
+  // Half way between two faces that look at each other.
+  static void go_between(const PlaneFace& one, const PlaneFace& two, Vec3& x) {
+    const double to_one = one.offset - one.normal.dot(x), to_two = two.offset - two.normal.dot(x);
+    x += 0.5 * (to_one - to_two) * one.normal;
   }
 
   // A common point may lie on faces, at worst in a sharp corner of the overlap: from there go away
@@ -320,9 +335,7 @@ class WindowSearch {
   // The direction that leaves every near face, but for two, at the largest angle. The size of the
   // solids counts, too: a face may pass through the origin of both.
   Vec3 way_from_faces(const Vec3& x, const PlaneFace* but_one, const PlaneFace* but_two) const {
-    const double size = std::cbrt(
-        std::min(solids_[0].view.own_metrics().volume, solids_[1].view.own_metrics().volume));
-    const double distance = kRounding * (x.norm() + solids_[1].X.translation.norm() + size);
+    const double distance = kRounding * (x.norm() + solids_[1].X.translation.norm() + size());
     faces_.near.clear();
     for (const PlaneFace& plane : faces_.active.planes) {
       if (&plane == but_one || &plane == but_two) continue;
@@ -367,11 +380,37 @@ class WindowSearch {
     }
   }
 
+  // The frame of the first look; true in a layer between two plane faces, which has one as flat as
+  // this. From the unit ball few chords would run along the layer, perhaps one, and what they tell
+  // is far too flat across or along it.
+  bool first_frame(const Vec3& c, Mat3& spread) const {
+    for (const PlaneFace& one : faces_.active.planes) {
+      if (one.owner != Owner::kA) continue;
+      for (const PlaneFace& two : faces_.active.planes) {
+        if (two.owner != Owner::kB || (one.normal + two.normal).norm() > kFlush) continue;
+        const double height = one.offset - one.normal.dot(c) + two.offset - two.normal.dot(c);
+        if (!(height > 0.0 && height < kFlush * size())) continue;
+        spread = basis_with_z((one.normal - two.normal).normalized());
+        spread.col(2) *= height / size();
+        return true;
+      }
+    }
+    spread = Mat3::Identity();
+    return false;
+  }
+
+  // Whether an ellipsoid of these second moments is about a ball.
+  static bool is_even(const Mat3& second, const Eigen::LLT<Mat3>& factor) {
+    const double mean = std::cbrt(factor.matrixLLT().diagonal().prod());
+    return second.trace() < 3.0 * kEven * mean * mean;
+  }
+
   // Chords from the point c in directions spread * axis, and what they tell of the overlap.
   void round_off(LinesWindow& window) {
     Vec3 c = window.center;
-    Mat3 spread = Mat3::Identity();
-    for (int step = 0; step < kMaxRoundings; ++step) {
+    Mat3 spread;
+    const bool layer = first_frame(c, spread);
+    for (int step = 0; step < (layer ? kMaxInLayer : kMaxRoundings); ++step) {
       ChordSums s;
       look_from(c);
       double m[9];
@@ -400,7 +439,9 @@ class WindowSearch {
       c = step_inside(c, spread * shift);
       const Eigen::LLT<Mat3> factor(second);
       spread = spread * Mat3(factor.matrixL());
-      if (step > 0 && s.longest < kRound * s.shortest) break;
+      // No chord may come near the axis of a layer that is seen far too high, and none is long.
+      const bool even = !layer || is_even(second, factor);
+      if (step > 0 && even && s.longest < kRound * s.shortest) break;
     }
     if (!(window.volume > 0.0) || !inside(c)) return;
     window.kind = LinesWindow::Kind::kOverlap;

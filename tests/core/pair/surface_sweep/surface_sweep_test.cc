@@ -24,17 +24,97 @@ const Csg kPlate = box(.3, .2, .05) - tube(.05, .1, at(.1, 0, 0)) - tube(.04, .1
 
 // A slab laid over both holes of a plate, which it dips into.
 TEST(Shell, ASlabOverTwoHoles) {
-  const double depth = 1e-3, area = .4 * .3 - kPi * (.05 * .05 + .04 * .04);
-  const Interference out = sweep(Box({.half_sizes = {.2, .15, .1}}), kPlate, at(0, 0, depth - .15));
-  ASSERT_EQ(out.sites.size(), 1u);
-  const VolumeMetrics& m = out.total;
-  EXPECT_NEAR(m.volume, area * depth, 1e-5 * area * depth);
-  EXPECT_NEAR(m.area, area, 2.0 * depth);
-  EXPECT_LE((m.normal() - Vec3::UnitZ()).norm(), 1e-6);
-  EXPECT_NEAR(m.area_vector.norm(), area, 1e-5 * area);
-  EXPECT_NEAR(m.depth, depth, 1e-9);
-  EXPECT_NEAR(m.depth_moment, 0.5 * depth * depth * area, 1e-3 * depth * depth * area);
-  EXPECT_LE(m.volume_error, 1e-3 * m.volume);
+  const double area = .4 * .3 - kPi * (.05 * .05 + .04 * .04);
+  for (const double depth : {1e-3, 1e-9}) {
+    const Interference out =
+        sweep(Box({.half_sizes = {.2, .15, .1}}), kPlate, at(0, 0, depth - .15));
+    ASSERT_EQ(out.sites.size(), 1u);
+    const VolumeMetrics& m = out.total;
+    EXPECT_NEAR(m.volume, area * depth, 1e-5 * area * depth);
+    EXPECT_NEAR(m.area, area, 2.0 * depth);
+    EXPECT_LE((m.normal() - Vec3::UnitZ()).norm(), 1e-6);
+    EXPECT_NEAR(m.area_vector.norm(), area, 1e-5 * area);
+    EXPECT_NEAR(m.depth, depth, 1e-6 * depth);
+    EXPECT_NEAR(m.depth_moment, 0.5 * depth * depth * area, 1e-3 * depth * depth * area);
+    EXPECT_LE(m.volume_error, 1e-3 * m.volume);
+  }
+}
+
+// Columns in a cap are a parabola along every curve of its plane side.
+TEST(Shell, DepthMomentOfACap) {
+  const double R = .05;
+  const Csg bored = box(.3, .3, .1) - tube(.05, .2);
+  for (const double depth : {1e-4, 1e-3, 1e-2}) {
+    const double d = R - depth;
+    const auto primitive = [d](double s) {
+      return s * s * (s * s / 4.0 - 2.0 * d * s / 3.0 + d * d / 2.0);
+    };
+    const double expected = kPi * (primitive(R) - primitive(d));
+    const VolumeMetrics m = sweep(bored, Sphere({.radius = R}), at(.15, .1, .1 + d)).total;
+    EXPECT_NEAR(m.depth_moment, expected, 2e-2 * expected) << depth;
+  }
+}
+
+// A capsule that lies across an edge of a box, against columns on a lattice. Those of the sweep
+// start at a few places on either side of the edge.
+TEST(Shell, DepthMomentOfACapsuleAcrossAnEdge) {
+  const Box block({.half_sizes = {.1, .1, .1}});
+  test::Random random(3895);
+  double mean = 0.0;
+  constexpr int kPoses = 25, kLines = 120;
+  for (int i = 0; i < kPoses; ++i) {
+    const double radius = random.log_uniform(.01, .05), lean = random.uniform(.4, 1.2);
+    const double along = random.uniform(0.0, kPi), depth = radius * random.log_uniform(1e-3, .3);
+    const Capsule rod({.radius = radius, .half_length = .15});
+    const Vec3 out(std::cos(lean), 0, std::sin(lean)), side(-std::sin(lean), 0, std::cos(lean));
+    const Vec3 axis = std::cos(along) * side + std::sin(along) * Vec3::UnitY();
+    if (std::abs(std::cos(along)) < .3) continue;  // else about parallel to the edge
+    const Pose X{basis_with_z(axis),
+                 Vec3(.1, random.uniform(-.05, .05), .1) + (radius - depth) * out};
+    const VolumeMetrics m = sweep(block, rod, X).total;
+    // Axes in which the overlap is longest and shortest as seen along the normal.
+    Mat3 basis = basis_with_z(m.normal());
+    const Mat3 seen = basis.transpose() * m.second_moment() * basis / m.volume;
+    const double turn = 0.5 * std::atan2(2.0 * seen(0, 1), seen(0, 0) - seen(1, 1));
+    basis = basis * Eigen::AngleAxisd(turn, Vec3::UnitZ()).toRotationMatrix();
+    double step[2], expected = 0.0;
+    for (int j = 0; j < 2; ++j) {
+      const Vec3 e = basis.col(j);
+      step[j] = 4.0 * std::sqrt(e.dot(m.second_moment() * e) / m.volume) / kLines;
+    }
+    for (int j = -kLines; j <= kLines; ++j) {
+      for (int k = -kLines; k <= kLines; ++k) {
+        const Vec3 x = m.centroid + j * step[0] * basis.col(0) + k * step[1] * basis.col(1);
+        const RayInterval in_a = block.ray(x, basis.col(2));
+        const RayInterval in_b = rod.ray(X.inverse() * x, X.rotation.transpose() * basis.col(2));
+        const double length = std::min(in_a.leave, in_b.leave) - std::max(in_a.enter, in_b.enter);
+        if (length > 0.0) expected += 0.5 * length * length * step[0] * step[1];
+      }
+    }
+    EXPECT_NEAR(m.depth_moment, expected, 0.12 * expected) << i;
+    mean += (m.depth_moment / expected - 1.0) / kPoses;
+  }
+  EXPECT_NEAR(mean, 0.0, 0.02);
+}
+
+// A region far smaller than the way from one of the first curves to the next, beside a large one: a
+// cube in a block, which a plate overlaps besides.
+TEST(Shell, ASmallRegionBesideALargeOne) {
+  const Shape block = Box({.half_sizes = {.3, .3, .1}});
+  const Csg bored = box(.3, .3, .1) - tube(.05, .2);
+  test::Random random(58);
+  for (int i = 0; i < 40; ++i) {
+    const double half = random.log_uniform(1e-3, 1e-2);
+    const Pose X_cube{random.rotation(), Vec3(random.uniform(.1, .25), random.uniform(-.2, .2),
+                                              random.uniform(-.05, .05))};
+    const Csg b = box(.1, .1, .1, at(-.15, -.15, .15)) + box(half, half, half, X_cube);
+    const double expected = .2 * .2 * .05 + 8.0 * half * half * half;
+    for (const Shape& a : {block, Shape(bored)}) {
+      const Interference out = sweep(a, b, {});
+      EXPECT_NEAR(out.total.volume, expected, 1e-9 * expected) << i;
+      EXPECT_EQ(out.sites.size(), 2u) << i;
+    }
+  }
 }
 
 // What is in the plate is what is in the block less what is in the holes.
