@@ -106,9 +106,15 @@ def make_system(out: Path, tag: str) -> System:
         native.say(f"Debian {suite} for {MACHINE}")
         shutil.rmtree(root, ignore_errors=True)
         native.run(*BOOTSTRAP, f"--include={','.join(SYSTEM)}", suite, root)
-        for folder in ("bin", "lib"):  # which packages of newer systems leave to the installer
+        # What packages leave to their installers: links of newer systems, and the one file of
+        # certificates, which pip reads even without a network.
+        for folder in ("bin", "lib"):
             if not (root / folder).exists():
                 (root / folder).symlink_to(f"usr/{folder}")
+        authorities = sorted((root / "usr/share/ca-certificates").rglob("*.crt"))
+        bundle = root / "etc/ssl/certs/ca-certificates.crt"
+        bundle.parent.mkdir(parents=True, exist_ok=True)
+        bundle.write_text("".join(path.read_text() for path in authorities))
     shutil.copy(EMULATOR, root / "usr" / "bin")
     return System(root) if tag in SUITES else add_python(out, root, tag)
 
@@ -156,7 +162,8 @@ def try_wheel(out: Path, wheel: Path, releases: list[str]) -> list[dict[str, obj
         begin = time.monotonic()
         # What is imported is compiled to byte code then; all of NumPy would take minutes.
         install = ["-m", "pip", "install", "-q", "--user", "--no-index", "--no-compile"]
-        install += ["--find-links", "/home/index", f"mujoco=={release}", "volcontact"]
+        install += ["--no-warn-script-location", "--find-links", "/home/index"]
+        install += [f"mujoco=={release}", "volcontact"]
         system.prints(*install)
         installed = time.monotonic() - begin
         depth = json.loads(system.prints("-c", native.DROP))["depth"]
