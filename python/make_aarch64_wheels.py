@@ -57,6 +57,8 @@ def main() -> int:
     eigen = native.near(source, arguments.eigen)
     os.environ["CMAKE_TOOLCHAIN_FILE"] = str(TOOLCHAIN)
     os.environ["_PYTHON_HOST_PLATFORM"] = f"linux-{MACHINE}"
+    # uv remembers what a Python says of its machine, and would tell every later command.
+    os.environ["UV_CACHE_DIR"] = str(out / "uv-cache")
     os.environ["LD_LIBRARY_PATH"] = str(LIBRARIES)  # where auditwheel finds what it adds
     raw = []
     for python in arguments.pythons:
