@@ -6,6 +6,7 @@ from __future__ import annotations
 import csv
 import os
 import re
+import shutil
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
@@ -161,7 +162,8 @@ def wheels(arguments: list[str]) -> None:
             pythons = {other_python.name: other_python} | pythons
     script, other = "make_wheels.py", ["--other", "3.5.0"]
     if "--machine=aarch64" in arguments:
-        need_system("g++-aarch64-linux-gnu", "mmdebstrap", "qemu-user-static")
+        maven = [] if shutil.which("mvn") else ["maven"]  # it may be there without a package
+        need_system("g++-aarch64-linux-gnu", "qemu-user-static", *maven)
         script, other = "make_aarch64_wheels.py", []
         arguments = [each for each in arguments if not each.startswith("--machine")]
     run(

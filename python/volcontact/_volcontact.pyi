@@ -875,11 +875,11 @@ class HuntCrossley(NormalForce):
     Args:
         stiffness [N/m^3]: k_v, force per interference volume; > 0
         damping [s/m]: a, relative rise of the force per approach speed; >= 0
-        restitution [-]: e, in place of damping: a from the speed of the blow; > 0 and <= 1
+        restitution [-]: e, instead of damping: a then follows from the impact speed; > 0 and <= 1
         restitution_speed_floor [m/s]: slower impacts are damped as if they had this speed; > 0
 
     Keeps, for each contact site:
-        impact_speed [m/s]: of the blow, negative once the bodies part, 0 before the first
+        impact_speed [m/s]: of the last impact, negative once the bodies part, 0 before the first
     """
 
     def __init__(self, *, stiffness: float = 10000000.0, damping: float = 0.0, restitution: float = 1.0, restitution_speed_floor: float = 0.01) -> None: ...
@@ -894,7 +894,7 @@ class HuntCrossley(NormalForce):
 
     @property
     def restitution(self) -> float:
-        """e, in place of damping: a from the speed of the blow [-]"""
+        """e, instead of damping: a then follows from the impact speed [-]"""
 
     @property
     def restitution_speed_floor(self) -> float:
@@ -921,8 +921,8 @@ class ElasticCoulomb(Friction):
     Args:
         friction [-]: mu; >= 0
         tangential_ratio [-]: k_t/k_n, tangential over normal stiffness of a patch; > 0
-        tangential_damping [-]: zeta of sticking, over the critical damping of a ball; >= 0
-        presliding [m]: least deflection under which a patch begins to slide; >= 0
+        tangential_damping [-]: zeta, damping ratio of sticking (1: critical for a ball); >= 0
+        presliding [m]: smallest deflection at which a patch begins to slide; >= 0
         coupling: how sliding and spinning share the friction; one of 'ellipsoid' 'quadrature' 'none'
 
     Keeps, for each contact site:
@@ -944,11 +944,11 @@ class ElasticCoulomb(Friction):
 
     @property
     def tangential_damping(self) -> float:
-        """zeta of sticking, over the critical damping of a ball [-]"""
+        """zeta, damping ratio of sticking (1: critical for a ball) [-]"""
 
     @property
     def presliding(self) -> float:
-        """least deflection under which a patch begins to slide [m]"""
+        """smallest deflection at which a patch begins to slide [m]"""
 
     @property
     def coupling(self) -> str:
@@ -960,7 +960,7 @@ class RegularizedCoulomb(Friction):
 
     Args:
         friction [-]: mu, kinetic; >= 0
-        slip_speed [m/s]: speed from which friction has its full strength; > 0
+        slip_speed [m/s]: slip speed above which friction has its full strength; > 0
         coupling: how sliding and spinning share the friction; one of 'ellipsoid' 'quadrature' 'none'
     """
 
@@ -972,7 +972,7 @@ class RegularizedCoulomb(Friction):
 
     @property
     def slip_speed(self) -> float:
-        """speed from which friction has its full strength [m/s]"""
+        """slip speed above which friction has its full strength [m/s]"""
 
     @property
     def coupling(self) -> str:
@@ -987,9 +987,9 @@ class Bristle(Friction):
         static_friction [-]: mu_S, after a long rest; at least mu_C; >= 0
         bristle_stiffness [N/m]: sigma_0, tangential stiffness of a contact site; > 0
         bristle_damping [N s/m]: sigma_1, damping of the deflection; > 0
-        viscous_friction [N s/m]: sigma_2, of the slip itself; >= 0
+        viscous_friction [N s/m]: sigma_2, viscous friction per slip speed; >= 0
         stribeck_speed [m/s]: v_s, where sticking gives way to sliding; > 0
-        dwell_time [s]: tau_dw, in which friction at rest grows to mu_S; > 0
+        dwell_time [s]: tau_dw, time constant with which friction at rest grows to mu_S; > 0
         coupling: how sliding and spinning share the friction; one of 'ellipsoid' 'quadrature' 'none'
 
     Keeps, for each contact site:
@@ -1018,7 +1018,7 @@ class Bristle(Friction):
 
     @property
     def viscous_friction(self) -> float:
-        """sigma_2, of the slip itself [N s/m]"""
+        """sigma_2, viscous friction per slip speed [N s/m]"""
 
     @property
     def stribeck_speed(self) -> float:
@@ -1026,7 +1026,7 @@ class Bristle(Friction):
 
     @property
     def dwell_time(self) -> float:
-        """tau_dw, in which friction at rest grows to mu_S [s]"""
+        """tau_dw, time constant with which friction at rest grows to mu_S [s]"""
 
     @property
     def coupling(self) -> str:

@@ -233,9 +233,9 @@ def wheels_of(rows: list[dict[str, str]], platform: str) -> str:
         lines.append((release, *(how.get(python, "") for python in pythons)))
     head = ("MuJoCo", *(f"CPython {tag[2]}.{tag[3:]}" for tag in pythons))
     return (
-        f"Platform `{platform}`; the box came to rest {', '.join(sorted(depth))} um deep in all of "
-        "them. Where a field is empty that MuJoCo\nhas no package for that Python, or was not "
-        "tried.\n\n" + table(head, lines)
+        f"Platform `{platform}`; the box came to rest {', '.join(sorted(depth))} um deep in each. "
+        "An empty field means that this MuJoCo\nhas no package for that Python, or that the two "
+        "were not tried.\n\n" + table(head, lines)
     )
 
 

@@ -38,11 +38,12 @@ class Bristle final : public Friction {
       Field<Params>{"bristle_damping", "N s/m", &Params::bristle_damping, kPositive,
                     "sigma_1, damping of the deflection", &rules::kLargerOfTwo},
       Field<Params>{"viscous_friction", "N s/m", &Params::viscous_friction, kNonNegative,
-                    "sigma_2, of the slip itself", &rules::kLargerOfTwo},
+                    "sigma_2, viscous friction per slip speed", &rules::kLargerOfTwo},
       Field<Params>{"stribeck_speed", "m/s", &Params::stribeck_speed, kPositive,
                     "v_s, where sticking gives way to sliding", &rules::kLargerOfTwo},
       Field<Params>{"dwell_time", "s", &Params::dwell_time, kPositive,
-                    "tau_dw, in which friction at rest grows to mu_S", &rules::kLargerOfTwo}};
+                    "tau_dw, time constant with which friction at rest grows to mu_S",
+                    &rules::kLargerOfTwo}};
   static constexpr std::array kChoices{
       Choice<Params, Coupling, 3>{"coupling", &Params::coupling, kCouplingWords, kCouplingMeaning}};
   static constexpr std::array kStates{

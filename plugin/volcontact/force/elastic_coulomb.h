@@ -30,9 +30,10 @@ class ElasticCoulomb final : public Friction {
       Field<Params>{"tangential_ratio", "-", &Params::tangential_ratio, kPositive,
                     "k_t/k_n, tangential over normal stiffness of a patch", &rules::kLargerOfTwo},
       Field<Params>{"tangential_damping", "-", &Params::tangential_damping, kNonNegative,
-                    "zeta of sticking, over the critical damping of a ball", &rules::kLargerOfTwo},
+                    "zeta, damping ratio of sticking (1: critical for a ball)",
+                    &rules::kLargerOfTwo},
       Field<Params>{"presliding", "m", &Params::presliding, kNonNegative,
-                    "least deflection under which a patch begins to slide", &rules::kLargerOfTwo}};
+                    "smallest deflection at which a patch begins to slide", &rules::kLargerOfTwo}};
   static constexpr std::array kChoices{
       Choice<Params, Coupling, 3>{"coupling", &Params::coupling, kCouplingWords, kCouplingMeaning}};
   static constexpr std::array kStates{

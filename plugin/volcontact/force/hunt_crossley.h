@@ -32,12 +32,13 @@ class HuntCrossley final : public NormalForce {
       Field<Params>{"damping", "s/m", &Params::damping, kNonNegative,
                     "a, relative rise of the force per approach speed", &rules::kDamping},
       Field<Params>{"restitution", "-", &Params::restitution, kRestitution,
-                    "e, in place of damping: a from the speed of the blow", &rules::kRestitution},
+                    "e, instead of damping: a then follows from the impact speed",
+                    &rules::kRestitution},
       Field<Params>{"restitution_speed_floor", "m/s", &Params::restitution_speed_floor, kPositive,
                     "slower impacts are damped as if they had this speed", &rules::kLargerOfTwo}};
   static constexpr std::array kStates{
       StateField{"impact_speed", "m/s", Keeping::kValue,
-                 "of the blow, negative once the bodies part, 0 before the first"}};
+                 "of the last impact, negative once the bodies part, 0 before the first"}};
 
   explicit HuntCrossley(const Params& params)
       : p_(validated<HuntCrossley>(params)), damping_number_(damping_number_of(p_.restitution)) {

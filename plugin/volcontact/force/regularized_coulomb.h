@@ -25,7 +25,7 @@ class RegularizedCoulomb final : public Friction {
       Field<Params>{"friction", "-", &Params::friction, kNonNegative, "mu, kinetic",
                     &rules::kFriction},
       Field<Params>{"slip_speed", "m/s", &Params::slip_speed, kPositive,
-                    "speed from which friction has its full strength", &rules::kLargerOfTwo}};
+                    "slip speed above which friction has its full strength", &rules::kLargerOfTwo}};
   static constexpr std::array kChoices{
       Choice<Params, Coupling, 3>{"coupling", &Params::coupling, kCouplingWords, kCouplingMeaning}};
 

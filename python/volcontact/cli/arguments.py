@@ -70,7 +70,8 @@ def add_keys(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME=VALUE",
-        help="of all geoms that have none by the file, such as stiffness=1e9; may be repeated",
+        help="material of all geoms for which the file gives none, such as stiffness=1e9; "
+        "may be repeated",
     )
     parser.add_argument(
         "--option",
@@ -78,7 +79,7 @@ def add_keys(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME=VALUE",
-        help="before that of the file, such as mesh=exact_or_hull; may be repeated",
+        help="option that overrides the file's, such as mesh=exact_or_hull; may be repeated",
     )
 
 
@@ -91,16 +92,15 @@ def add_drive(parser: argparse.ArgumentParser) -> None:
         action="extend",
         default=[],
         metavar="NAME=VALUE,...",
-        help="controls of actuators that are held over the run, in the scene's units; may be "
-        "repeated",
+        help="controls that stay constant over the run, in the scene's units; may be repeated",
     )
     add_file(
         parser,
         "--controls",
         metavar="FILE",
         type=existing,
-        help="controls over time: CSV or Parquet, the column time [s] and one named after each "
-        "actuator; linear in between",
+        help="controls over time: a CSV or Parquet table with a column time [s] and one column per "
+        "actuator, interpolated linearly",
     )
 
 

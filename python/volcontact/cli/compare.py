@@ -75,16 +75,19 @@ def add_to(commands: Subparsers) -> None:
     )
     parser.add_argument("--camera", metavar="NAME", help="camera of the scene (default: its first)")
     parser.add_argument(
-        "--force-limit", type=positive, metavar="N", help="what one contact may carry at most [N]"
+        "--force-limit",
+        type=positive,
+        metavar="N",
+        help="largest force that one contact may carry [N]",
     )
     parser.add_argument(
         "--torque-limit",
         type=positive,
         metavar="NM",
-        help="the same for its torque about its place [N m]",
+        help="largest torque of one contact about its own position [N m]",
     )
     parser.add_argument(
-        "--no-frames", action="store_true", help="leave the pictures out (needs no OpenGL)"
+        "--no-frames", action="store_true", help="make no pictures (then OpenGL is not needed)"
     )
     parser.add_argument(
         "--plot",
@@ -98,7 +101,7 @@ def add_to(commands: Subparsers) -> None:
     parser.add_argument(
         "--error",
         action="store_true",
-        help="say what the step costs under volumetric contact, by two runs more",
+        help="estimate the error of the time step under volumetric contact, from two more runs",
     )
     parser.set_defaults(execute=execute)
 

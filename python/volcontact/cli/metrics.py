@@ -46,9 +46,7 @@ def add_to(commands: Subparsers) -> None:
         metavar="SCENE | A B",
         help="MJCF file; or two solids, each a mesh file or as in the examples",
     )
-    parser.add_argument(
-        "--time", type=positive, metavar="S", help="step the scene so long first [s]"
-    )
+    parser.add_argument("--time", type=positive, metavar="S", help="simulate this long first [s]")
     add_keyframe(parser)
     parser.add_argument(
         "--at",
@@ -56,7 +54,7 @@ def add_to(commands: Subparsers) -> None:
         nargs=3,
         default=[0.0, 0.0, 0.0],
         metavar=("X", "Y", "Z"),
-        help="where B is in the frame of A [m]",
+        help="position of B in the frame of A [m]",
     )
     parser.add_argument(
         "--turn",
@@ -64,14 +62,14 @@ def add_to(commands: Subparsers) -> None:
         nargs=3,
         default=[0.0, 0.0, 0.0],
         metavar=("RX", "RY", "RZ"),
-        help="turns of B about the axes of A, x first [degree]",
+        help="rotation of B about the axes of A, x first [degree]",
     )
     parser.add_argument(
         "--tolerance",
         type=positive,
         default=1e-3,
         metavar="E",
-        help="relative error asked of the volume of two solids (default: %(default)s)",
+        help="requested relative error of the volume of two solids (default: %(default)s)",
     )
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
     parser.set_defaults(execute=execute)

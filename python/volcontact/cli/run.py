@@ -54,12 +54,13 @@ def add_to(commands: Subparsers) -> None:
         "--out",
         type=Path,
         metavar="DIR",
-        help="write summary.json, trajectory and sites into this folder, for an earlier report's",
+        help="write summary.json, trajectory and sites into this folder; those of an earlier "
+        "report are replaced",
     )
     parser.add_argument(
         "--audit",
         action="store_true",
-        help="say in which step contact made most energy, and where",
+        help="say in which step contact created the most energy, and where",
     )
     parser.add_argument(
         "--plot",
@@ -72,7 +73,8 @@ def add_to(commands: Subparsers) -> None:
     parser.add_argument(
         "--error",
         action="store_true",
-        help="say what the step costs, by two runs more at a half and a quarter of it",
+        help="estimate the error of the time step from two more runs, at a half and a quarter "
+        "of it",
     )
     parser.set_defaults(execute=execute)
 

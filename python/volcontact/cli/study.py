@@ -158,7 +158,7 @@ def _add_replay(ways: Subparsers) -> None:
         help="time between two pictures of the report [s] (default: %(default)s)",
     )
     parser.add_argument(
-        "--no-frames", action="store_true", help="leave the pictures out (needs no OpenGL)"
+        "--no-frames", action="store_true", help="make no pictures (then OpenGL is not needed)"
     )
     parser.add_argument("--view", action="store_true", help="show it in MuJoCo's window")
     parser.add_argument("--browser", action="store_true", help="show it in the browser, by viser")

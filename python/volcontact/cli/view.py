@@ -47,50 +47,50 @@ def add_to(commands: Subparsers) -> None:
         dest="scene_of_folder",
         metavar="FILE",
         type=scene,
-        help="of a folder: its scene, where that has moved",
+        help="the scene of a recorded run, if its file has moved",
     )
     parser.add_argument(
         "--browser",
         action="store_true",
-        help="in the browser, by viser, in place of MuJoCo's window",
+        help="show it in the browser (with viser) instead of MuJoCo's window",
     )
     parser.add_argument(
         "--contact",
         choices=("volumetric", "native"),
-        help="kind of contact to begin with, or which run of a folder (default: volumetric)",
+        help="contact to start with, or the run of a folder to show (default: volumetric)",
     )
     parser.add_argument(
         "--speed",
         type=positive,
         default=1.0,
         metavar="X",
-        help="simulated seconds a second (default: %(default)s)",
+        help="simulated seconds per real second (default: %(default)s)",
     )
-    parser.add_argument("--paused", action="store_true", help="wait at the start")
+    parser.add_argument("--paused", action="store_true", help="start paused")
     add_drive(parser)
     parser.add_argument(
         "--record",
         type=positive,
         metavar="S",
-        help="step so long first [s], then show that run, to go back and forth in",
+        help="simulate this long first [s], then show the run with a time slider",
     )
     parser.add_argument(
         "--clip",
         type=clip,
         metavar="FILE",
-        help="at the end, write what was seen as a film, .mp4; needs the extra report",
+        help="at the end, write what was shown to this .mp4; needs the extra report",
     )
     parser.add_argument(
         "--host",
         default="127.0.0.1",
         metavar="NAME",
-        help="where the browser may be: this machine alone by default, 0.0.0.0 for all",
+        help="address to serve the browser on: this machine only by default, 0.0.0.0 for all",
     )
     parser.add_argument(
-        "--port", type=int, default=8080, metavar="N", help="for the browser (default: 8080)"
+        "--port", type=int, default=8080, metavar="N", help="port for the browser (default: 8080)"
     )
     parser.add_argument(
-        "--seconds", type=positive, metavar="S", help="end after so much real time [s]"
+        "--seconds", type=positive, metavar="S", help="end after this much real time [s]"
     )
     parser.set_defaults(execute=execute)
 

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The source distribution: what `pip install volcontact-*.tar.gz` compiles.
+
+That it installs and works is measured by tests/benchmarks/pip_install.py, which takes minutes.
+"""
+
+import csv
+import subprocess
+import sys
+import tarfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[3]
+RECORD = ROOT / "tests" / "benchmarks" / "results" / "pip_install.csv"
+BUILD = "import sys; from scikit_build_core.build import build_sdist; build_sdist(sys.argv[1])"
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    pytest.importorskip("scikit_build_core")
+    folder = tmp_path_factory.mktemp("sdist")
+    subprocess.run([sys.executable, "-c", BUILD, folder], cwd=ROOT, check=True, capture_output=True)
+    (archive,) = folder.glob("volcontact-*.tar.gz")
+    with tarfile.open(archive) as tar:
+        return {name.partition("/")[2] for name in tar.getnames()}
+
+
+def test_has_every_file_of_the_repository_but_the_gpl_program(files):
+    listed = subprocess.run(
+        ["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    if listed.returncode != 0:
+        pytest.skip("this is no checkout")
+    wanted = {name for name in listed.stdout.split() if (ROOT / name).is_file()}
+    missing = wanted - files
+    assert missing and all(name.startswith("plugin/cgal/") for name in missing), sorted(missing)
+
+
+def test_has_nothing_that_was_built(files):
+    assert not [name for name in files if name.startswith(("build/", ".venv/"))]
+
+
+def test_record_says_what_installing_costs_and_downloads():
+    with RECORD.open(encoding="utf-8") as file:
+        (row,) = csv.DictReader(file)
+    assert float(row["processor_s"]) > 0.0
+    named = set(row["downloads"].split())
+    assert {"cmeel-eigen", "nanobind", "scikit-build-core", "mujoco", "numpy", "rich"} <= named
