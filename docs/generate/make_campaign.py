@@ -69,8 +69,8 @@ starts from the last state in which nothing moves more than twice as fast as wit
 and it excuses the warning only if contact had added no energy until then. Such scenes have springs
 too stiff for the step: they are quiet until something moves them, and native contact happens not to
 touch them. A scene in which native contact moves anything by more than a radian or a metre in a
-step counts as passed. {cells} of {all} scenes were run, and {failed} failed. {tried} scenes with a warning
-were run again without contact, and {alone} of them warn there, too. By integrator:
+step counts as passed. {cells} of {all} scenes were run, and {failed} failed. {tried} scenes with a
+warning were run again without contact, and {alone} of them warn there, too. By integrator:
 """,
     "models_of_others": """\
 ## Models of others
