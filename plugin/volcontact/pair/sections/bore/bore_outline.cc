@@ -13,11 +13,52 @@ constexpr int kMaxRoundings = 24;  // of the frame
 constexpr double kRoundRim =
     3.0;                        // longest by shortest way to the outline; then it is round enough
 constexpr double kSpike = 6.0;  // longest by shortest of all ways: a spike between the first ones
-constexpr double kStraight = 1e-6;  // sine of a turn below which the outline has no corner
-constexpr int kNarrowings = 3;      // of a place where the outline comes near the wall
-constexpr int kEndNarrowings = 2;   // of a place where it crosses the wall
+constexpr double kLeastCosine = 0.5;  // of the half of a turn between directions
+constexpr double kStraight = 1e-6;    // sine of a turn below which the outline has no corner
+constexpr int kNarrowings = 3;        // of a place where the outline comes near the wall
+constexpr int kEndNarrowings = 2;     // of a place where it crosses the wall
 
 }  // namespace
+
+BodyInBore::BodyInBore(const ConvexView& body, const Pose& X, Owner owner, const Bore& bore,
+                       FaceSet& faces) {
+  if (bore.is_cone()) return;
+  faces.clear();
+  FaceWriter writer(faces, X, owner);
+  body.write_faces(writer);
+  const auto add = [&](const Vec3& center, double radius) {
+    middle_[count_] = bore.from_axis(center) / bore.radius;
+    radius_[count_++] = radius / bore.radius;
+  };
+  if (faces.rims.size() == 2) {  // a cylinder, frustum or capsule
+    for (const Rim& rim : faces.rims) add(rim.center, rim.radius_u.norm());
+  } else if (faces.planes.empty() && faces.rounds.size() == 1) {  // a ball or an ellipsoid
+    const RoundFace& round = faces.rounds[0];
+    add(round.center, 1.0 / round.map.rowwise().norm().minCoeff());
+  }
+}
+
+double BodyInBore::reach() const {
+  double most = count_ > 0 ? 0.0 : kInfinity;
+  for (int i = 0; i < count_; ++i) most = std::max(most, middle_[i].norm() + radius_[i]);
+  return most;
+}
+
+// A unit vector between others is their sum with parts of 1 / cosine in all, at most, where that is
+// the cosine of half of the widest turn between them.
+double BodyInBore::reach(const Vec3& one, const Vec3& two, const Vec3& three) const {
+  const Vec3 e[] = {one.normalized(), two.normalized(), three.normalized()};
+  const double least = std::min({e[0].dot(e[1]), e[1].dot(e[2]), e[2].dot(e[0])});
+  const double cosine = std::sqrt(std::max(0.0, 0.5 * (1.0 + least)));
+  if (!(cosine > kLeastCosine)) return kInfinity;
+  double most = count_ > 0 ? 0.0 : kInfinity;
+  for (int i = 0; i < count_; ++i) {
+    const double along =
+        std::max({0.0, middle_[i].dot(e[0]), middle_[i].dot(e[1]), middle_[i].dot(e[2])});
+    most = std::max(most, along / cosine + radius_[i]);
+  }
+  return most;
+}
 
 // A set of sections along the bore's axis, or from the apex, through the middle of the overlap, in
 // which its outline is about round.
@@ -131,7 +172,8 @@ void BoreOutline::look_behind_corners() {
       continue;  // along one of the chords
     }
     const double both = turn(before, after), ahead = turn(way, after) / both;
-    if (ahead > 0.0 && (from + ahead * before).norm() <= 1.0) continue;
+    const Vec3 tip = from + ahead * before;
+    if (ahead > 0.0 && (tip.norm() <= 1.0 || body_.reach(from, tip, from + way) <= 1.0)) continue;
     const double angle = here.angle;
     const Place top = summit(angle, angle + 2.0 * kPi / kEvenTurn, 1.0);
     if (top.rho > 1.0) places_.push_back(top);

@@ -13,6 +13,24 @@ inline double wrapped(double angle) {
   return angle - 2.0 * kPi * std::floor(angle / (2.0 * kPi) + 0.5);
 }
 
+/// The body in a bore that is a tube, as discs or balls that it lies within or between. Bounds how
+/// far it reaches from the axis; of other bodies, and in cones, it knows nothing.
+class BodyInBore {
+ public:
+  /// `faces` is memory to be used.
+  BodyInBore(const ConvexView& body, const Pose& X, Owner owner, const Bore& bore, FaceSet& faces);
+
+  /// How far it reaches, at most, in radii of the bore.
+  double reach() const;
+  /// The same in all directions between some, which are not opposite and not 0.
+  double reach(const Vec3& one, const Vec3& two, const Vec3& three) const;
+
+ private:
+  int count_ = 0;
+  Vec3 middle_[2];    // from the axis, in its radii
+  double radius_[2];  // also
+};
+
 /// The outline of an overlap seen along the axis of a bore, or from the apex of a cone: a convex
 /// curve, and where it lies outside of the wall.
 class BoreOutline {
@@ -24,9 +42,9 @@ class BoreOutline {
   };
 
   /// `places` is memory to be used.
-  BoreOutline(const Bore& bore, const LinesWindow& window, LinesScratch& lines,
-              std::vector<Place>& places)
-      : bore_(bore), window_(window), s_(lines), places_(places) {}
+  BoreOutline(const Bore& bore, const BodyInBore& body, const LinesWindow& window,
+              LinesScratch& lines, std::vector<Place>& places)
+      : bore_(bore), body_(body), window_(window), s_(lines), places_(places) {}
 
   /// Places all round, in the order of their angle. One lies on every part outside of the wall, and
   /// on every part inside, however small.
@@ -49,6 +67,7 @@ class BoreOutline {
   Place summit(double from, double to, double side);
 
   const Bore& bore_;
+  const BodyInBore& body_;
   const LinesWindow& window_;
   LinesScratch& s_;
   std::vector<Place>& places_;

@@ -39,9 +39,12 @@ class BoreRun {
         s_(lines),
         breaks_(scratch.breaks),
         regions_(regions),
-        outline_(bore, window_, lines, scratch.outline) {}
+        body_(owner == Owner::kA ? b : a, owner == Owner::kA ? X_AB : Pose{}, other(owner), bore,
+              scratch.body),
+        outline_(bore, body_, window_, lines, scratch.outline) {}
 
   bool run() {
+    if (body_.reach() <= 1.0) return true;  // all of it in the bore
     window_ = find_lines_window(a_, b_, X_AB_, s_.path, true, s_.faces);
     if (window_.kind == LinesWindow::Kind::kApart) return true;
     if (apex_is_on_a_face()) return false;
@@ -419,6 +422,7 @@ class BoreRun {
   std::vector<double>& breaks_;
   LinesRegions& regions_;
   LinesWindow window_;
+  BodyInBore body_;
   BoreOutline outline_;
   SectionFrame frame_;
   Vec3 side_u_, side_v_;

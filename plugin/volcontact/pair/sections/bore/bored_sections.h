@@ -11,6 +11,7 @@ namespace volcontact {
 struct BoreScratch {
   std::vector<BoreOutline::Place> outline;
   std::vector<double> breaks;
+  FaceSet body;
 };
 
 /// Regions of the overlap of two convex bodies outside of a bore, a tube (`bore`, in A's frame) cut
