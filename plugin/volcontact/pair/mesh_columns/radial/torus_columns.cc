@@ -19,6 +19,8 @@ constexpr double kMostChange = 0.2;       // of V, from one side to the other
 constexpr double kBeside = 0.05;          // of a tube's radius: so near is by
 constexpr int kLooks = 64;                // at the circle
 constexpr double kNothing = 1e-9;         // of a volume, by its area and the tube's radius
+constexpr double kOnEdge = 1e-13;         // of a place from an edge, per size
+constexpr double kBesideEdge = 1e-7;      // of a tube's radius
 
 class TorusColumns {
  public:
@@ -164,44 +166,64 @@ class TorusColumns {
     out_.total = out_.total + out_.sites.back();
   }
 
-  // Where the circle in the middle of the tube passes through a triangle.
-  void add_crossings(const Vec3 (&c)[3]) {
+  // Where the circle in the middle of the tube passes through a triangle, moved along its axis to
+  // z. False where it passes nearer to an edge than that.
+  bool add_crossings(const Vec3 (&c)[3], double z, double on_edge) {
     const double R = b_.major_radius();
-    if (std::min({c[0].z(), c[1].z(), c[2].z()}) > 0.0 ||
-        std::max({c[0].z(), c[1].z(), c[2].z()}) < 0.0) {
-      return;
+    if (std::min({c[0].z(), c[1].z(), c[2].z()}) > z ||
+        std::max({c[0].z(), c[1].z(), c[2].z()}) < z) {
+      return true;
     }
     const Vec3 n = (c[1] - c[0]).cross(c[2] - c[0]);
-    const double reach = R * std::hypot(n.x(), n.y()), height = n.dot(c[0]);
-    if (!(std::abs(height) < reach)) return;
+    const double reach = R * std::hypot(n.x(), n.y()), height = n.dot(c[0]) - n.z() * z;
+    if (!(std::abs(height) < reach)) return true;
     const double middle = std::atan2(n.y(), n.x()), half = std::acos(height / reach);
     for (const double side : {-1.0, 1.0}) {
       double angle = middle + side * half;
-      const Vec3 x(R * std::cos(angle), R * std::sin(angle), 0.0);
-      bool within = true;
+      const Vec3 x(R * std::cos(angle), R * std::sin(angle), z);
+      bool within = true, near = false;
       for (int i = 0; i < 3; ++i) {
-        const Vec3& p = c[i];
-        within &= n.dot((c[(i + 1) % 3] - p).cross(x - p)) >= 0.0;
+        const Vec3 edge = c[(i + 1) % 3] - c[i], way = x - c[i];
+        const double side_of_edge = n.dot(edge.cross(way));
+        const double rounding = on_edge * n.norm() * edge.norm() * (R + c[i].norm());
+        within &= side_of_edge >= -rounding;
+        near |= side_of_edge < rounding;
       }
       if (!within) continue;
+      if (near) return false;
       if (angle < 0.0) angle += 2.0 * kPi;
       if (angle >= 2.0 * kPi) angle -= 2.0 * kPi;
       // n . x falls behind the nearer side of the plane's normal.
       s_.crossings.push_back({angle, side > 0.0});
     }
+    return true;
+  }
+
+  bool find_crossings(double z, double on_edge) {
+    s_.crossings.clear();
+    for (const auto& [slot, inside] : s_.radial.search.found) {
+      Vec3 c[3];
+      for (int i = 0; i < 3; ++i) c[i] = X_BA_ * a_.tree->corner(slot, i);
+      if (!add_crossings(c, z, on_edge)) return false;
+    }
+    return true;
+  }
+
+  // The crossings of all triangles; where the circle passes through an edge, and rounding decides
+  // which of the two faces it meets, perhaps none, those of a circle beside it.
+  void find_crossings() {
+    const double beside = kBesideEdge * b_.minor_radius();
+    for (const double z : {0.0, beside, -1.7 * beside}) {
+      if (find_crossings(z, kOnEdge)) return;
+    }
+    find_crossings(0.0, 0.0);
   }
 
   // What lies around those arcs of the circle that are inside of the mesh: the lines to the wall
   // begin at the circle where they meet no triangle. False when the crossings contradict each
   // other, as next to an edge.
   bool add_arcs(MomentSum& sum, double& depth_moment) {
-    s_.crossings.clear();
-    const ObbTree& tree = *a_.tree;
-    for (const auto& [slot, inside] : s_.radial.search.found) {
-      Vec3 c[3];
-      for (int i = 0; i < 3; ++i) c[i] = X_BA_ * tree.corner(slot, i);
-      add_crossings(c);
-    }
+    find_crossings();
     auto& crossings = s_.crossings;
     if (crossings.empty()) {
       const Vec3 p = X_AB_ * Vec3(b_.major_radius(), 0.0, 0.0);
