@@ -190,13 +190,15 @@ def largest(name: str, rows: list[Row], column: str) -> str:
 def generated_scenes(rows: list[Row]) -> str:
     """By integrator, and with the parts that the failed ones have."""
     part = module("generated_scenes")
-    lines = [["integrator", "scenes", "refused", "failed", "worst gain"]]
+    lines = [["integrator", "scenes", "refused", "lost with native contact", "failed", "worst gain"]]
     for integrator in values_of([row for row in rows if row["integrator"]], "integrator"):
         these = [row for row in rows if row["integrator"] == integrator]
         failed = sum(not is_sound(part, row) for row in these)
         refused = sum(bool(row["refused"]) for row in these)
-        cells = [str(len(these)), str(refused), f"**{failed}**" if failed else "0"]
-        lines.append([integrator, *cells, worst(these, "gain")])
+        counted = [row for row in these if part.counts(row)]
+        lost = len(these) - len(counted) - refused
+        cells = [len(these), refused, lost, f"**{failed}**" if failed else 0]
+        lines.append([integrator, *map(str, cells), worst(counted, "gain")])
     return table(lines)
 
 

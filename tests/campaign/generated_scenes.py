@@ -281,11 +281,16 @@ def warnings_in(data: mujoco.MjData) -> int:
     return int(sum(warning.number for warning in data.warning))
 
 
+def counts(row: dict[str, Any]) -> bool:
+    """Whether MuJoCo steps the scene itself: what it cannot do says nothing about contact."""
+    if row.get("refused") or int(row.get("native_warnings") or 0):
+        return False
+    return float(row["native_speed"]) * float(row["timestep"]) <= MOST_TURN
+
+
 def is_sound(row: dict[str, Any]) -> bool:
     """Contact made at most a thousandth of the energy that there was, in any step."""
-    if row.get("refused") or int(row.get("native_warnings") or 0):
-        return True
-    if float(row["native_speed"]) * float(row["timestep"]) > MOST_TURN:
+    if not counts(row):
         return True
     warned = int(row.get("warnings") or 0) and not int(row.get("alone") or 0)
     return not warned and not int(row.get("dropped") or 0) and float(row["gain"]) <= 1e-3
