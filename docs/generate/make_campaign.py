@@ -190,7 +190,9 @@ def largest(name: str, rows: list[Row], column: str) -> str:
 def generated_scenes(rows: list[Row]) -> str:
     """By integrator, and with the parts that the failed ones have."""
     part = module("generated_scenes")
-    lines = [["integrator", "scenes", "refused", "lost with native contact", "failed", "worst gain"]]
+    lines = [
+        ["integrator", "scenes", "refused", "lost with native contact", "failed", "worst gain"]
+    ]
     for integrator in values_of([row for row in rows if row["integrator"]], "integrator"):
         these = [row for row in rows if row["integrator"] == integrator]
         failed = sum(not is_sound(part, row) for row in these)
