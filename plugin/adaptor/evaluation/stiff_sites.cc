@@ -35,18 +35,13 @@ double mobility_along(const mjModel* m, mjData* d, const GeomPair& geoms, const 
   return std::inner_product(row.begin(), row.begin() + m->nv, row.begin() + m->nv, 0.0);
 }
 
-// The same along the patch at most, of bodies that yield by turning, too, or, where they hang on
-// joints, by what these leave.
-double sliding_mobility(const mjModel* m, mjData* d, const PairContact& pair,
-                        const SiteReport& site, const InverseMass& inverse,
-                        std::vector<double>& row) {
-  const double of_balls = kBall * inverse.along;
-  if (!pair.is_jointed) return of_balls;
+// The same in the direction of slip, or of friction before there is any.
+double mobility_across(const mjModel* m, mjData* d, const GeomPair& geoms, const SiteReport& site,
+                       std::vector<double>& row) {
   const Vec3 across = site.force_on_A - site.normal_force * site.normal;
   const Vec3& way = site.slip.isZero(0.0) ? across : site.slip;
-  if (way.isZero(0.0)) return of_balls;
-  return std::max(of_balls,
-                  mobility_along(m, d, pair.geoms, site.metrics.centroid, way.normalized(), row));
+  if (way.isZero(0.0)) return 0.0;
+  return mobility_along(m, d, geoms, site.metrics.centroid, way.normalized(), row);
 }
 
 // Whether friction without memory would throw the bodies back in an explicit step, faster than they
@@ -82,14 +77,15 @@ bool is_stiff(const mjModel* m, mjData* d, const PairContact& pair, ContactRepor
   const double h = m->opt.timestep;
   const InverseMass inverse = inverse_mass(m, pair.geoms);
   const Friction* friction = pair.model.laws().friction.get();
-  if (friction && !most.friction_is_explicit) {
-    if (shakes_at_rest(pair, h)) return true;
-    const double sliding = sliding_mobility(m, d, pair, report.sites[site], inverse, scratch.row);
+  const bool rubs = friction && !most.friction_is_explicit;
+  const auto throws_back = [&](double sliding) {
     if (friction->states().empty() && reverses_slip(report.sites[site], inverse, sliding, h)) {
       return true;
     }
-    if (pair.friction_follows_patch && shakes(pair, report, site, inverse, sliding, h)) return true;
-  }
+    return pair.friction_follows_patch && shakes(pair, report, site, inverse, sliding, h);
+  };
+  // Bodies yield by turning, too.
+  if (rubs && (shakes_at_rest(pair, h) || throws_back(kBall * inverse.along))) return true;
   const VolumeMetrics& metrics = report.sites[site].metrics;
   const SiteInputs& inputs = report.inputs[site];
   const double spread = 0.5 * metrics.inertia.trace() / metrics.volume;
@@ -102,10 +98,12 @@ bool is_stiff(const mjModel* m, mjData* d, const PairContact& pair, ContactRepor
   const bool possible = h * h * pair.largest_rate >= kPossibleNumber;
   if (possible && spring * mobility > most.spring) return true;
   // What hangs on joints may give way more easily than its masses say.
+  if (!pair.is_jointed) return false;
+  const SiteReport& at = report.sites[site];
+  if (rubs && throws_back(mobility_across(m, d, pair.geoms, at, scratch.row))) return true;
   constexpr double kMuchMore = 1e3;
   const double number = std::max(damper * mobility / most.damper, spring * mobility / most.spring);
-  if (!pair.is_jointed || number * kMuchMore < 1.0) return false;
-  const SiteReport& at = report.sites[site];
+  if (number * kMuchMore < 1.0) return false;
   const double along = mobility_along(m, d, pair.geoms, metrics.centroid, at.normal, scratch.row);
   return damper * along > most.damper || spring * along > most.spring;
 }
