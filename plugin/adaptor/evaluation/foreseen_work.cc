@@ -11,10 +11,16 @@
 namespace volcontact::adaptor {
 namespace {
 
+// Whether nothing but contacts and gravity acts on the bodies of a pair, as far as can be told.
+bool flies_alone(const mjModel* m, const PairContact& pair) {
+  return m->nu == 0 && !pair.is_jointed;
+}
+
 // The pairs that are looked at: left to the explicit force, of what hangs on joints or may be
 // driven, and what may give back more than it holds.
 bool choose_pairs(const SceneContact& contact, const mjModel* m, EvaluationScratch& scratch) {
   scratch.foreseen.assign(scratch.energies.size(), 0);
+  scratch.yields.assign(scratch.energies.size(), 0.0);
   bool some = false;
   auto stiff = scratch.stiff.begin();
   for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
@@ -23,9 +29,7 @@ bool choose_pairs(const SceneContact& contact, const mjModel* m, EvaluationScrat
     const bool is_explicit = report.touching() && std::find(stiff, end, 1) == end;
     stiff = end;
     if (!is_explicit) continue;
-    if (m->nu == 0 && !scratch.pair(k).is_jointed && !may_overdraw(contact, m, k, scratch)) {
-      continue;
-    }
+    if (flies_alone(m, scratch.pair(k)) && !may_overdraw(contact, m, k, scratch)) continue;
     scratch.foreseen[k] = 1;
     some = true;
   }
@@ -80,6 +84,12 @@ void add_work(const SiteReport& site, const Twist& acceleration, double step, Wo
   limit.friction_work += step * (friction.dot(slip) + site.torque_on_A.dot(n) * spin);
 }
 
+// The inverse mass that would make the normal forces of a pair do that work over the step.
+double yield_of(const PairEnergy::Now& now, double normal_work, double step) {
+  const double impulse = step * now.force;
+  return impulse > 0.0 ? 2.0 * (normal_work / impulse + now.approach()) / impulse : 0.0;
+}
+
 }  // namespace
 
 void know_forces(const SceneContact& contact, const mjModel* m, mjData* d,
@@ -129,6 +139,10 @@ bool foresee_work(const SceneContact& contact, const mjModel* m, mjData* d,
       if (limit.work() > limit.at_any_speed()) {
         scratch.energies[k].slow = limit.released_at_most();
       }
+      continue;
+    }
+    if (flies_alone(m, scratch.pair(k)) && limit.drawn_by_friction() <= own) {
+      scratch.yields[k] = yield_of(PairEnergy::Now(scratch.reports[k]), limit.normal_work, step);
       continue;
     }
     std::fill(begin, stiff, 1);

@@ -31,12 +31,14 @@ struct ExplicitShare {
 
 // The share of the explicit forces of a pair that does no more work than the pair may.
 ExplicitShare share_of(const SceneContact& contact, const mjModel* m, std::size_t k,
-                       const PairEnergy::Now& now, const EvaluationScratch& scratch) {
+                       const PairEnergy::Now& now, double yields,
+                       const EvaluationScratch& scratch) {
   const double h = m->opt.timestep;
-  const double along = inverse_mass(m, scratch.pair(k).geoms).along;
+  const double along = std::max(yields, inverse_mass(m, scratch.pair(k).geoms).along);
+  const double gained = h * yields * now.force;
   WorkLimit limit = limit_of(contact, m, k, scratch);
   for (const SiteReport& site : scratch.reports[k].sites) {
-    lend(contact, m, scratch.pair(k).geoms, site, -site.approach_speed, limit);
+    lend(contact, m, scratch.pair(k).geoms, site, gained - site.approach_speed, limit);
   }
   const double slow = std::exchange(limit.slow, 0.0);
   const auto share_now = [&] {
@@ -114,6 +116,7 @@ void read_energies(const SceneContact& contact, const double* committed, double 
                    bool is_rk4, EvaluationScratch& scratch, EnergyAccount& account) {
   const std::size_t count = scratch.cull.near.size();
   scratch.energies.assign(count, PairEnergy());
+  scratch.put_in = 0.0;
   std::size_t first = 0;  // of the pair's sites
   for (std::size_t k = 0; k < count; ++k) {
     const ContactReport& report = scratch.reports[k];
@@ -142,6 +145,7 @@ void read_energies(const SceneContact& contact, const double* committed, double 
                    stiff + std::ssize(report.sites)) {
       energy.follow(elapsed, now);
     } else {
+      scratch.put_in += energy.put_in(elapsed, now);
       energy.take_in(elapsed, now, is_rk4);
     }
     account.unpaid += now.elastic - energy.held();
@@ -168,7 +172,7 @@ bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m, bool begin
       energy.act(now);
       continue;
     }
-    const auto [share, released_at_most, slowly] = share_of(contact, m, k, now, scratch);
+    const auto [share, released_at_most, slowly] = share_of(contact, m, k, now, 0.0, scratch);
     if (share == 1.0 && !errs) {
       energy.act(now);
       if (slowly) energy.slow = released_at_most;
@@ -187,7 +191,8 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m, EvaluationScr
     ContactReport& report = scratch.reports[k];
     if (energy.is_solved || !report.touching()) continue;
     const PairEnergy::Now now(report);
-    const auto [share, released_at_most, slowly] = share_of(contact, m, k, now, scratch);
+    const auto [share, released_at_most, slowly] =
+        share_of(contact, m, k, now, scratch.yields[k], scratch);
     energy.rubbed = now.bristle;
     energy.force = share * now.force;
     energy.power = share * now.power;
@@ -199,6 +204,16 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m, EvaluationScr
     energy.rubbed = std::min(energy.rubbed, report.bristle_energy.sum());
   }
   return limited;
+}
+
+void forgive(double work, const EnergyAccount& before, EvaluationScratch& scratch,
+             EnergyAccount& now) {
+  double owed = 0.0;
+  for (const PairEnergy& energy : scratch.energies) owed += energy.owed();
+  const double false_debt = std::min({-scratch.put_in - work, now.owed - before.owed, owed});
+  if (!(false_debt > 0.0)) return;
+  for (PairEnergy& energy : scratch.energies) energy.forgive(false_debt / owed);
+  now.owed -= false_debt;
 }
 
 double pay_for(const mjModel* m, mjData* d, double made, EvaluationScratch& scratch) {

@@ -37,6 +37,12 @@ bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m, bool begin
 /// laws say.
 bool limit_explicit(const SceneContact& contact, const mjModel* m, EvaluationScratch& scratch);
 
+/// Lets pairs off what they owe more than `before` an explicit step and did not do: `work`, of all
+/// their normal forces [J], is exact, while each knows its own by its approach at the end, where
+/// the normal has turned.
+void forgive(double work, const EnergyAccount& before, EvaluationScratch& scratch,
+             EnergyAccount& now);
+
 /// Takes off what the pairs hold as much as the contacts have `made` in the step that ends here, as
 /// far as they hold it, and returns what that is [J]: what a solved step could not foresee, and
 /// what an explicit one errs by, is paid for.

@@ -29,6 +29,9 @@ struct EvaluationScratch {
   std::vector<char> invalid;           ///< whether a report was left out, having no numbers
   std::vector<char> stiff;             ///< of all sites, whether an explicit step cannot hold it
   std::vector<char> foreseen;  ///< of the pairs in `near`, whether the work of the step is foreseen
+  /// Of the pairs in `near`, the inverse mass that their normal forces act on, as far as it was
+  /// foreseen and matters; or 0 [1/kg].
+  std::vector<double> yields;
   bool knows = false;          ///< whether `known` is of this evaluation
   std::vector<char> held;  ///< of the pairs in `near`, whether other forces than its laws say act
   std::vector<int> order;  ///< of `near`, as worked off: the long pairs first
@@ -40,6 +43,7 @@ struct EvaluationScratch {
   NativeConstraints constraints;     ///< and its constraints
   double dissipated = 0.0;           ///< by the contacts up to the evaluation before [J]
   std::vector<PairEnergy> energies;  ///< of the pairs in `near`
+  double put_in = 0.0;               ///< by the step that ends here, as these tell it [J]
   std::vector<double> user_qfrc, user_xfrc, known, row;
   MocapMotion mocaps;
   std::vector<double> way;  ///< of the dofs since the evaluation before

@@ -75,13 +75,18 @@ struct PairEnergy {
   /// Whether the step before was solved, and `rubbed` is what sliding did.
   bool was_solved() const noexcept { return force == 0.0; }
 
+  /// What motion put in by an explicit step, as the speeds at its ends tell it [J].
+  double put_in(double elapsed, const Now& now) const noexcept {
+    return 0.5 * elapsed * (power + force * now.approach());
+  }
+
   /// The end of a step of `elapsed` seconds. Stages of Runge-Kutta at which a pair waited for the
   /// next step had no force: at the worst the first alone, which counts a sixth.
   void take_in(double elapsed, const Now& now, bool may_have_waited = false) noexcept {
     // Explicit steps know velocities half a step before positions: on the way out the law holds
     // less by the work of half a step.
     const double ahead = force > 0.0 ? 0.5 * elapsed * std::max(0.0, -now.power) : 0.0;
-    const double work = 0.5 * elapsed * (power + force * now.approach());
+    const double work = put_in(elapsed, now);
     // What sliding put in and bristles do not hold is dissipated: it pays what is owed.
     if (was_solved() && stored < 0.0) {
       stored = std::min(0.0, stored + std::max(0.0, rubbed - now.bristle));
@@ -134,6 +139,8 @@ struct PairEnergy {
   double owed() const noexcept { return std::max(0.0, -stored); }
   /// The most that can be taken off what is held, for what the contacts have made [J].
   double payable() const noexcept { return std::min(held(), doubtful); }
+  /// Lets off a share of what is owed.
+  void forgive(double share) noexcept { stored += share * owed(); }
   void pay(double share) noexcept {
     const double left = held() > 0.0 ? 1.0 - share * payable() / held() : 1.0;
     unpaid += (1.0 - left) * held();
