@@ -76,6 +76,20 @@ def key_of(part: ModuleType, case: dict[str, Any]) -> str:
     return json.dumps([case[name] for name in part.KEYS])
 
 
+def together(part: ModuleType, cases: list[dict[str, Any]]) -> list[list[dict[str, Any]]]:
+    """The cases by what they have in common, for one process each."""
+    groups: dict[str, list[dict[str, Any]]] = {}
+    for case in cases:
+        shared = [case[name] for name in getattr(part, "SHARED", part.KEYS)]
+        groups.setdefault(json.dumps(shared), []).append(case)
+    return list(groups.values())
+
+
+def all_examined(name: str, cases: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The rows of some cases."""
+    return [examined(name, case) for case in cases]
+
+
 def examined(name: str, case: dict[str, Any]) -> dict[str, Any]:
     """The row of a case; what was thrown is in it."""
     # They are counted; told, they fill the terminal and a log file.
@@ -101,18 +115,22 @@ def run(
             done[key_of(part, row)] = row
     cases = list(part.cases(sample))
     missing = [case for case in cases if key_of(part, case) not in done]
-    random.Random(1).shuffle(missing)  # a part of them is of all kinds
+    groups = together(part, missing)
+    random.Random(1).shuffle(groups)  # a part of them is of all kinds
     begin = time.monotonic()
     with (
         path.open("a", encoding="utf-8") as file,
         concurrent.futures.ProcessPoolExecutor(jobs) as pool,
     ):
-        runs = [pool.submit(examined, part.NAME, case) for case in missing]
-        for number, ended in enumerate(concurrent.futures.as_completed(runs), 1):
-            row = ended.result() | {"state": path.parent.name}
-            file.write(json.dumps(row) + "\n")
+        runs = [pool.submit(all_examined, part.NAME, group) for group in groups]
+        number = 0
+        for ended in concurrent.futures.as_completed(runs):
+            for found in ended.result():
+                row = found | {"state": path.parent.name}
+                file.write(json.dumps(row) + "\n")
+                done[key_of(part, row)] = row
+                number += 1
             file.flush()
-            done[key_of(part, row)] = row
             left = (time.monotonic() - begin) / number * (len(missing) - number)
             print(f"\r{part.NAME}: {number} of {len(missing)}, {left:.0f} s left ", end="")
             if time.monotonic() - begin > seconds:

@@ -217,7 +217,8 @@ def test_a_fast_model_is_judged_by_a_tenth_of_its_step(part, monkeypatch, fine, 
     models = part("models_of_others")
     text = '<mujoco><worldbody>{0}<body pos="0 0 1"><freejoint/>{0}</body></worldbody></mujoco>'
     model = mujoco.MjModel.from_xml_string(text.format('<geom size=".1"/>'))
-    monkeypatch.setattr(models, "make", lambda *_: model)
+    monkeypatch.setattr(models, "original", lambda *_: model)
+    models.native.cache_clear()
 
     def driven(_model, _seed, contact, finer=1):
         if contact is None:
