@@ -106,10 +106,18 @@ void lend(const SceneContact& contact, const mjModel* m, const GeomPair& geoms,
 bool may_overdraw(const SceneContact& contact, const mjModel* m, std::size_t k,
                   const EvaluationScratch& scratch) {
   const PairEnergy::Now now(scratch.reports[k]);
+  const GeomPair& geoms = scratch.pair(k).geoms;
   const double impulse = m->opt.timestep * now.force;
-  const double at_most = kBall * inverse_mass(m, scratch.pair(k).geoms).along;
-  const double work = impulse * (0.5 * impulse * at_most - now.approach());
-  return work > limit_of(contact, m, k, scratch).at_any_speed();
+  const double gained = impulse * kBall * inverse_mass(m, geoms).along;
+  const double work = impulse * (0.5 * gained - now.approach());
+  if (!(work > 0.0)) return false;
+  WorkLimit limit = limit_of(contact, m, k, scratch);
+  if (work <= limit.at_any_speed()) return false;
+  // At rest all is lent that gravity does meanwhile.
+  for (const SiteReport& site : scratch.reports[k].sites) {
+    lend(contact, m, geoms, site, gained - site.approach_speed, limit);
+  }
+  return work > limit.at_any_speed();
 }
 
 void read_energies(const SceneContact& contact, const double* committed, double elapsed,
