@@ -148,9 +148,11 @@ bool keep_sites(const SceneContact& contact, const double* committed, double* st
   });
 }
 
-void write_forces(const SceneContact& contact, const mjModel* m, mjData* d, bool goes_on,
+void write_forces(const SceneContact& contact, const mjModel* m, mjData* d,
+                  const AccountKeeper& account, const EnergyAccount& now,
                   EvaluationScratch& scratch) {
   const UserdataBlock our = contact.block(m, d);
+  const bool goes_on = account.is_within_step();
   BodyForces& forces = scratch.forces;
   const bool cartesian = contact.options().target == Target::kXfrc;
   forces.reset(m);
@@ -177,12 +179,22 @@ void write_forces(const SceneContact& contact, const mjModel* m, mjData* d, bool
     }
   }
   if (goes_on && cartesian) add_held(contact, m, d, our, forces);
-  std::vector<double>& numbers = cartesian ? forces.cartesian(m, d) : forces.generalized(m, d);
+  if (cartesian) scratch.on_bodies = forces.cartesian(m, d);  // before they are summed over joints
+  std::vector<double>& acting = forces.generalized(m, d);
   if (goes_on && !cartesian && our.solved() > 0) {
-    std::transform(numbers.begin(), numbers.end(), our.held(), numbers.begin(), std::plus<>());
+    std::transform(acting.begin(), acting.end(), our.held(), acting.begin(), std::plus<>());
   }
+  std::vector<double>& numbers = cartesian ? scratch.on_bodies : acting;
   const bool dropped = drop_non_finite(numbers);
+  if (cartesian) drop_non_finite(acting);
   if (dropped || any(scratch.invalid, scratch.cull.near.size())) our.dropped() += 1.0;
+  if (account.is_last_stage() && our.solved() > 0 && m->nmocap == 0) {
+    const double power = power_of(acting.data(), d->qvel, m->nv);
+    const double share = last_share(m, d, account.made_by_stages(now, power), power, scratch);
+    const auto times_share = [share](double number) { return share * number; };
+    std::transform(acting.begin(), acting.end(), acting.begin(), times_share);
+    if (cartesian) std::transform(numbers.begin(), numbers.end(), numbers.begin(), times_share);
+  }
   const int count = static_cast<int>(numbers.size());
   switch (contact.options().target) {
     case Target::kApplied:
@@ -197,8 +209,6 @@ void write_forces(const SceneContact& contact, const mjModel* m, mjData* d, bool
       }
       break;
   }
-  std::vector<double>& acting = cartesian ? forces.generalized(m, d) : numbers;
-  if (cartesian) drop_non_finite(acting);
   std::copy(acting.begin(), acting.end(), our.slot(0).forces());
 }
 
@@ -303,7 +313,7 @@ void fill_slot(const SceneContact& contact, const mjModel* m, mjData* d, const U
   } else {
     write_friction(contact, m, d, scratch);
   }
-  write_forces(contact, m, d, goes_on, scratch);
+  write_forces(contact, m, d, account, now, scratch);
   if (!kept) our.forgotten() += 1.0;
   now.force_power = power_of(our.slot(0).forces(), d->qvel, m->nv);
   now.friction_power = power_of(our.slot(0).friction(), d->qvel, m->nv);

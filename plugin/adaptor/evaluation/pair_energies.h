@@ -48,6 +48,12 @@ void forgive(double work, const EnergyAccount& before, EvaluationScratch& scratc
 /// what an explicit one errs by, is paid for.
 double pay_for(const mjModel* m, mjData* d, double made, EvaluationScratch& scratch);
 
+/// The share of the forces of Runge-Kutta's last stage, which have that `power`, with which the
+/// stages make no more than the pairs can pay for, where they would have `made` more: less than
+/// all of a force that pushes, or more of one that brakes.
+double last_share(const mjModel* m, mjData* d, double made, double power,
+                  EvaluationScratch& scratch);
+
 /// What the contacts have `made` beyond all that is paid for, as far as bodies that part slowly may
 /// get it of what was dissipated [J]: a normal that turns in the step tells it late.
 double release_for(double made, const EvaluationScratch& scratch);

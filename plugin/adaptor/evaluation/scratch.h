@@ -45,6 +45,7 @@ struct EvaluationScratch {
   std::vector<PairEnergy> energies;  ///< of the pairs in `near`
   double put_in = 0.0;               ///< by the step that ends here, as these tell it [J]
   std::vector<double> user_qfrc, user_xfrc, known, row;
+  std::vector<double> on_bodies;  ///< forces and torques at their centres of mass
   MocapMotion mocaps;
   std::vector<double> way;  ///< of the dofs since the evaluation before
   /// What is kept, by the pair under which it is found again: pair, place in `near`, number.

@@ -43,7 +43,7 @@ Cull::Cull(const PairRules& rules, const std::vector<Shape>& solids)
     (is_plane ? planes_ : moving_).push_back(geom);
     if (is_plane) with_plane += size(rules.partners(geom));
   }
-  constexpr std::size_t kFew = 2000;  // comparisons that cost less than a sort
+  constexpr std::size_t kFew = 250;  // comparisons that cost less than a sort
   is_swept_ = rules.count() > kFew + with_plane || rules.touching().size() > kFew;
   is_swept_ ? tell_fixed_apart() : list_pairs();
 }
@@ -155,7 +155,7 @@ void Cull::sort_moving(Scratch& scratch) const {
 }
 
 // Each with those that begin before it ends.
-void Cull::sweep(Scratch& scratch) const {
+void Cull::sweep(const mjData* d, Scratch& scratch) const {
   sort_moving(scratch);
   const std::size_t count = moving_.size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -163,7 +163,9 @@ void Cull::sweep(Scratch& scratch) const {
     const double end = scratch.ends[i].second;
     for (std::size_t j = i + 1; j < count && scratch.ends[j].first < end; ++j) {
       if (are_apart(box, scratch.ordered[j])) continue;
-      const int a = moving_[size(scratch.sorted[i])], b = moving_[size(scratch.sorted[j])];
+      const int first = scratch.sorted[i], second = scratch.sorted[j];
+      if (are_apart(exact_box(d, first, scratch), exact_box(d, second, scratch))) continue;
+      const int a = moving_[size(first)], b = moving_[size(second)];
       if (rules_->admits(a, b)) scratch.near.push_back(rules_->id(a, b));
     }
   }
@@ -174,7 +176,8 @@ void Cull::meet_fixed(const mjData* d, Scratch& scratch) const {
   if (fixed_.geoms().empty()) return;
   for (std::size_t i = 0; i < moving_.size(); ++i) {
     const int a = moving_[i];
-    fixed_.meet(d, scratch.boxes[i], scratch.fixed, [&](int b) {
+    fixed_.meet(d, scratch.boxes[i], scratch.fixed, [&](int b, const Bounds& bounds) {
+      if (are_apart(exact_box(d, static_cast<int>(i), scratch), bounds)) return;
       if (rules_->admits(a, b)) scratch.near.push_back(rules_->id(a, b));
     });
   }
@@ -187,14 +190,14 @@ void Cull::run(const mjData* d, Scratch& scratch) const {
   for (std::size_t i = 0; i < moving_.size(); ++i) {
     const Shape& solid = solid_of(moving_[i]);
     const Pose X_WG = pose_of_geom(d, moving_[i]);
-    const auto* polytope = is_swept_ ? nullptr : std::get_if<ConvexPolytope>(&solid);
+    const auto* polytope = std::get_if<ConvexPolytope>(&solid);
     scratch.rough[i] = polytope ? 1 : 0;
     scratch.boxes[i] =
         polytope ? rough_bounds(polytope->bounds(), X_WG) : world_bounds(solid, X_WG);
   }
   if (is_swept_) {
     reach_planes(d, scratch);
-    sweep(scratch);
+    sweep(d, scratch);
     meet_fixed(d, scratch);
   } else {
     compare_all(d, scratch);

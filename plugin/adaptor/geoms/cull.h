@@ -44,7 +44,7 @@ class Cull {
   void compare_all(const mjData* d, Scratch& scratch) const;
   void reach_planes(const mjData* d, Scratch& scratch) const;
   void sort_moving(Scratch& scratch) const;
-  void sweep(Scratch& scratch) const;
+  void sweep(const mjData* d, Scratch& scratch) const;
   void meet_fixed(const mjData* d, Scratch& scratch) const;
 
   const PairRules* rules_;

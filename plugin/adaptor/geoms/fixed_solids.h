@@ -37,13 +37,13 @@ class FixedSolids {
   /// To be called before `meet`, once for the poses of `d`.
   void follow(const mjData* d, Kept& kept) const;
 
-  /// Calls `visit(geom)` for each whose bounds are not apart from the given ones.
+  /// Calls `visit(geom, bounds)` for each whose bounds are not apart from the given ones.
   template <typename Visit>
   void meet(const mjData* d, const Bounds& with, Kept& kept, Visit&& visit) const {
     kept.tree.find(with, [&](int place) {
       const auto i = static_cast<std::size_t>(place);
       if (kept.may_turn && kept.compared[i] != kept.call) follow_turn(d, i, kept);
-      if (!are_apart(with, kept.boxes[i])) visit(geoms_[i]);
+      if (!are_apart(with, kept.boxes[i])) visit(geoms_[i], kept.boxes[i]);
     });
   }
 

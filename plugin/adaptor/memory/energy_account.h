@@ -116,8 +116,15 @@ class AccountKeeper {
     const EnergyAccount before = begin().energy();
     const double work = completes_ ? work_of_stages(before, last_.last_power)
                                    : elapsed_ * std::midpoint(before.force_power, later);
-    return work + (now.elastic - before.elastic) - (now.owed - before.owed) - driven -
-           (now.released - before.released);
+    return work - driven + kept_since(before, now);
+  }
+
+  /// Whether this is the last stage of a step of Runge-Kutta, which still can change its work.
+  bool is_last_stage() const { return completes_ && is_within_step_; }
+  /// The same as `made` at the last stage, if its forces have that power [J].
+  double made_by_stages(const EnergyAccount& now, double power) const {
+    const EnergyAccount before = begin().energy();
+    return work_of_stages(before, power) + kept_since(before, now);
   }
 
   /// Writes the account of this evaluation: a whole Runge-Kutta step by its own rule, which is
@@ -164,6 +171,12 @@ class AccountKeeper {
   }
 
  private:
+  // What the contacts hold more than before, beyond what was lent and released.
+  static double kept_since(const EnergyAccount& before, const EnergyAccount& now) {
+    return (now.elastic - before.elastic) - (now.owed - before.owed) -
+           (now.released - before.released);
+  }
+
   double work_of_stages(const EnergyAccount& start, double last_power) const {
     const double middle = block_.slot(1).energy().force_power;
     return 2.0 * elapsed_ * (start.force_power + 4.0 * middle + last_power) / 6.0;

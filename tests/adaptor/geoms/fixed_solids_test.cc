@@ -39,7 +39,7 @@ class FixedSolidsTest : public ::testing::TestWithParam<const char*> {
   }
   std::vector<int> met(const FixedSolids& fixed, const Bounds& with) {
     std::vector<int> found;
-    fixed.meet(d.get(), with, kept, [&](int geom) { found.push_back(geom); });
+    fixed.meet(d.get(), with, kept, [&](int geom, const Bounds&) { found.push_back(geom); });
     std::sort(found.begin(), found.end());
     return found;
   }
