@@ -30,6 +30,7 @@ constexpr double kSteepShare = 0.02;   // of V, over a triangle that is large
 constexpr double kChangeError = 0.03;  // of what the last division changes: error that is left
 constexpr double kStarError = 4.0;     // of the doubt of what is seen from a point; as measured
 constexpr double kStarShare = 0.1;     // of the tolerance: most that this adds to the doubt
+constexpr double kFlat = 1e-9;         // of the area of a patch: what its vector lacks
 constexpr int kMostRounds = 6;         // of divisions of triangles
 constexpr double kAlmostAxis = 0.97, kAlmostAcross = 0.3;
 
@@ -66,6 +67,7 @@ class RoundColumns {
     if (bounds_apart()) return true;
     const VolumeMetrics own_b = b_.own_metrics();
     if (!(own_b.volume > 0.0)) return true;
+    own_volume_ = own_b.volume;
     if (!round_solid_of(b_, X_QB(), s_.faces, solid_)) return false;
     if (holds_all_of_a()) return add_contained(a_.own, a_.surface_area, 0.0);
     if (!find_round_pieces(*a_.tree, origin_, solid_, options_, s_.search, s_.pieces)) {
@@ -180,7 +182,14 @@ class RoundColumns {
     }
     const Vec3 against = against_outline(slivers);
     if (up.dot(against) > 0.0 && works(against)) return;
-    if (!works(-up)) look_from_point(surface, patch);
+    if (!works(-up)) return look_from_point(surface, patch);
+    // Seen from behind, a shallow patch is what all of B leaves: its rest is the difference of two
+    // large volumes, and a point tells it better.
+    const double rest = own_volume_ - std::abs(patch.moments.volume);
+    if (patch.volume_error <= options_.tolerance * rest) return;
+    const Patch from_behind = patch;
+    look_from_point(surface, patch);
+    if (!(patch.volume_error < from_behind.volume_error)) patch = from_behind;
   }
 
   // Where no direction sees the patch whole, a point inside of B does: B is convex.
@@ -198,7 +207,10 @@ class RoundColumns {
     patch.moments.area = surface.area;
     patch.moments.counter_area =
         std::max(std::abs(sum.moments.counter_area), surface.area_vector.norm());
-    patch.deep = true;
+    // The columns of a flat patch run along its normal.
+    patch.deep = !(surface.area_vector.norm() > (1.0 - kFlat) * surface.area);
+    patch.depth = sum.depth;
+    patch.depth_moment = sum.depth_moment;
     const double volume = std::abs(sum.moments.volume);
     const double more =
         std::min((kStarError - 1.0) * sum.doubt, kStarShare * options_.tolerance * volume);
@@ -418,6 +430,7 @@ class RoundColumns {
   const Vec3 origin_;
   RoundSolid solid_;
   bool active_[2] = {false, false};
+  double own_volume_ = 0.0;  // of B
 };
 
 }  // namespace

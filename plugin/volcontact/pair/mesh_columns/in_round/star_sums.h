@@ -15,6 +15,8 @@ struct StarSum {
   MomentSum moments;     ///< negative where the pieces look at the point; without area_*
   double doubt = 0.0;    ///< of the volume, by the rule on the triangles
   double slivers = 0.0;  ///< volume of the slivers
+  double depth = 0.0;    ///< of the ends of the rays behind the planes of the pieces [m]
+  double depth_moment = 0.0;  ///< int of half of that over the volume, without its sign [m^4]
 };
 
 /// Memory of sum_star().
