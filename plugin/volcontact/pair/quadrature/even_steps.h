@@ -13,6 +13,8 @@ namespace volcontact {
 /// in theta, such as what grows from nothing to nothing between angle = middle -+ half cos theta.
 struct EvenSteps {
   static constexpr double kFallError = 10.0;  ///< error by the fall of waves, as measured
+  static constexpr double kSymmetric = 1e-3;   ///< of the second wave: what the odd ones are then
+  static constexpr double kUnsteadyFall = 3.0;  ///< by the fall from the wave before
   double cos[kLanes][kLanes], sin[kLanes];    ///< of multiples 0 to 7 of theta, and of theta
 
   EvenSteps() {
@@ -24,7 +26,9 @@ struct EvenSteps {
   }
 
   /// Estimate of the error, from the values times their weights, whose sum goes to `total`: the
-  /// error is the wave number 16, and no more than this foretells from those before.
+  /// error is the wave number 16, and no more than this foretells from those before. Of a symmetric
+  /// integrand there are four values and three waves: where the last of these is larger than the
+  /// fall of those before tells, it is small by chance and foretells nothing.
   double error(const double* terms, double& total) const {
     double waves[kLanes] = {};
     total = 0.0;
@@ -34,6 +38,12 @@ struct EvenSteps {
     }
     const double last = std::abs(waves[5]) + std::abs(waves[6]) + std::abs(waves[7]);
     const double first = std::abs(waves[1]) + std::abs(waves[2]) + std::abs(waves[3]);
+    const double odd =
+        std::abs(waves[1]) + std::abs(waves[3]) + std::abs(waves[5]) + std::abs(waves[7]);
+    if (odd < kSymmetric * std::abs(waves[2]) &&
+        std::abs(waves[6] * waves[2]) > kUnsteadyFall * waves[4] * waves[4]) {
+      return last;
+    }
     return first > 0.0 ? last * std::min(1.0, kFallError * last / first) : last;
   }
 };

@@ -28,5 +28,22 @@ TEST(EvenSteps, ErrorIsFeltWhereStepsAreTooFew) {
   EXPECT_GT(steps.error(terms, total), 0.5);
 }
 
+// What is symmetric has every second wave. The last falls less than those before: the waves go on
+// as they are, here those of a cone that leaves a ring near both ends of its range.
+TEST(EvenSteps, ASmallLastWaveForetellsNothingWhereFewFall) {
+  const EvenSteps& steps = even_steps();
+  const auto error = [&](double second, double fourth, double sixth) {
+    double terms[kLanes], total;
+    for (int i = 0; i < kLanes; ++i) {
+      terms[i] = (1.0 + second * steps.cos[2][i] + fourth * steps.cos[4][i] +
+                  sixth * steps.cos[6][i]) /
+                 kLanes;
+    }
+    return steps.error(terms, total);
+  };
+  EXPECT_NEAR(error(-1.06, -0.014, -0.0035), 0.0035, 1e-9);
+  EXPECT_LT(error(-1.0, 0.06, -0.0036), 0.0002);
+}
+
 }  // namespace
 }  // namespace volcontact::even_steps_test

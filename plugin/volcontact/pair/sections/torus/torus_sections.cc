@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "volcontact/base/interrupt.h"
 #include "volcontact/pair/quadrature/even_steps.h"
@@ -20,8 +21,10 @@ constexpr double kWidestAngle = 1.6;    // of an undivided arc [rad]
 constexpr double kSameAngle = 1e-11;    // [rad]
 constexpr double kNearRangeEnd = 3e-4;  // of a range: to which its ends are known at least
 constexpr double kOnAxis = 1e-13;       // of a plane from the axis, per radius; a body may be thin
+constexpr double kInPlane = 1e-9;       // per R, and the sine of a slope: a rim of a face
 constexpr double kAlongAxis = 1e-8;     // of a plane: the sine of its slope
 constexpr double kEndError = 5.0;       // error by its estimate where an arc ends in nothing
+constexpr double kByChance = 10.0;  // of an error, by its estimate, that is small by chance
 constexpr double kTarget = 1e-2;    // share of the tolerance asked of an arc: kinks may be hidden
 constexpr double kGapError = 3.0;   // error of V by the gap on a first look, at most as measured
 constexpr double kLeftOver = 1e-4;  // of a surface: so little of the other is told by rounding
@@ -133,13 +136,21 @@ class TorusSectionsRun {
     set_corners(range);
     integrate_corners(range);
     open_ *= kGapError;
-    if (!is_open(options_.tolerance)) return;
     const double volume = s_.sections.total().moments[0];
+    if (!is_open(options_.tolerance) && !is_by_chance(volume)) return;
     closer_ = true;
     set_sections();
     integrate_corners(range);
     open_ =
         outer_rule::kGapShare * std::max(open_, std::abs(s_.sections.total().moments[0] - volume));
+  }
+
+  // Whether the equal steps, that were left for arcs, tell another volume than their error says: one
+  // of the two has a small error by chance, and be it the arcs, which are alike where the overlap
+  // is symmetric.
+  bool is_by_chance(double volume) const {
+    const double off = std::abs(volume - even_volume_);
+    return even_volume_ > 0.0 && off > kByChance * even_error_ && off > options_.tolerance * volume;
   }
 
   bool is_open(double tolerance) const {
@@ -154,7 +165,7 @@ class TorusSectionsRun {
   void integrate_corners(const TorusRange& range) {
     InterruptScope::poll();
     s_.sections.clear();
-    error_ = volume_scale_ = 0.0;
+    error_ = volume_scale_ = even_volume_ = 0.0;
     const bool done =
         range.whole ? s_.breaks.empty() && !closer_ &&
                           integrate_even_turn(s_.sections, s_.path, options_.tolerance, error_)
@@ -218,7 +229,8 @@ class TorusSectionsRun {
     error_ = steps.error(section, volume);
     volume_scale_ = volume;
     if (error_ > outer_rule::kTarget * options_.tolerance * volume || closer_) {
-      error_ = 0.0;
+      even_error_ = std::exchange(error_, 0.0);
+      even_volume_ = volume;
       return false;
     }
     s_.sections.accept_batch();
@@ -336,11 +348,24 @@ class TorusSectionsRun {
   bool has_axial_plane() const {
     for (const PlaneFace& plane : s_.faces.planes) {
       if (std::abs(plane.normal.z()) < kAxial &&
-          std::abs(plane.offset) < kAxial * torus_.major_radius()) {
+          std::abs(plane.offset) < kAxial * torus_.major_radius() && reaches_ring(plane)) {
         return true;
       }
     }
     return false;
+  }
+
+  // Not if it ends at a rim that does not: the tip of a cone may lie at the axis, in the hole.
+  bool reaches_ring(const PlaneFace& plane) const {
+    const double R = torus_.major_radius(), r = torus_.minor_radius();
+    return std::none_of(s_.faces.rims.begin(), s_.faces.rims.end(), [&](const Rim& rim) {
+      const Vec3& c = rim.center;
+      const double radius = rim.radius_u.norm();
+      const bool in_plane =
+          std::abs(plane.normal.dot(c) - plane.offset) <= kInPlane * R &&
+          rim.radius_u.cross(rim.radius_v).cross(plane.normal).norm() <= kInPlane * radius * radius;
+      return in_plane && std::hypot(std::hypot(c.x(), c.y()) - R, c.z()) - r > radius;
+    });
   }
 
   // Depth under the planes of a flat body, in proportion to the squares of their area vectors, the
@@ -408,6 +433,7 @@ class TorusSectionsRun {
   std::vector<double>& corners_ = s_.corners;
   double error_ = 0.0, volume_scale_ = 0.0;
   double open_ = 0.0;    // how far the surface is from closed
+  double even_volume_ = 0.0, even_error_ = 0.0;  // by equal steps that were not good enough
   bool closer_ = false;  // more columns, since with fewer it was not
 };
 
