@@ -96,6 +96,8 @@ class TorusSections {
 
   void add_segments(double from, double to) {
     if (!(from < to)) return;
+    from_ = from;
+    to_ = to;
     middle_ = 0.5 * (to + from);
     half_ = 0.5 * (to - from);
     const double below = from - (from > first_ ? first_ : std::min(-1.0, touch_low_));
@@ -105,7 +107,7 @@ class TorusSections {
     if (sine_ > 0.0) {
       singular_[2] = std::acos(std::complex<double>(middle_, cosine_ / sine_) / half_);
     }
-    constexpr int kMostSplits = 5;
+    constexpr int kMostSplits = 24;
     add_panels(0.0, 0.5 * kPi, kMostSplits);
     add_panels(0.5 * kPi, kPi, kMostSplits);
   }
@@ -128,14 +130,17 @@ class TorusSections {
       for (const double x : {-node.x, node.x}) {
         const double turn = center + reach * x;
         const double c = middle_ - half_ * std::cos(turn);
-        const double square = (1.0 - c) * (1.0 + c);
+        // From the ends of the range: next to them 1 - c^2 would be rounding.
+        const double sine = std::sin(0.5 * turn), cosine = std::cos(0.5 * turn);
+        const double square = ((1.0 - to_) + 2.0 * half_ * cosine * cosine) *
+                              ((1.0 + from_) + 2.0 * half_ * sine * sine);
         if (!(square > 0.0)) continue;
         add_segment(c, square,
                     2.0 * reach * node.weight * half_ * std::sin(turn) / std::sqrt(square));
       }
     }
     // Where the plane touches the tube a singularity lies on the range, or next to it.
-    constexpr double kUnresolved = 2e-4;
+    constexpr double kUnresolved = 0.1;
     if (nearest < kClear * kClear * reach * reach) error_ += kUnresolved * (sum_.volume - before);
   }
 
@@ -185,7 +190,8 @@ class TorusSections {
   const double height_;
   double touch_low_ = -kInfinity, touch_high_ = kInfinity;
   double first_ = -1.0, last_ = 1.0;  // range of cos(phi) with segments
-  double middle_ = 0.0, half_ = 1.0;  // of the part of it that is integrated
+  double from_ = -1.0, to_ = 1.0;     // of the part of it that is integrated
+  double middle_ = 0.0, half_ = 1.0;  // of that
   double error_ = 0.0;
   std::complex<double> singular_[3] = {{0.0, kInfinity}, {0.0, kInfinity}, {0.0, kInfinity}};
   TiltedSum sum_;

@@ -145,6 +145,58 @@ TEST(HalfSpaceTorus, AHornTorusCutThroughItsAxisIsHalf) {
   }
 }
 
+// Of an upright torus below a plane at `height` over its middle: rings at all distances from its own
+// middle plane, each cut by a line.
+double volume_of_rings(const Torus& b, double height) {
+  const auto disc_below = [height](double radius) {
+    if (!(std::abs(height) < radius)) return height > 0.0 ? kPi * radius * radius : 0.0;
+    const double half = std::sqrt((radius - height) * (radius + height));
+    return radius * radius * std::atan2(half, -height) + height * half;
+  };
+  constexpr int kRings = 50000;
+  const double R = b.major_radius(), r = b.minor_radius();
+  double sum = 0.0;
+  for (int i = 0; i < kRings; ++i) {
+    const double theta = 0.5 * kPi * (i + 0.5) / kRings, half = r * std::cos(theta);
+    sum += (disc_below(R + half) - disc_below(R - half)) * half;
+  }
+  return sum * kPi / kRings;
+}
+
+// The plane touches an equator, or nearly does: in the sections next to it a root bends within far
+// less than the rest of them.
+TEST(HalfSpaceTorus, StandsUprightOnAPlaneThatTouchesAnEquator) {
+  Random random(8);
+  for (int i = 0; i < 60; ++i) {
+    const Torus b = random_torus(0.1, 0.9, random);
+    const double R = b.major_radius(), r = b.minor_radius();
+    const double off = random.log_uniform(1e-15, 1e-4) * (i % 2 == 0 ? R : -R);
+    for (const double at : {-R - r, r - R, R - r, R + r}) {
+      const Mat3 upright = test::turn(Vec3::UnitZ(), random.uniform(0.0, 2.0 * kPi)) *
+                           test::turn(Vec3::UnitX(), 0.5 * kPi);
+      const VolumeMetrics m =
+          closed_form(HalfSpace(), b, {upright, Vec3(0.0, 0.0, -(at + off))});
+      const double expected = volume_of_rings(b, at + off);
+      EXPECT_NEAR(m.volume, expected, m.volume_error + 1e-9 * R * R * R) << at << " " << off;
+      EXPECT_LE(m.volume_error, 1e-8 * R * R * R) << at << " " << off;
+    }
+  }
+}
+
+// Next to all of it only a cap stands out, whose volume and slope are next to nothing.
+TEST(HalfSpaceTorus, NearlyAllIsAllButACap) {
+  Random random(9);
+  for (int i = 0; i < 200; ++i) {
+    const Torus b = random_torus(0.1, 0.9, random);
+    const double R = b.major_radius(), r = b.minor_radius();
+    const double cap = random.log_uniform(1e-15, 1e-6) * r;
+    const Mat3 upright = test::turn(Vec3::UnitX(), 0.5 * kPi);
+    const VolumeMetrics m = closed_form(HalfSpace(), b, {upright, Vec3(0.0, 0.0, cap - R - r)});
+    const double own = b.own_metrics().volume;
+    EXPECT_NEAR(m.volume, own, m.volume_error + 2.0 * kPi * (R + r) * cap * cap) << cap;
+  }
+}
+
 TEST(HalfSpaceTorus, GradientsAreTheForces) {
   Random random(5);
   for (int i = 0; i < 40; ++i) {
