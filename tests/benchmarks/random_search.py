@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs the program search_pairs over many cases and writes their sum, results/random_search.json.
 
-Every chunk of cases has a file of its own, so that a run that was stopped goes on where it was. The
-command `./run search` builds the program and calls this script.
+Every chunk of cases has a file of its own, so that a run that was stopped goes on where it was.
+Chunks that were judged on other engines hold where the answers are the same to the last bit: that
+is asked of the program, without the judge, who takes most of the time. Those with failures are
+judged again. The command `./run search`
+builds the program and calls this script.
 """
 
 from __future__ import annotations
@@ -57,7 +60,7 @@ def main() -> None:
     end = begin + 60 * arguments.minutes if arguments.minutes else float("inf")
 
     def run_in_time(chunk: tuple[str, int, int]) -> None:
-        if time.monotonic() < end:
+        if time.monotonic() < end and not carry(arguments.program, folder, *chunk):
             run(arguments.program, folder, *chunk)
 
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
@@ -99,6 +102,36 @@ def file_of(family: str, seed: int, size: int) -> str:
     return f"{family}-{seed:04d}-{size}.jsonl"
 
 
+def carry(program: Path, folder: Path, family: str, seed: int, size: int) -> bool:
+    """Takes over what was found on other engines that give the same answers."""
+    name, answers = file_of(family, seed, size), None
+    for path in sorted(folder.parent.glob(f"*/{name}")):
+        text = path.read_text(encoding="utf-8")
+        lines = [json.loads(line) for line in text.splitlines()]
+        known = next((line["answers"] for line in lines if "answers" in line), None)
+        if known is None or any("crash" in line or "what" in line for line in lines):
+            continue  # failures are looked at again
+        if answers is None:
+            command = [program, family, str(seed), "0", str(size), "answers"]
+            ran = subprocess.run(command, capture_output=True, text=True)
+            if ran.returncode != 0:
+                return False
+            answers = json.loads(ran.stdout)["answers"]
+        if known == answers:
+            if not any("judged_on" in line for line in lines):
+                text += json.dumps({"judged_on": path.parent.name}) + "\n"
+            write(folder / name, text)
+            return True
+    return False
+
+
+def write(path: Path, text: str) -> None:
+    """All of it or nothing."""
+    partial = path.with_suffix(".partial")
+    partial.write_text(text, encoding="utf-8")
+    partial.rename(path)
+
+
 def run(program: Path, folder: Path, family: str, seed: int, size: int) -> None:
     """Runs one chunk; goes on behind a case that ends the program."""
     text, first = "", 0
@@ -113,10 +146,7 @@ def run(program: Path, folder: Path, family: str, seed: int, size: int) -> None:
             raise RuntimeError(f"{command} ended with {ran.returncode}: {ran.stderr[-500:]}")
         first = int(crash.group(1)) + 1
     text += json.dumps({"chunk": [family, seed, size]}) + "\n"
-    path = folder / file_of(family, seed, size)
-    partial = path.with_suffix(".partial")
-    partial.write_text(text, encoding="utf-8")
-    partial.rename(path)
+    write(folder / file_of(family, seed, size), text)
 
 
 # ---- Adding up -----------------------------------------------------------------------------------
@@ -127,13 +157,15 @@ def summary(texts: list[str]) -> dict[str, Any]:
     rows: dict[tuple[str, str], dict[str, Any]] = {}
     kinds: dict[tuple[str, str, str], dict[str, Any]] = {}
     crashes: list[dict[str, Any]] = []
-    refused, seconds = 0, 0.0
+    refused, seconds, elsewhere = 0, 0.0, 0
     for text in texts:
         lines = [json.loads(line) for line in text.splitlines()]
         family, seed, _ = next(line["chunk"] for line in lines if "chunk" in line)
+        carried = any("judged_on" in line for line in lines)
         for line in lines:
             if "count" in line:
                 _add_count(rows, line)
+                elsewhere += line["cases"] if carried else 0
             elif "what" in line:
                 _add_failure(kinds, line, seed)
             elif "crash" in line:
@@ -143,6 +175,7 @@ def summary(texts: list[str]) -> dict[str, Any]:
                 seconds += line["seconds"]
     return {
         "cases": sum(row["cases"] for row in rows.values()),
+        "judged_elsewhere": elsewhere,
         "refused": refused,
         "seconds": round(seconds),
         "crashes": crashes,

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Random search for wrong answers: search_pairs FAMILY SEED FIRST COUNT [LEVEL]
+// Random search for wrong answers: search_pairs FAMILY SEED FIRST COUNT [LEVEL|answers]
 // Prints lines of JSON that tests/benchmarks/search_for_failures.py adds up: one of every failure,
-// and at the end one with the counts. After a crash the last line names the case. LEVEL, 0 to 5, is
-// how closely the judge looks at every case, instead of at one in 20 and in 500.
+// and at the end one with the counts and a hash of all answers. After a crash the last line names
+// the case. LEVEL, 0 to 5, is how closely the judge looks at every case, instead of at one in 20
+// and in 500; `answers` asks no judge and prints the hash alone: where it is the same on other
+// engines, what was found on those holds.
 #include <unistd.h>
 
 #include <csignal>
@@ -67,8 +69,28 @@ void print(const SearchFailure& f, SearchFamily family, std::uint64_t index) {
       finite(f.expected), finite(f.doubt), f.a.c_str(), f.b.c_str(), f.X_AB.c_str());
 }
 
+// Also where nothing is judged: what is asked must not depend on it.
+std::uint64_t seed_of(std::uint64_t seed, std::uint64_t index) { return seed + 1000003 * index; }
+
+int answers(SearchFamily family, std::uint64_t seed, std::uint64_t first, std::uint64_t count) {
+  PairSearch search;
+  SearchCases cases(family, seed);
+  std::uint64_t sum = 0;
+  for (std::uint64_t index = first; index < first + count; ++index) {
+    current = static_cast<std::sig_atomic_t>(index);
+    alarm(kPatience);
+    try {
+      sum = 31 * sum + search.ask(cases[index], seed_of(seed, index)).answers;
+    } catch (const std::invalid_argument&) {
+    }
+  }
+  std::printf("{\"answers\": \"%016llx\"}\n", static_cast<unsigned long long>(sum));
+  return 0;
+}
+
 int search(SearchFamily family, std::uint64_t seed, std::uint64_t first, std::uint64_t count,
            int level) {
+  std::uint64_t sum = 0;
   PairSearch search;
   SearchCases cases(family, seed);
   std::map<std::string, Count> counts;
@@ -84,7 +106,8 @@ int search(SearchFamily family, std::uint64_t seed, std::uint64_t first, std::ui
       continue;
     }
     const SearchOutcome outcome =
-        search.run(c, level >= 0 ? level : level_of(index), seed + 1000003 * index);
+        search.run(c, level >= 0 ? level : level_of(index), seed_of(seed, index));
+    sum = 31 * sum + outcome.answers;
     Count& tally = counts[to_string(outcome.engine)];
     ++tally.cases;
     tally.overlapping += outcome.overlapping;
@@ -105,23 +128,29 @@ int search(SearchFamily family, std::uint64_t seed, std::uint64_t first, std::ui
         engine.c_str(), to_string(family), tally.cases, tally.overlapping, tally.undecided,
         tally.slowest, tally.known[0], tally.known[1], tally.known[2], tally.known[3]);
   }
-  std::printf("{\"refused\": %d, \"seconds\": %.2f}\n", refused,
-              static_cast<double>(std::clock()) / CLOCKS_PER_SEC);
+  std::printf("{\"refused\": %d, \"seconds\": %.2f, \"answers\": \"%016llx\"}\n", refused,
+              static_cast<double>(std::clock()) / CLOCKS_PER_SEC,
+              static_cast<unsigned long long>(sum));
   return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int level = argc == 6 ? std::atoi(argv[5]) : -1;
+  const bool ask = argc == 6 && std::strcmp(argv[5], "answers") == 0;
+  const int level = argc == 6 && !ask ? std::atoi(argv[5]) : -1;
   if (argc < 5 || argc > 6 || level >= LineOracle::kLevels) {
-    std::fprintf(stderr, "usage: search_pairs FAMILY SEED FIRST COUNT [LEVEL]\n");
+    std::fprintf(stderr, "usage: search_pairs FAMILY SEED FIRST COUNT [LEVEL|answers]\n");
     return 2;
   }
   for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGALRM}) std::signal(signal, on_signal);
   try {
-    return search(family_of(argv[1]), std::strtoull(argv[2], nullptr, 10),
-                  std::strtoull(argv[3], nullptr, 10), std::strtoull(argv[4], nullptr, 10), level);
+    const SearchFamily family = family_of(argv[1]);
+    const std::uint64_t seed = std::strtoull(argv[2], nullptr, 10),
+                        first = std::strtoull(argv[3], nullptr, 10),
+                        count = std::strtoull(argv[4], nullptr, 10);
+    if (ask) return answers(family, seed, first, count);
+    return search(family, seed, first, count, level);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "search_pairs: %s\n", error.what());
     return 2;

@@ -29,6 +29,7 @@ struct SearchOutcome {
   double error = 0.0;    ///< of V, by V, where the judge agreed or not [-]
   double doubt = 0.0;    ///< of the judge, by V [-]
   double seconds = 0.0;  ///< of the slower of the two orders
+  std::uint64_t answers = 0;  ///< a hash of all bits of all answers
   std::vector<SearchFailure> failures;
 };
 
@@ -39,6 +40,9 @@ struct SearchOutcome {
 class PairSearch {
  public:
   SearchOutcome run(const SearchCase& c, int level, std::uint64_t seed);
+  /// Asks all that run() asks and judges nothing: where `answers` is the same on other engines, so
+  /// is their judgement.
+  SearchOutcome ask(const SearchCase& c, std::uint64_t seed);
 
  private:
   InterferenceWorkspace workspace_;
