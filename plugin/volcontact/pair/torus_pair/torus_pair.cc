@@ -42,10 +42,10 @@ class TorusPairRun {
     const PatchEffort effort{kPartTarget * options_.tolerance * (fine ? 0.1 : 1.0), fine,
                              fine ? 32 : 8};
     s_.patch[0].hints.clear();
-    if (round > 0) set_hints(0);
+    if (round > 0) set_hints(0, true);
     find_patch(size_[0], X_BA_, size_[1], effort, s_.patch[0]);
     if (patch(0).apart) return true;
-    set_hints(1);
+    set_hints(1, round > 0);
     find_patch(size_[1], X_AB_, size_[0], effort, s_.patch[1]);
     if (patch(0).incomplete || patch(1).incomplete) return false;
     if (patch(0).arcs.empty() || patch(1).arcs.empty()) return settle_contained();
@@ -68,8 +68,9 @@ class TorusPairRun {
   }
 
   // Arcs of the other surface end on this one: where a thin ring passes through a thick one, they
-  // are all there is to be seen of a small patch.
-  void set_hints(int side) {
+  // are all there is to be seen of a small patch. Of a row of them the middle, which a patch of two
+  // halves may not have: `more` places beside it tell of both.
+  void set_hints(int side, bool more) {
     std::vector<double>& hints = s_.patch[side].hints;
     hints.clear();
     for (const TorusPatch::Slice& slice : patch(1 - side).slices) {
@@ -88,7 +89,12 @@ class TorusPairRun {
     for (std::size_t i = 0; i < hints.size();) {
       std::size_t next = i + 1;
       while (next < hints.size() && hints[next] - hints[next - 1] < kOneHint) ++next;
-      hints[kept++] = 0.5 * (hints[i] + hints[next - 1]);
+      const double low = hints[i], high = hints[next - 1];
+      hints[kept++] = 0.5 * (low + high);
+      if (more && high - low > kOneHint) {  // then there are three or more
+        hints[kept++] = 0.75 * low + 0.25 * high;
+        hints[kept++] = 0.25 * low + 0.75 * high;
+      }
       i = next;
     }
     hints.resize(kept);

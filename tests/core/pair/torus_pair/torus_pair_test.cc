@@ -223,6 +223,40 @@ TEST(TorusPair, VolumeIsContinuousAlongAMotion) {
   }
 }
 
+// A thin ring that lies along the outer equator of a thick one, its own radius off it: on both sides
+// of the circle at which the two only touch it leaves the thick one. V is smooth, and near to a sum
+// over slices of the thin tube.
+TEST(TorusPair, AThinRingThatLeavesAThickOneBesideATouch) {
+  constexpr double kThin = 7e-5, kWide = 0.15, kThick = 0.0577;
+  for (const double off : {-1.0, -0.97, -1e-3, 0.0, 1e-7, 1e-3, 1.0}) {
+    // The circles of the two in one plane but for `lower`; the thin tube ends `off` of itself off.
+    const double major = 0.1154, lower = -kThin, out = major + kThick + kThin * (1.0 + 1e-6 * off);
+    const Pose X{test::turn(Vec3::UnitX(), 1e-8), Vec3(0.0, out - kWide, lower)};
+    // Columns of the thin tube, slice by slice.
+    constexpr int kAngles = 1500, kPoints = 40;
+    double expected = 0.0;
+    for (int i = 0; i < kAngles; ++i) {
+      const double t = kPi * (i + 0.5) / kAngles;
+      for (int k = 0; k < kPoints; ++k) {
+        const double r = kThin * std::sqrt((k + 0.5) / kPoints);
+        for (int j = 0; j < kPoints; ++j) {
+          const double a = 2.0 * kPi * (j + 0.5) / kPoints, rho = kWide + r * std::cos(a);
+          const Vec3 x = X * Vec3(rho * std::sin(t), rho * std::cos(t), r * std::sin(a));
+          const double across = std::hypot(x.x(), x.y()) - major;
+          if (across * across + x.z() * x.z() < kThick * kThick) expected += rho;
+        }
+      }
+    }
+    expected *= 2.0 * kPi / kAngles * kPi * kThin * kThin / (kPoints * kPoints);
+    const Shape thick = ring(major, kThick), thin = ring(kWide, kThin);
+    for (const VolumeMetrics& m : {evaluated(thick, thin, X).total,
+                                   reversed(evaluated(thin, thick, X.inverse()).total)}) {
+      EXPECT_NEAR(m.volume, expected, m.volume_error + 1e-4 * expected) << off;
+      EXPECT_EQ(m.status, Status::kOk) << off;
+    }
+  }
+}
+
 TEST(TorusPair, RingsOfNoThicknessOverlapInNothing) {
   EXPECT_FALSE(evaluated(kRing, ring(0.3, 0.0), at(Vec3::Zero())).total.touching());
   EXPECT_FALSE(evaluated(ring(0.0, 0.0), kRing, at({0.3, 0.0, 0.0})).total.touching());
