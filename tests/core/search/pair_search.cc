@@ -237,8 +237,8 @@ class CaseJudge {
     return std::abs(rise - 0.5 * (from.rate + to.rate)) <= allowed;
   }
   void move(Random& random) {
-    // No farther than the overlap is thick: from all of a disc to none of it V is not smooth, and no
-    // rate at either end tells of that.
+    // No farther than the overlap is thick: from all of a disc to none of it V is not smooth, and
+    // no rate at either end tells of that.
     const VolumeMetrics& m = result_->total;
     const double thick = m.volume / std::max(m.area, m.counter_area);
     double step = random.log_uniform(1e-6, 1e-2) * std::min(c_.a.size, c_.b.size);

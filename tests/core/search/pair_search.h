@@ -25,10 +25,10 @@ struct SearchOutcome {
   Engine engine = Engine::kAuto;
   bool overlapping = false;
   bool undecided = false;
-  int level = -1;        ///< of the judge when it agreed; -1 where it was not asked
-  double error = 0.0;    ///< of V, by V, where the judge agreed or not [-]
-  double doubt = 0.0;    ///< of the judge, by V [-]
-  double seconds = 0.0;  ///< of the slower of the two orders
+  int level = -1;             ///< of the judge when it agreed; -1 where it was not asked
+  double error = 0.0;         ///< of V, by V, where the judge agreed or not [-]
+  double doubt = 0.0;         ///< of the judge, by V [-]
+  double seconds = 0.0;       ///< of the slower of the two orders
   std::uint64_t answers = 0;  ///< a hash of all bits of all answers
   std::vector<SearchFailure> failures;
 };

@@ -12,10 +12,10 @@ namespace volcontact {
 /// Eight equal steps of theta over half a turn: the rule for integrands that are even and periodic
 /// in theta, such as what grows from nothing to nothing between angle = middle -+ half cos theta.
 struct EvenSteps {
-  static constexpr double kFallError = 10.0;  ///< error by the fall of waves, as measured
-  static constexpr double kSymmetric = 1e-3;   ///< of the second wave: what the odd ones are then
+  static constexpr double kFallError = 10.0;    ///< error by the fall of waves, as measured
+  static constexpr double kSymmetric = 1e-3;    ///< of the second wave: what the odd ones are then
   static constexpr double kUnsteadyFall = 3.0;  ///< by the fall from the wave before
-  double cos[kLanes][kLanes], sin[kLanes];    ///< of multiples 0 to 7 of theta, and of theta
+  double cos[kLanes][kLanes], sin[kLanes];      ///< of multiples 0 to 7 of theta, and of theta
 
   EvenSteps() {
     for (int i = 0; i < kLanes; ++i) {

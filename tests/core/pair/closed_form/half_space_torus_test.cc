@@ -145,8 +145,8 @@ TEST(HalfSpaceTorus, AHornTorusCutThroughItsAxisIsHalf) {
   }
 }
 
-// Of an upright torus below a plane at `height` over its middle: rings at all distances from its own
-// middle plane, each cut by a line.
+// Of an upright torus below a plane at `height` over its middle: rings at all distances from its
+// own middle plane, each cut by a line.
 double volume_of_rings(const Torus& b, double height) {
   const auto disc_below = [height](double radius) {
     if (!(std::abs(height) < radius)) return height > 0.0 ? kPi * radius * radius : 0.0;
@@ -174,8 +174,7 @@ TEST(HalfSpaceTorus, StandsUprightOnAPlaneThatTouchesAnEquator) {
     for (const double at : {-R - r, r - R, R - r, R + r}) {
       const Mat3 upright = test::turn(Vec3::UnitZ(), random.uniform(0.0, 2.0 * kPi)) *
                            test::turn(Vec3::UnitX(), 0.5 * kPi);
-      const VolumeMetrics m =
-          closed_form(HalfSpace(), b, {upright, Vec3(0.0, 0.0, -(at + off))});
+      const VolumeMetrics m = closed_form(HalfSpace(), b, {upright, Vec3(0.0, 0.0, -(at + off))});
       const double expected = volume_of_rings(b, at + off);
       EXPECT_NEAR(m.volume, expected, m.volume_error + 1e-9 * R * R * R) << at << " " << off;
       EXPECT_LE(m.volume_error, 1e-8 * R * R * R) << at << " " << off;

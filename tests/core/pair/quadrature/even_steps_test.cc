@@ -35,9 +35,9 @@ TEST(EvenSteps, ASmallLastWaveForetellsNothingWhereFewFall) {
   const auto error = [&](double second, double fourth, double sixth) {
     double terms[kLanes], total;
     for (int i = 0; i < kLanes; ++i) {
-      terms[i] = (1.0 + second * steps.cos[2][i] + fourth * steps.cos[4][i] +
-                  sixth * steps.cos[6][i]) /
-                 kLanes;
+      terms[i] =
+          (1.0 + second * steps.cos[2][i] + fourth * steps.cos[4][i] + sixth * steps.cos[6][i]) /
+          kLanes;
     }
     return steps.error(terms, total);
   };

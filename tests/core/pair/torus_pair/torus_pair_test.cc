@@ -223,9 +223,9 @@ TEST(TorusPair, VolumeIsContinuousAlongAMotion) {
   }
 }
 
-// A thin ring that lies along the outer equator of a thick one, its own radius off it: on both sides
-// of the circle at which the two only touch it leaves the thick one. V is smooth, and near to a sum
-// over slices of the thin tube.
+// A thin ring that lies along the outer equator of a thick one, its own radius off it: on both
+// sides of the circle at which the two only touch it leaves the thick one. V is smooth, and near to
+// a sum over slices of the thin tube.
 TEST(TorusPair, AThinRingThatLeavesAThickOneBesideATouch) {
   constexpr double kThin = 7e-5, kWide = 0.15, kThick = 0.0577;
   for (const double off : {-1.0, -0.97, -1e-3, 0.0, 1e-7, 1e-3, 1.0}) {
@@ -249,8 +249,8 @@ TEST(TorusPair, AThinRingThatLeavesAThickOneBesideATouch) {
     }
     expected *= 2.0 * kPi / kAngles * kPi * kThin * kThin / (kPoints * kPoints);
     const Shape thick = ring(major, kThick), thin = ring(kWide, kThin);
-    for (const VolumeMetrics& m : {evaluated(thick, thin, X).total,
-                                   reversed(evaluated(thin, thick, X.inverse()).total)}) {
+    for (const VolumeMetrics& m :
+         {evaluated(thick, thin, X).total, reversed(evaluated(thin, thick, X.inverse()).total)}) {
       EXPECT_NEAR(m.volume, expected, m.volume_error + 1e-4 * expected) << off;
       EXPECT_EQ(m.status, Status::kOk) << off;
     }

@@ -105,9 +105,7 @@ class Star {
   // rule on either side of the rim tells.
   StarSum sliver(const RoundPieces::Sliver& s) const {
     StarSum out;
-    const auto at = [&](double y) {
-      return behind(s.tip + y * (s.middle - s.tip), s.area_vector);
-    };
+    const auto at = [&](double y) { return behind(s.tip + y * (s.middle - s.tip), s.area_vector); };
     const Behind at_chord = at(1.0), at_arc = at(kOffArc);
     if (at_arc.face < 0 && at_chord.face < 0) {
       add(kSliverShare, at_chord, out);

@@ -12,10 +12,10 @@ namespace volcontact {
 /// on to the solid's surface; about the origin of Q:
 ///   V = 1/3 int (s^3 - 1) (x - c) . n dS,   c + s (x - c) on the surface
 struct StarSum {
-  MomentSum moments;     ///< negative where the pieces look at the point; without area_*
-  double doubt = 0.0;    ///< of the volume, by the rule on the triangles
-  double slivers = 0.0;  ///< volume of the slivers
-  double depth = 0.0;    ///< of the ends of the rays behind the planes of the pieces [m]
+  MomentSum moments;          ///< negative where the pieces look at the point; without area_*
+  double doubt = 0.0;         ///< of the volume, by the rule on the triangles
+  double slivers = 0.0;       ///< volume of the slivers
+  double depth = 0.0;         ///< of the ends of the rays behind the planes of the pieces [m]
   double depth_moment = 0.0;  ///< int of half of that over the volume, without its sign [m^4]
 };
 

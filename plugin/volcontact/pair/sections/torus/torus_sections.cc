@@ -24,7 +24,7 @@ constexpr double kOnAxis = 1e-13;       // of a plane from the axis, per radius;
 constexpr double kInPlane = 1e-9;       // per R, and the sine of a slope: a rim of a face
 constexpr double kAlongAxis = 1e-8;     // of a plane: the sine of its slope
 constexpr double kEndError = 5.0;       // error by its estimate where an arc ends in nothing
-constexpr double kByChance = 10.0;  // of an error, by its estimate, that is small by chance
+constexpr double kByChance = 10.0;      // of an error, by its estimate, that is small by chance
 constexpr double kTarget = 1e-2;    // share of the tolerance asked of an arc: kinks may be hidden
 constexpr double kGapError = 3.0;   // error of V by the gap on a first look, at most as measured
 constexpr double kLeftOver = 1e-4;  // of a surface: so little of the other is told by rounding
@@ -145,9 +145,9 @@ class TorusSectionsRun {
         outer_rule::kGapShare * std::max(open_, std::abs(s_.sections.total().moments[0] - volume));
   }
 
-  // Whether the equal steps, that were left for arcs, tell another volume than their error says: one
-  // of the two has a small error by chance, and be it the arcs, which are alike where the overlap
-  // is symmetric.
+  // Whether the equal steps, that were left for arcs, tell another volume than their error says:
+  // one of the two has a small error by chance, and be it the arcs, which are alike where the
+  // overlap is symmetric.
   bool is_by_chance(double volume) const {
     const double off = std::abs(volume - even_volume_);
     return even_volume_ > 0.0 && off > kByChance * even_error_ && off > options_.tolerance * volume;
@@ -432,9 +432,9 @@ class TorusSectionsRun {
   TorusSurface surface_;
   std::vector<double>& corners_ = s_.corners;
   double error_ = 0.0, volume_scale_ = 0.0;
-  double open_ = 0.0;    // how far the surface is from closed
+  double open_ = 0.0;                            // how far the surface is from closed
   double even_volume_ = 0.0, even_error_ = 0.0;  // by equal steps that were not good enough
-  bool closer_ = false;  // more columns, since with fewer it was not
+  bool closer_ = false;                          // more columns, since with fewer it was not
 };
 
 }  // namespace

@@ -61,18 +61,19 @@ TEST(SteppedHoles, AScrewShiftedInAChamferedCounterbore) {
     const auto cone = [&](double low, double high, double height) {
       return Frustum({.bottom_radius = low, .top_radius = high, .half_length = 0.5 * height});
     };
-    const Csg block =
-        placed(Box({.half_sizes = Vec3(0.4, 0.4, 0.3) * scale})) -
-        placed(Cylinder({.radius = bore, .half_length = 2.0 * half})) -
-        placed(Cylinder({.radius = wide, .half_length = half}), half + floor) -
-        placed(cone(wide, wide + chamfer, chamfer), half - 0.5 * chamfer) -
-        placed(cone(bore, bore + edge, edge), floor - 0.5 * edge);
-    const double shank = bore * random.uniform(0.9, 0.999), head = wide * random.uniform(0.9, 0.999);
-    const double sunk = random.uniform(0.0, 1.0) < 0.5 ? -1e-3 * scale
-                                                       : random.log_uniform(1e-5, 1e-2) * scale;
+    const Csg block = placed(Box({.half_sizes = Vec3(0.4, 0.4, 0.3) * scale})) -
+                      placed(Cylinder({.radius = bore, .half_length = 2.0 * half})) -
+                      placed(Cylinder({.radius = wide, .half_length = half}), half + floor) -
+                      placed(cone(wide, wide + chamfer, chamfer), half - 0.5 * chamfer) -
+                      placed(cone(bore, bore + edge, edge), floor - 0.5 * edge);
+    const double shank = bore * random.uniform(0.9, 0.999),
+                 head = wide * random.uniform(0.9, 0.999);
+    const double sunk =
+        random.uniform(0.0, 1.0) < 0.5 ? -1e-3 * scale : random.log_uniform(1e-5, 1e-2) * scale;
     const double under = floor - sunk, long_half = 0.35 * scale;
     const Csg screw =
-        placed(Cylinder({.radius = shank, .half_length = long_half}), under - long_half + 0.01 * scale) +
+        placed(Cylinder({.radius = shank, .half_length = long_half}),
+               under - long_half + 0.01 * scale) +
         placed(Cylinder({.radius = head, .half_length = 0.1 * scale}), under + 0.1 * scale);
     const double least = std::min(bore - shank, wide - head);
     const double d = least + random.log_uniform(1e-4, 3e-2) * scale;
@@ -89,14 +90,15 @@ TEST(SteppedHoles, AScrewShiftedInAChamferedCounterbore) {
       return r;
     };
     std::vector<double> breaks = {-half, half};
-    for (const double z : {tip, under, under + 0.01 * scale, top, floor - edge, floor,
-                           half - chamfer}) {
+    for (const double z :
+         {tip, under, under + 0.01 * scale, top, floor - edge, floor, half - chamfer}) {
       if (z > -half && z < half) breaks.push_back(z);
     }
     const double expected = volume_in_wall(body, hole, d, breaks);
     ASSERT_GT(expected, 0.0);
     const double turned = random.uniform(0.0, 2.0 * kPi), spun = random.uniform(0.0, 2.0 * kPi);
-    const Pose X{test::turn(Vec3::UnitZ(), spun), d * Vec3(std::cos(turned), std::sin(turned), 0.0)};
+    const Pose X{test::turn(Vec3::UnitZ(), spun),
+                 d * Vec3(std::cos(turned), std::sin(turned), 0.0)};
     for (const VolumeMetrics& m :
          {evaluated(block, screw, X).total, evaluated(screw, block, X.inverse()).total}) {
       EXPECT_NEAR(m.volume, expected, m.volume_error + 1e-5 * expected) << i << " " << d / scale;
@@ -120,8 +122,7 @@ TEST(SteppedHoles, AConeTipInAMicroCup) {
     // The hollow goes from its floor at -0.15 to beyond the rim at 0.3.
     const double tip_radius = i % 2 == 0 ? 0.0 : random.log_uniform(1e-6, 1e-2) * scale;
     const double base = random.uniform(0.1, 0.25) * scale, cone_half = 0.2 * scale;
-    const Frustum cone(
-        {.bottom_radius = tip_radius, .top_radius = base, .half_length = cone_half});
+    const Frustum cone({.bottom_radius = tip_radius, .top_radius = base, .half_length = cone_half});
     const double sunk = random.log_uniform(1e-4, 5e-2) * scale;
     const double tip = -0.15 * scale - (i % 4 < 2 ? sunk : -sunk);
     const double d = random.uniform(0.0, 0.1) * scale;

@@ -58,7 +58,8 @@ TEST(RodsAcross, PointedOnesThatEndAtTheAxis) {
   for (int i = 0; i < 60; ++i) {
     const double major = random.uniform(0.15, 0.4), minor = major * random.uniform(0.2, 0.6);
     const double base = random.uniform(0.02, 0.12);
-    const Cone cone{base * random.log_uniform(1e-3, 0.1), base, random.uniform(0.55, 0.9) * (major + minor),
+    const Cone cone{base * random.log_uniform(1e-3, 0.1), base,
+                    random.uniform(0.55, 0.9) * (major + minor),
                     major * random.uniform(-0.02, 0.02)};
     const Shape ring = Torus({.major_radius = major, .minor_radius = minor});
     const Shape rod = Frustum({.bottom_radius = cone.tip_radius,
