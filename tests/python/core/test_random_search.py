@@ -88,3 +88,29 @@ def test_chunks_hold_the_cases_asked_for() -> None:
     assert sum(module.SHARES.values()) == pytest.approx(1.0)
     assert sum(size for _, _, size in chunks) == pytest.approx(1_000_000, rel=1e-2)
     assert len({module.file_of(*chunk) for chunk in chunks}) == len(chunks)
+
+
+def test_what_other_engines_answered_alike_is_taken_over(tmp_path: Path) -> None:
+    program = tmp_path / "program"
+    program.write_text('#!/bin/sh\necho \'{"answers": "00ab"}\'\n', encoding="utf-8")
+    program.chmod(0o755)
+    script = search()
+    name = script.file_of("cones", 1, 10)
+    ends = {
+        "same": [COUNT, END | {"answers": "00ab"}],
+        "failed": [failure(3, "Sphere(1)", 1.0), COUNT, END | {"answers": "00ab"}],
+        "other": [COUNT, END | {"answers": "00ac"}],
+        "unknown": [COUNT, END],
+    }
+    for version, lines in ends.items():
+        for each in tmp_path.glob("*/"):
+            (each / name).unlink(missing_ok=True)
+        old, new = tmp_path / version, tmp_path / f"after-{version}"
+        old.mkdir()
+        new.mkdir()
+        (old / name).write_text(text(1, *lines), encoding="utf-8")
+        assert script.carry(program, new, "cones", 1, 10) == (version == "same")
+        assert (new / name).exists() == (version == "same")
+        if version == "same":
+            summary = script.summary([(new / name).read_text(encoding="utf-8")])
+            assert (summary["cases"], summary["judged_elsewhere"]) == (10, 10)

@@ -22,7 +22,9 @@ constexpr int kMaxRecenterings = 24;  // from a far corner of a thin overlap
 constexpr double kRoundRim = 2.0;     // longest by shortest way to the rim; then one step is enough
 constexpr double kMostTurn = 0.5;  // of the columns towards the normal of the rim; more: no normal
 constexpr double kAligned = 0.1;   // a turn after which the next one would be too small to matter
-constexpr double kWhole = 0.999;   // share of a solid in the overlap, that is all of it
+constexpr double kLargestCap = 0.1;  // of V, as a cap that stands out unseen
+constexpr int kClimbs = 4;           // to where a solid is farthest out of a face
+constexpr double kWhole = 0.999;     // share of a solid in the overlap, that is all of it
 // Of the smaller solid. An overlap of 1e-9 is not to be missed, and from a far corner of a thin one
 // the window sees a small part of it.
 constexpr double kLeastSeen = 1e-12;
@@ -43,6 +45,8 @@ Mat3 turn_between(const Vec3& from, const Vec3& to) {
 }
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+const Pose kHere{};
 
 class LinesRun {
  public:
@@ -70,6 +74,7 @@ class LinesRun {
     const bool smooth = s_.breaks.complete && s_.breaks.directions.empty();
     if (!smooth || !integrate_smooth()) integrate_arcs();
     if (is_open(options_.tolerance)) look_closer(smooth);
+    look_at_unseen();
     return metrics();
   }
 
@@ -114,6 +119,59 @@ class LinesRun {
     depth_ += outer_rule::kCloserDepth;
     least_depth_ = outer_rule::kCloserLeast;
     if (!smooth || !integrate_smooth() || is_open(options_.tolerance)) integrate_arcs();
+  }
+
+  // Half-planes may all miss a small cap that stands out through a round face, and on both sides
+  // alike: neither the columns nor the check of the surface know of that face then. Half-planes to
+  // where the other solid is farthest out of it do.
+  void look_at_unseen() {
+    if (s_.faces.active.has_bore) return;
+    const double before = unseen(true);
+    if (!(before > 0.0)) return;
+    integrate_arcs();
+    error_ += unseen(false);
+  }
+
+  // About the volume that stands out through round faces which no column ends at. Notes the ways
+  // there if `note`.
+  double unseen(bool note) {
+    const std::vector<RoundFace>& rounds = s_.faces.active.rounds;
+    const double volume = s_.sections.total().moments[0];
+    double sum = 0.0;
+    for (std::size_t i = 0; i < rounds.size(); ++i) {
+      const RoundFace& face = rounds[i];
+      if (face.part != CapsulePart::kNone || s_.sections.total().rounds[i].area > 0.0) continue;
+      const ConvexView& other = face.owner == Owner::kA ? b_ : a_;
+      const Pose& X = face.owner == Owner::kA ? X_AB_ : kHere;
+      for (const Vec3& axis : {frame_.u, frame_.v, frame_.t}) {
+        for (const double side : {1.0, -1.0}) {
+          Vec3 x = other.support(X, side * axis);
+          for (int k = 0; k < kClimbs; ++k) x = other.support(X, face.half_gradient(x));
+          const double slope = face.half_gradient(x).norm();
+          const double out = slope > 0.0 ? 0.5 * face(x) / slope : 0.0;
+          const double cap = kPi * out * out * reach();
+          if (!(out > 0.0 && cap > outer_rule::kInnerError * volume)) continue;
+          if (cap > kLargestCap * volume) continue;  // no columns miss that: it lies elsewhere
+          if (!within_others(face, x, out)) continue;
+          sum = std::max(sum, 2.0 * cap);  // they come in pairs
+          const Vec3 way = x - frame_.center;
+          const Vec2 direction(way.dot(frame_.u), way.dot(frame_.v));
+          if (note && direction.norm() > 0.0)
+            s_.breaks.directions.push_back(direction.normalized());
+        }
+      }
+    }
+    return sum;
+  }
+
+  bool within_others(const RoundFace& face, const Vec3& x, double slack) const {
+    const FaceSet& all = s_.faces.active;
+    return std::all_of(all.planes.begin(), all.planes.end(),
+                       [&](const PlaneFace& p) { return p.normal.dot(x) <= p.offset + slack; }) &&
+           std::all_of(all.rounds.begin(), all.rounds.end(), [&](const RoundFace& f) {
+             return &f == &face || f.part != CapsulePart::kNone ||
+                    f(x) <= 4.0 * slack * f.half_gradient(x).norm();
+           });
   }
 
   bool is_flat(Owner owner) const { return !s_.faces.active.has_rounds(owner); }
