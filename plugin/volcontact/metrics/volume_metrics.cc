@@ -27,6 +27,8 @@ const char* to_string(Status status) {
   return "unknown";
 }
 
+Mat3 VolumeMetrics::second_moment() const { return 0.5 * inertia.trace() * Mat3::Identity() - inertia; }
+
 double VolumeMetrics::flatness() const {
   const double smaller = std::min(area, counter_area);
   return smaller > 0.0 ? std::min(1.0, area_vector.norm() / smaller) : 0.0;

@@ -47,7 +47,7 @@ struct VolumeMetrics {
   double flatness() const;
 
   /// int (x - c)(x - c)^T dV about the centroid [m^5].
-  Mat3 second_moment() const { return 0.5 * inertia.trace() * Mat3::Identity() - inertia; }
+  Mat3 second_moment() const;
 };
 
 /// The same metrics expressed in W and about W's origin, given X_WF of the present frame F.

@@ -19,10 +19,7 @@ class Ellipsoid {
   static constexpr std::array kFields{
       Field<Params>{"semi_axes", "m", &Params::semi_axes, kNonNegative, "half the axis lengths"}};
 
-  explicit Ellipsoid(const Params& params) : p_(validated<Ellipsoid>(params)) {
-    for (int i = 0; i < 3; ++i) inverse_[i] = is_flat(i) ? 0.0 : 1.0 / p_.semi_axes[i];
-    smallest_ = p_.semi_axes.minCoeff();
-  }
+  explicit Ellipsoid(const Params& params);
   const Params& params() const { return p_; }
   const Vec3& semi_axes() const { return p_.semi_axes; }
 
@@ -48,31 +45,9 @@ class Ellipsoid {
     const double deficit = (1.0 - f) * (1.0 + f);
     return -deficit / (slope + std::sqrt(slope * slope + deficit / (smallest_ * smallest_)));
   }
-  Vec3 gradient(const Vec3& p) const {
-    const Vec3 normal = p.cwiseProduct(inverse_).cwiseProduct(inverse_);
-    const double length = normal.norm();
-    if (length > 0.0 && !is_flat()) return normal / length;
-    Eigen::Index thinnest;
-    p_.semi_axes.minCoeff(&thinnest);
-    return std::copysign(1.0, p[thinnest]) * Vec3::Unit(thinnest);
-  }
-  RayInterval ray(const Vec3& o, const Vec3& d) const {
-    if (is_flat()) return {};
-    // In the space of the unit ball, from the point of the line nearest the centre.
-    const Vec3 o_unit = o.cwiseProduct(inverse_), d_unit = d.cwiseProduct(inverse_);
-    const double t_mid = -o_unit.dot(d_unit) / d_unit.squaredNorm();
-    const double reach = 1.0 - (o_unit + t_mid * d_unit).squaredNorm();
-    if (!(reach > 0.0)) return {};
-    const double half = std::sqrt(reach / d_unit.squaredNorm());
-    return {t_mid - half, t_mid + half};
-  }
-  VolumeMetrics own_metrics() const {
-    const Vec3 squares = p_.semi_axes.cwiseAbs2();
-    VolumeMetrics m;
-    m.volume = 4.0 / 3.0 * kPi * p_.semi_axes.prod();
-    m.inertia = (0.2 * m.volume * (Vec3::Constant(squares.sum()) - squares)).asDiagonal();
-    return m;
-  }
+  Vec3 gradient(const Vec3& p) const;
+  RayInterval ray(const Vec3& o, const Vec3& d) const;
+  VolumeMetrics own_metrics() const;
   template <typename Writer>
   void write_faces(Writer& writer) const {
     writer.round(p_.semi_axes.cwiseInverse(), Vec3::Zero());

@@ -27,24 +27,10 @@ class HalfSpace {
   }
   double support_height(const Vec3& e) const { return is_up(e) ? 0.0 : kInfinity; }
   double signed_distance(const Vec3& p) const { return p.z(); }
-  Vec3 gradient(const Vec3&) const { return Vec3::UnitZ(); }
-  RayInterval ray(const Vec3& o, const Vec3& d) const {
-    if (d.z() == 0.0) {
-      return o.z() <= 0.0 ? RayInterval{-kInfinity, kInfinity} : RayInterval{};
-    }
-    const double t = -o.z() / d.z();
-    return d.z() > 0.0 ? RayInterval{-kInfinity, t} : RayInterval{t, kInfinity};
-  }
-  VolumeMetrics own_metrics() const {
-    VolumeMetrics m;
-    m.volume = kInfinity;
-    m.status = Status::kUnbounded;
-    return m;
-  }
-  void pieces(PieceList& list) const {
-    list.add(Quadric::plane(Vec3::UnitZ(), 0.0));
-    list.end_piece();
-  }
+  Vec3 gradient(const Vec3&) const;
+  RayInterval ray(const Vec3& o, const Vec3& d) const;
+  VolumeMetrics own_metrics() const;
+  void pieces(PieceList& list) const;
 
   template <typename Writer>
   void write_faces(Writer& writer) const {

@@ -36,61 +36,19 @@ struct Quadric {
   }
 
   /// normal . x <= offset.
-  static Quadric plane(const Vec3& normal, double offset) {
-    Quadric face;
-    face.linear = normal;
-    face.constant = -offset;
-    return face;
-  }
-  static Quadric seam_plane(const Vec3& normal, double offset) {
-    Quadric face = plane(normal, offset);
-    face.seam = true;
-    return face;
-  }
+  static Quadric plane(const Vec3& normal, double offset);
+  static Quadric seam_plane(const Vec3& normal, double offset);
   /// Inside of sum_i weights_i (x_i - center_i)^2 <= level: ball, ellipsoid or round tube.
-  static Quadric round(const Vec3& weights, const Vec3& center, double level) {
-    Quadric face;
-    face.hessian = (2.0 * weights).asDiagonal();
-    face.linear = -2.0 * weights.cwiseProduct(center);
-    face.constant = weights.dot(center.cwiseAbs2()) - level;
-    face.bend = Bend::kConvex;
-    return face;
-  }
+  static Quadric round(const Vec3& weights, const Vec3& center, double level);
   /// Inside of x^2 + y^2 <= (radius + slope z)^2. It has two nappes: a piece with such a face must
   /// have planes that keep it on the one where radius + slope z >= 0.
-  static Quadric cone(double radius, double slope) {
-    Quadric face;
-    face.hessian = Vec3(2.0, 2.0, -2.0 * slope * slope).asDiagonal();
-    face.linear = Vec3(0.0, 0.0, -2.0 * radius * slope);
-    face.constant = -radius * radius;
-    face.bend = Bend::kCone;
-    face.nappe = Vec3(0.0, 0.0, slope);
-    face.nappe_offset = radius;
-    return face;
-  }
+  static Quadric cone(double radius, double slope);
   /// The solid outside of this face instead of inside.
-  Quadric reversed() const {
-    Quadric face = *this;
-    face.hessian = -hessian;
-    face.linear = -linear;
-    face.constant = -constant;
-    face.bend = static_cast<Bend>(-static_cast<int>(bend));
-    return face;
-  }
+  Quadric reversed() const;
 };
 
 /// The same face in frame W, given X_SW of the frame S it is written in.
-inline Quadric transformed(const Quadric& face_S, const Pose& X_SW) {
-  const Mat3& r = X_SW.rotation;
-  const Vec3& p = X_SW.translation;
-  Quadric face = face_S;
-  face.linear = r.transpose() * (face_S.linear + face_S.hessian * p);
-  face.constant = face_S(p);
-  if (face.bend != Bend::kFlat) face.hessian = r.transpose() * face_S.hessian * r;
-  face.nappe = r.transpose() * face_S.nappe;
-  face.nappe_offset = face_S.nappe_offset + face_S.nappe.dot(p);
-  return face;
-}
+Quadric transformed(const Quadric& face_S, const Pose& X_SW);
 
 /// A solid as a union of pieces with disjoint interiors, each the intersection of its faces. A
 /// shape that can be written so offers `void pieces(PieceList&) const`: its overlaps are then cut
@@ -123,13 +81,8 @@ class PieceWriter {
     list_.add(seam ? Quadric::seam_plane(normal, offset) : Quadric::plane(normal, offset));
   }
   /// Within `radius` of the line through `center` along an axis.
-  void tube(int axis, double radius, const Vec3& center) {
-    const Vec3 weights = Vec3::Ones() - Vec3::Unit(axis);
-    list_.add(Quadric::round(weights, center.cwiseProduct(weights), radius * radius));
-  }
-  void ball(double radius, const Vec3& center) {
-    list_.add(Quadric::round(Vec3::Ones(), center, radius * radius));
-  }
+  void tube(int axis, double radius, const Vec3& center);
+  void ball(double radius, const Vec3& center);
   void end_part() { list_.end_piece(); }
 
  private:

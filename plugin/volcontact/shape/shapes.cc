@@ -7,6 +7,18 @@
 
 namespace volcontact {
 
+const char* name_of(const Shape& shape) {
+  return std::visit([](const auto& solid) { return solid.kName; }, shape);
+}
+
+Aabb bounds_of(const Shape& shape) {
+  return std::visit([](const auto& solid) { return solid.bounds(); }, shape);
+}
+
+VolumeMetrics own_metrics_of(const Shape& shape) {
+  return std::visit([](const auto& solid) { return solid.own_metrics(); }, shape);
+}
+
 Shape make_shape(std::string_view name, const FieldValues& values) {
   std::optional<Shape> made;
   std::vector<std::string> names;

@@ -16,15 +16,9 @@ using Shapes = SimpleShapes::With<Csg, SignedDistance, Mesh>;
 /// One solid of any shape, in its own frame.
 using Shape = Shapes::Variant;
 
-inline const char* name_of(const Shape& shape) {
-  return std::visit([](const auto& solid) { return solid.kName; }, shape);
-}
-inline Aabb bounds_of(const Shape& shape) {
-  return std::visit([](const auto& solid) { return solid.bounds(); }, shape);
-}
-inline VolumeMetrics own_metrics_of(const Shape& shape) {
-  return std::visit([](const auto& solid) { return solid.own_metrics(); }, shape);
-}
+const char* name_of(const Shape& shape);
+Aabb bounds_of(const Shape& shape);
+VolumeMetrics own_metrics_of(const Shape& shape);
 
 /// A shape from its name and parameters. Throws std::invalid_argument on an unknown name, unknown
 /// parameter or value out of range. Convex polytopes and meshes are made from vertices, not from

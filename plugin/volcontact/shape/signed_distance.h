@@ -65,25 +65,14 @@ class SignedDistance {
   template <OtherUserSolid S>
   SignedDistance(S solid, const Params& params)
       : SignedDistance(std::make_shared<const SourceOf<S>>(std::move(solid)), params) {}
-  SignedDistance(std::shared_ptr<const Source> source, const Params& params)
-      : source_(std::move(source)), p_(params), bounds_(source_->bounds()) {
-    require(p_.lipschitz > 0.0 && p_.lipschitz < kInfinity,
-            "signed_distance: lipschitz = " + std::to_string(p_.lipschitz) +
-                " [-] is out of range: must be > 0");
-    require(p_.curvature >= 0.0, "signed_distance: curvature = " + std::to_string(p_.curvature) +
-                                     " [1/m] is out of range: must be >= 0");
-    require(bounds_.bounded() && (bounds_.max - bounds_.min).minCoeff() >= 0.0,
-            "signed_distance: bounds must be finite, the lower corner first [m]");
-  }
+  SignedDistance(std::shared_ptr<const Source> source, const Params& params);
 
   const Params& params() const { return p_; }
   const Source& source() const { return *source_; }
 
   Aabb bounds() const { return bounds_; }
   /// Of the bounds.
-  double support_height(const Vec3& e) const {
-    return e.dot(bounds_.center()) + e.cwiseAbs().dot(bounds_.half_sizes());
-  }
+  double support_height(const Vec3& e) const;
   double signed_distance(const Vec3& p) const {
     double f;
     signed_distances(&p, 1, &f);
@@ -97,15 +86,7 @@ class SignedDistance {
   }
   double bend_bound() const { return p_.curvature / p_.lipschitz; }
   /// By central differences.
-  Vec3 gradient(const Vec3& p) const {
-    const double step = 1e-6 * bounds_.half_sizes().norm();
-    Vec3 sum = Vec3::Zero();
-    for (int axis = 0; axis < 3; ++axis) {
-      const Vec3 offset = step * Vec3::Unit(axis);
-      sum[axis] = signed_distance(p + offset) - signed_distance(p - offset);
-    }
-    return sum.squaredNorm() > 0.0 ? Vec3(sum.normalized()) : Vec3::UnitZ();
-  }
+  Vec3 gradient(const Vec3& p) const;
   /// Unknown: volume -1.
   VolumeMetrics own_metrics() const {
     VolumeMetrics unknown;

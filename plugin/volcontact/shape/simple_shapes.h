@@ -25,16 +25,8 @@ using SimpleShapes = TypeList<HalfSpace, Sphere, Ellipsoid, Capsule, Cylinder, F
 using SimpleShape = SimpleShapes::Variant;
 
 // Pieces of the shapes that do not write them themselves.
-inline void add_pieces(const Ellipsoid& solid, PieceList& list) {
-  list.add(Quadric::round(solid.semi_axes().cwiseAbs2().cwiseInverse(), Vec3::Zero(), 1.0));
-  list.end_piece();
-}
-inline void add_pieces(const ConvexPolytope& solid, PieceList& list) {
-  for (const ConvexPolytope::Face& face : solid.faces()) {
-    list.add(Quadric::plane(face.normal, face.offset));
-  }
-  list.end_piece();
-}
+void add_pieces(const Ellipsoid& solid, PieceList& list);
+void add_pieces(const ConvexPolytope& solid, PieceList& list);
 template <typename S>
   requires requires(const S& solid, PieceList& list) { solid.pieces(list); }
 void add_pieces(const S& solid, PieceList& list) {
@@ -43,14 +35,8 @@ void add_pieces(const S& solid, PieceList& list) {
 template <typename S>
 concept HasPieces = requires(const S& solid, PieceList& list) { add_pieces(solid, list); };
 
-inline bool has_pieces(const SimpleShape& shape) {
-  return std::visit([](const auto& solid) { return HasPieces<std::decay_t<decltype(solid)>>; },
-                    shape);
-}
+bool has_pieces(const SimpleShape& shape);
 /// Whether its faces have it as their intersection: HasFaces.
-inline bool is_made_of_faces(const SimpleShape& shape) {
-  return std::visit([](const auto& solid) { return HasFaces<std::decay_t<decltype(solid)>>; },
-                    shape);
-}
+bool is_made_of_faces(const SimpleShape& shape);
 
 }  // namespace volcontact

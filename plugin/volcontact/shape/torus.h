@@ -23,12 +23,7 @@ class Torus {
       Field<Params>{"minor_radius", "m", &Params::minor_radius, kNonNegative,
                     "of the tube, at most major_radius"}};
 
-  explicit Torus(const Params& params) : p_(validated<Torus>(params)) {
-    require(
-        p_.minor_radius <= p_.major_radius,
-        "torus: minor_radius = " + std::to_string(p_.minor_radius) +
-            " [m] is out of range: must be <= major_radius = " + std::to_string(p_.major_radius));
-  }
+  explicit Torus(const Params& params);
   const Params& params() const { return p_; }
   double major_radius() const { return p_.major_radius; }
   double minor_radius() const { return p_.minor_radius; }
@@ -47,29 +42,11 @@ class Torus {
     return p_.major_radius * std::hypot(e.x(), e.y()) + p_.minor_radius * e.norm();
   }
   double signed_distance(const Vec3& p) const { return from_circle(p).norm() - p_.minor_radius; }
-  Vec3 gradient(const Vec3& p) const {
-    const Vec3 offset = from_circle(p);
-    const double length = offset.norm();
-    return length > 0.0 ? Vec3(offset / length) : Vec3::UnitZ();
-  }
+  Vec3 gradient(const Vec3& p) const;
   /// Bound of the second derivatives of signed_distance within `reach` of p [1/m]: 1/q around the
   /// tube, q the distance from the circle, and cos/rho around the axis.
-  double curvature_bound(const Vec3& p, double reach) const {
-    const double rho = std::hypot(p.x(), p.y());
-    const double nearest = std::hypot(rho - p_.major_radius, p.z()) - reach;
-    const double least_rho = rho - reach;
-    if (!(nearest > 0.0 && least_rho > 0.0)) return kInfinity;
-    const double most_cos = std::min(1.0, (std::abs(rho - p_.major_radius) + reach) / nearest);
-    return std::max(1.0 / nearest, most_cos / least_rho);
-  }
-  VolumeMetrics own_metrics() const {
-    const double R2 = p_.major_radius * p_.major_radius, r2 = p_.minor_radius * p_.minor_radius;
-    VolumeMetrics m;
-    m.volume = 2.0 * kPi * kPi * p_.major_radius * r2;
-    const double across = m.volume * (R2 / 2.0 + r2 * 5.0 / 8.0);
-    m.inertia = Vec3(across, across, m.volume * (R2 + r2 * 3.0 / 4.0)).asDiagonal();
-    return m;
-  }
+  double curvature_bound(const Vec3& p, double reach) const;
+  VolumeMetrics own_metrics() const;
   template <typename Writer>
   void write_parts(Writer& writer) const {
     writer.ring(p_.major_radius, p_.minor_radius);

@@ -184,6 +184,10 @@ double Mesh::signed_distance(const Vec3& p) const {
   return found.inside ? -found.distance : found.distance;
 }
 
+double Mesh::support_height(const Vec3& e) const {
+  return e.dot(bounds().center()) + e.cwiseAbs().dot(bounds().half_sizes());
+}
+
 Vec3 Mesh::gradient(const Vec3& p) const {
   const Nearest found = nearest(p);
   const Vec3 offset = found.inside ? Vec3(found.point - p) : Vec3(p - found.point);

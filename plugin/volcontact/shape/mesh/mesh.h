@@ -44,9 +44,7 @@ class Mesh {
 
   Aabb bounds() const { return data_->bounds; }
   /// Of the bounds.
-  double support_height(const Vec3& e) const {
-    return e.dot(bounds().center()) + e.cwiseAbs().dot(bounds().half_sizes());
-  }
+  double support_height(const Vec3& e) const;
   /// Exact. The sign is that of the nearest face, edge or corner: Baerentzen and Aanaes, "Signed
   /// distance computation using the angle weighted pseudonormal", IEEE TVCG 11(3), 2005.
   double signed_distance(const Vec3& p) const;
