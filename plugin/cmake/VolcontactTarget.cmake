@@ -27,12 +27,21 @@ function(volcontact_target name)
 endfunction()
 
 # Compiles the sources of each folder as one: names of unnamed namespaces are shared in a room alone,
-# and an edit compiles its room. Sources named after ALONE are compiled by themselves.
+# and an edit compiles its room. Sources named after ALONE are compiled by themselves. JOINED names
+# small rooms, as a,b,c, that are compiled as one, since what the headers make of templates takes as
+# long as what is in them; they share those names as well.
 function(volcontact_unity_by_folder name)
-  cmake_parse_arguments(PARSE_ARGV 1 argument "" "" "ALONE")
+  cmake_parse_arguments(PARSE_ARGV 1 argument "" "" "ALONE;JOINED")
   get_target_property(sources ${name} SOURCES)
   foreach(source IN LISTS sources)
     cmake_path(GET source PARENT_PATH folder)
+    foreach(rooms IN LISTS argument_JOINED)
+      string(REPLACE "," ";" rooms "${rooms}")
+      if(folder IN_LIST rooms)
+        list(JOIN rooms "_" folder)
+        break()
+      endif()
+    endforeach()
     string(MAKE_C_IDENTIFIER "${folder}" group)
     if(NOT folder)
       set(group of_target)

@@ -10,9 +10,9 @@
 namespace volcontact::fmu {
 namespace {
 
-constexpr double kMagic =
-    2804.0;  // of a serialized state: this, the mode, the count of what follows, a check
-constexpr std::size_t kHead = 4;
+// Of a serialized state: this, the mode, the count of what follows, a check.
+constexpr double kMagic = 2804.0;
+constexpr std::size_t kHeadNumbers = 4;
 
 // Of a state of the unit with this token, as a whole number that a double holds: FNV-1a.
 double check_of(const std::string& token, Mode mode, const std::vector<double>& memory) {
@@ -142,7 +142,7 @@ void Instance::restore(const Saved& saved) {
 }
 
 std::size_t Instance::saved_size(const Saved& saved) const {
-  return sizeof(double) * (kHead + saved.memory.size());
+  return sizeof(double) * (kHeadNumbers + saved.memory.size());
 }
 
 void Instance::serialize(const Saved& saved, void* bytes, std::size_t size) const {
@@ -157,16 +157,16 @@ void Instance::serialize(const Saved& saved, void* bytes, std::size_t size) cons
 std::unique_ptr<Saved> Instance::deserialize(const void* bytes, std::size_t size) const {
   const char* const wrong = "the bytes are not a state of this unit";
   const std::size_t count = size / sizeof(double);
-  require(bytes && size % sizeof(double) == 0 && count >= kHead, wrong);
+  require(bytes && size % sizeof(double) == 0 && count >= kHeadNumbers, wrong);
   std::vector<double> numbers(count);
   std::memcpy(numbers.data(), bytes, size);
   require(numbers[0] == kMagic && numbers[1] >= 1.0 && numbers[1] <= kAnyMode &&
-              numbers[2] == static_cast<double>(count - kHead),
+              numbers[2] == static_cast<double>(count - kHeadNumbers),
           wrong);
   const auto mode_bits = static_cast<unsigned>(numbers[1]);
   require((mode_bits & (mode_bits - 1)) == 0, wrong);
   auto saved = std::make_unique<Saved>(
-      Saved{{numbers.begin() + kHead, numbers.end()}, static_cast<Mode>(mode_bits)});
+      Saved{{numbers.begin() + kHeadNumbers, numbers.end()}, static_cast<Mode>(mode_bits)});
   require(numbers[3] == check_of(unit.file().token, saved->mode, saved->memory), wrong);
   return saved;
 }

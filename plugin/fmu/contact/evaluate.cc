@@ -11,7 +11,7 @@
 namespace volcontact::fmu {
 namespace {
 
-constexpr int kHead = 2;  // of the array of rows: their count and size
+constexpr int kRowsHead = 2;  // of the array of rows: their count and size
 
 // A state beyond what friction can hold comes back with this rate; the force knows its bound at
 // once [1/s].
@@ -19,7 +19,7 @@ constexpr double kReturnRate = 1e4;
 
 SiteHead head_of(const std::vector<double>& rows, int row, int i) {
   SiteHead head;
-  std::memcpy(static_cast<void*>(&head), &rows[static_cast<std::size_t>(kHead + i * row)],
+  std::memcpy(static_cast<void*>(&head), &rows[static_cast<std::size_t>(kRowsHead + i * row)],
               sizeof head);
   return head;
 }
@@ -46,7 +46,7 @@ void ContactUnit::put_states(std::size_t m, std::vector<double>& rows) const {
     const double* x = values(Role::kState, static_cast<int>(m) * file_.slots + k);
     if (!x || k >= rows[0]) continue;
     std::copy_n(x, model.last - model.first,
-                &rows[static_cast<std::size_t>(kHead + k * model.row + model.first)]);
+                &rows[static_cast<std::size_t>(kRowsHead + k * model.row + model.first)]);
   }
 }
 
@@ -93,8 +93,8 @@ void ContactUnit::publish_rates(std::size_t m) {
     std::fill_n(rates, count, 0.0);
     for (std::size_t i = 0; i < model.slot_of.size(); ++i) {
       if (model.slot_of[i] != k || model.next[0] != model.rows[0]) continue;
-      const int mine = kHead + static_cast<int>(i) * model.row + model.first;
-      const int committed = kHead + k * model.row + model.first;
+      const int mine = kRowsHead + static_cast<int>(i) * model.row + model.first;
+      const int committed = kRowsHead + k * model.row + model.first;
       for (int j = 0; j < count; ++j) {
         const double beyond = model.rows[static_cast<std::size_t>(committed + j)] -
                               model.next[static_cast<std::size_t>(mine + j)];
@@ -214,7 +214,7 @@ bool ContactUnit::update_states() {
     for (int k = 0; k < file_.slots; ++k) {
       double* x = values(Role::kState, static_cast<int>(m) * file_.slots + k);
       for (int j = 0; x && j < model.last - model.first; ++j) {
-        const auto at = static_cast<std::size_t>(kHead + k * model.row + model.first + j);
+        const auto at = static_cast<std::size_t>(kRowsHead + k * model.row + model.first + j);
         const double value = k < model.next[0] ? model.next[at] : 0.0;
         changed = changed || x[j] != value;
         x[j] = value;
