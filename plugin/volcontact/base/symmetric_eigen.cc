@@ -12,8 +12,9 @@ SymmetricEigen<Vec3, Mat3> symmetric_eigen(const Mat3& m) {
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
-// As the solver's own compute(), to the same bits; but it does not look for the reflections that make
-// the matrix tridiagonal, which one of two rows is: they took half of the time to compile this file.
+// As the solver's own compute(), to the same bits; but it does not look for the reflections that
+// make the matrix tridiagonal, which one of two rows is: they took half of the time to compile this
+// file.
 SymmetricEigen<Eigen::Vector2d, Eigen::Matrix2d> symmetric_eigen(const Eigen::Matrix2d& m) {
   using Solver = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>;
   const double beside = m(1, 0);

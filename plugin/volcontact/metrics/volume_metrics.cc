@@ -27,7 +27,9 @@ const char* to_string(Status status) {
   return "unknown";
 }
 
-Mat3 VolumeMetrics::second_moment() const { return 0.5 * inertia.trace() * Mat3::Identity() - inertia; }
+Mat3 VolumeMetrics::second_moment() const {
+  return 0.5 * inertia.trace() * Mat3::Identity() - inertia;
+}
 
 double VolumeMetrics::flatness() const {
   const double smaller = std::min(area, counter_area);

@@ -17,11 +17,13 @@ struct OverlapLimits {
 
 template <typename S>
 OverlapLimits limits_of(const S& solid) {
-  return {solid.own_metrics().volume, solid.bounds()};
+  if constexpr (requires { solid.volume(); }) {
+    return {solid.volume(), solid.bounds()};
+  } else {
+    return {solid.own_metrics().volume, solid.bounds()};
+  }
 }
-inline OverlapLimits limits_of(const Torus& torus) {
-  return {torus.own_metrics().volume, torus.bounds(), 2.0};
-}
+inline OverlapLimits limits_of(const Torus& torus) { return {torus.volume(), torus.bounds(), 2.0}; }
 inline OverlapLimits limits_of(const Csg& solid) {
   return {solid.most_volume(), solid.bounds(), static_cast<double>(solid.most_parts())};
 }

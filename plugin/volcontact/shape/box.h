@@ -37,6 +37,7 @@ class Box {
   }
   Vec3 gradient(const Vec3& p) const;
   RayInterval ray(const Vec3& o, const Vec3& d) const;
+  double volume() const { return 8.0 * p_.half_sizes.prod(); }
   VolumeMetrics own_metrics() const;
   void pieces(PieceList& list) const;
   template <typename Writer>

@@ -41,6 +41,9 @@ class Capsule {
   double signed_distance(const Vec3& p) const { return from_axis(p).norm() - p_.radius; }
   Vec3 gradient(const Vec3& p) const;
   RayInterval ray(const Vec3& o, const Vec3& d) const;
+  double volume() const {
+    return kPi * (p_.radius * p_.radius) * (2.0 * p_.half_length + 4.0 / 3.0 * p_.radius);
+  }
   VolumeMetrics own_metrics() const;
   void pieces(PieceList& list) const;
   template <typename Writer>

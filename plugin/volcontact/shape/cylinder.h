@@ -47,6 +47,7 @@ class Cylinder {
   }
   Vec3 gradient(const Vec3& p) const;
   RayInterval ray(const Vec3& o, const Vec3& d) const;
+  double volume() const { return 2.0 * kPi * (p_.radius * p_.radius) * p_.half_length; }
   VolumeMetrics own_metrics() const;
   void pieces(PieceList& list) const;
   template <typename Writer>

@@ -47,6 +47,7 @@ class Ellipsoid {
   }
   Vec3 gradient(const Vec3& p) const;
   RayInterval ray(const Vec3& o, const Vec3& d) const;
+  double volume() const { return 4.0 / 3.0 * kPi * p_.semi_axes.prod(); }
   VolumeMetrics own_metrics() const;
   template <typename Writer>
   void write_faces(Writer& writer) const {

@@ -52,6 +52,10 @@ class Frustum {
   }
   Vec3 gradient(const Vec3& p) const;
   RayInterval ray(const Vec3& o, const Vec3& d) const;
+  double volume() const {
+    const double r0 = p_.bottom_radius, r1 = p_.top_radius;
+    return 2.0 * kPi * p_.half_length / 3.0 * (r0 * r0 + r0 * r1 + r1 * r1);
+  }
   VolumeMetrics own_metrics() const;
   void pieces(PieceList& list) const;
   template <typename Writer>

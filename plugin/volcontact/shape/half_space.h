@@ -29,6 +29,7 @@ class HalfSpace {
   double signed_distance(const Vec3& p) const { return p.z(); }
   Vec3 gradient(const Vec3&) const;
   RayInterval ray(const Vec3& o, const Vec3& d) const;
+  double volume() const { return kInfinity; }
   VolumeMetrics own_metrics() const;
   void pieces(PieceList& list) const;
 

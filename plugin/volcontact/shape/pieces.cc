@@ -45,7 +45,6 @@ Quadric Quadric::reversed() const {
   return face;
 }
 
-
 Quadric transformed(const Quadric& face_S, const Pose& X_SW) {
   const Mat3& r = X_SW.rotation;
   const Vec3& p = X_SW.translation;
@@ -57,7 +56,6 @@ Quadric transformed(const Quadric& face_S, const Pose& X_SW) {
   face.nappe_offset = face_S.nappe_offset + face_S.nappe.dot(p);
   return face;
 }
-
 
 void PieceWriter::tube(int axis, double radius, const Vec3& center) {
   const Vec3 weights = Vec3::Ones() - Vec3::Unit(axis);

@@ -47,6 +47,12 @@ class RoundedBox {
   }
   Vec3 gradient(const Vec3& p) const;
   RayInterval ray(const Vec3& o, const Vec3& d) const;
+  double volume() const {
+    const double r = p_.radius, r2 = r * r, disc = kPi * r2, ball = 4.0 / 3.0 * kPi * r * r2;
+    const double a[3] = {inner_.x(), inner_.y(), inner_.z()};
+    return 8.0 * a[0] * a[1] * a[2] + 8.0 * r * (a[0] * a[1] + a[1] * a[2] + a[2] * a[0]) +
+           2.0 * disc * (a[0] + a[1] + a[2]) + ball;
+  }
   VolumeMetrics own_metrics() const;
   void pieces(PieceList& list) const;
   /// A box with two of the slabs around it, the other four, twelve edges and eight corners; those

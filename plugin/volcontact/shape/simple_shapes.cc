@@ -30,7 +30,7 @@ RayInterval Sphere::ray(const Vec3& o, const Vec3& d) const {
 VolumeMetrics Sphere::own_metrics() const {
   const double r = p_.radius;
   VolumeMetrics m;
-  m.volume = 4.0 / 3.0 * kPi * r * r * r;
+  m.volume = volume();
   m.inertia = (0.4 * m.volume * r * r) * Mat3::Identity();
   return m;
 }
@@ -68,7 +68,7 @@ RayInterval Ellipsoid::ray(const Vec3& o, const Vec3& d) const {
 VolumeMetrics Ellipsoid::own_metrics() const {
   const Vec3 squares = p_.semi_axes.cwiseAbs2();
   VolumeMetrics m;
-  m.volume = 4.0 / 3.0 * kPi * p_.semi_axes.prod();
+  m.volume = volume();
   m.inertia = (0.2 * m.volume * (Vec3::Constant(squares.sum()) - squares)).asDiagonal();
   return m;
 }
@@ -99,7 +99,7 @@ VolumeMetrics Capsule::own_metrics() const {
   const double r = p_.radius, h = p_.half_length;
   const double r2 = r * r;
   VolumeMetrics m;
-  m.volume = kPi * r2 * (2.0 * h + 4.0 / 3.0 * r);
+  m.volume = volume();
   // int x^2 and int z^2: cylinder, ball, and what moving the half balls apart by h adds.
   const double xx = kPi * r2 * r2 * (h / 2.0 + 4.0 / 15.0 * r);
   const double zz =
@@ -186,7 +186,7 @@ RayInterval Cylinder::ray(const Vec3& o, const Vec3& d) const {
 VolumeMetrics Cylinder::own_metrics() const {
   const double r2 = p_.radius * p_.radius, h2 = p_.half_length * p_.half_length;
   VolumeMetrics m;
-  m.volume = 2.0 * kPi * r2 * p_.half_length;
+  m.volume = volume();
   const double across = m.volume * (r2 / 4.0 + h2 / 3.0);
   m.inertia = Vec3(across, across, m.volume * r2 / 2.0).asDiagonal();
   return m;
@@ -244,7 +244,7 @@ VolumeMetrics Frustum::own_metrics() const {
   const double r0 = p_.bottom_radius, r1 = p_.top_radius, h = p_.half_length;
   const double h3 = h * h * h;
   VolumeMetrics m;
-  m.volume = 2.0 * kPi * h / 3.0 * (r0 * r0 + r0 * r1 + r1 * r1);
+  m.volume = volume();
   if (!(m.volume > 0.0)) return m;
   // With r(z) = mean_radius + slope z: int pi r^2 z dz, int pi r^2 z^2 dz and int pi r^4 dz.
   const double first = kPi * 4.0 / 3.0 * mean_radius_ * slope_ * h3;
@@ -336,7 +336,7 @@ RayInterval Box::ray(const Vec3& o, const Vec3& d) const {
 VolumeMetrics Box::own_metrics() const {
   const Vec3 squares = p_.half_sizes.cwiseAbs2();
   VolumeMetrics m;
-  m.volume = 8.0 * p_.half_sizes.prod();
+  m.volume = volume();
   const Vec3 second = m.volume / 3.0 * squares;
   m.inertia = (Vec3::Constant(second.sum()) - second).asDiagonal();
   return m;
@@ -397,8 +397,7 @@ VolumeMetrics RoundedBox::own_metrics() const {
   const double r = p_.radius, r2 = r * r, disc = kPi * r2, ball = 4.0 / 3.0 * kPi * r * r2;
   const double a[3] = {inner_.x(), inner_.y(), inner_.z()};
   VolumeMetrics m;
-  m.volume = 8.0 * a[0] * a[1] * a[2] + 8.0 * r * (a[0] * a[1] + a[1] * a[2] + a[2] * a[0]) +
-             2.0 * disc * (a[0] + a[1] + a[2]) + ball;
+  m.volume = volume();
   // int x_i^2 over the box, its six slabs, twelve quarters of tubes and eight octants of a ball,
   // whose inner edges lie at a_i.
   Vec3 second;
@@ -433,7 +432,8 @@ RayInterval RoundedBox::within(const Vec3& half, const Vec3& o, const Vec3& d) {
   return span.empty() ? RayInterval{} : span;
 }
 
-RayInterval RoundedBox::round(const Vec3& mask, const Vec3& center, const Vec3& o, const Vec3& d) const {
+RayInterval RoundedBox::round(const Vec3& mask, const Vec3& center, const Vec3& o,
+                              const Vec3& d) const {
   const Vec3 from = (o - center).cwiseProduct(mask), way = d.cwiseProduct(mask);
   const double slope = way.squaredNorm();
   const double t_mid = slope > 0.0 ? -from.dot(way) / slope : 0.0;
@@ -455,10 +455,9 @@ RayInterval RoundedBox::edge(int axis, const Vec3& center, const Vec3& o, const 
 }
 
 Torus::Torus(const Params& params) : p_(validated<Torus>(params)) {
-  require(
-      p_.minor_radius <= p_.major_radius,
-      "torus: minor_radius = " + std::to_string(p_.minor_radius) +
-          " [m] is out of range: must be <= major_radius = " + std::to_string(p_.major_radius));
+  require(p_.minor_radius <= p_.major_radius,
+          "torus: minor_radius = " + std::to_string(p_.minor_radius) +
+              " [m] is out of range: must be <= major_radius = " + std::to_string(p_.major_radius));
 }
 
 Vec3 Torus::gradient(const Vec3& p) const {
@@ -479,7 +478,7 @@ double Torus::curvature_bound(const Vec3& p, double reach) const {
 VolumeMetrics Torus::own_metrics() const {
   const double R2 = p_.major_radius * p_.major_radius, r2 = p_.minor_radius * p_.minor_radius;
   VolumeMetrics m;
-  m.volume = 2.0 * kPi * kPi * p_.major_radius * r2;
+  m.volume = volume();
   const double across = m.volume * (R2 / 2.0 + r2 * 5.0 / 8.0);
   m.inertia = Vec3(across, across, m.volume * (R2 + r2 * 3.0 / 4.0)).asDiagonal();
   return m;
@@ -496,7 +495,7 @@ RayInterval HalfSpace::ray(const Vec3& o, const Vec3& d) const {
 
 VolumeMetrics HalfSpace::own_metrics() const {
   VolumeMetrics m;
-  m.volume = kInfinity;
+  m.volume = volume();
   m.status = Status::kUnbounded;
   return m;
 }

@@ -57,6 +57,7 @@ concept ConvexSolid = Solid<S> && requires(const S& solid, const Vec3& x) {
 };
 
 // What a solid may supply besides, so that engines know its surface: the octree asks for none.
+//  volume()             that of own_metrics() alone, quickly: every evaluation asks for it [m^3]
 //  pieces(list)         itself as pieces of quadric faces with disjoint interiors: pieces.h
 //  write_faces(writer)  the faces whose insides have it as their intersection, with `kPlanesOnly`
 //                       where none of them is round. They bear the sections and the columns.

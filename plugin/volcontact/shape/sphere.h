@@ -29,6 +29,7 @@ class Sphere {
   double signed_distance(const Vec3& p) const { return p.norm() - p_.radius; }
   Vec3 gradient(const Vec3& p) const;
   RayInterval ray(const Vec3& o, const Vec3& d) const;
+  double volume() const { return 4.0 / 3.0 * kPi * p_.radius * p_.radius * p_.radius; }
   VolumeMetrics own_metrics() const;
   void pieces(PieceList& list) const;
   template <typename Writer>

@@ -46,6 +46,9 @@ class Torus {
   /// Bound of the second derivatives of signed_distance within `reach` of p [1/m]: 1/q around the
   /// tube, q the distance from the circle, and cos/rho around the axis.
   double curvature_bound(const Vec3& p, double reach) const;
+  double volume() const {
+    return 2.0 * kPi * kPi * p_.major_radius * (p_.minor_radius * p_.minor_radius);
+  }
   VolumeMetrics own_metrics() const;
   template <typename Writer>
   void write_parts(Writer& writer) const {
