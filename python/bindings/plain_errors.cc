@@ -32,7 +32,8 @@ void explain(PyObject* callable, PyObject* const* args, size_t flagged, PyObject
   nb::python_error error;  // takes the error over
   try {
     const std::string_view text = nb::str(error.value()).c_str();
-    if (text.find("incompatible function arguments") == std::string_view::npos) {
+    if (text.find("incompatible function arguments") == std::string_view::npos &&
+        text.find("no constructor defined") == std::string_view::npos) {
       error.restore();
       return;
     }

@@ -11,6 +11,7 @@ import numpy as np
 
 import volcontact._volcontact as core
 from volcontact._adaptor import GIVEN_MATERIAL, Key, adaptor
+from volcontact.messages.spelling import nearest
 
 Value = float | str | Sequence[float]
 Values = Mapping[str, Value]
@@ -18,6 +19,24 @@ Values = Mapping[str, Value]
 _OPTION = "volcontact/option/"
 # Keys whose value is a number, of a material and of the options.
 NUMBERS = {*core.units_of_law_fields(), "tolerance", "threads", "exit_speed"}
+_OF_OPTIONS = (
+    "tolerance", "threads", "engine", "target", "implicit", "mesh", "pairs", "formulation",
+)  # fmt: skip
+
+
+def refuse(call: str, values: Mapping[str, object]) -> None:
+    """Answers arguments that a function has not, beside `material` and `options`.
+
+    Raises:
+        TypeError: there are any; it tells where the first belongs.
+    """
+    for word, value in values.items():
+        line = f"{call} has no argument {word!r}"
+        if word in _OF_OPTIONS:
+            raise TypeError(f"{line}: it is an option, options={{{word!r}: {value!r}}}")
+        if word in NUMBERS or word in {"normal_law", "friction_law"}:
+            raise TypeError(f"{line}: it is of the material, material={{{word!r}: {value!r}}}")
+        raise TypeError(line + nearest(word, ("material", "options")))
 
 
 class GivenKeys:

@@ -16,7 +16,7 @@ import numpy as np
 from volcontact._adaptor import CONTACT_DTYPE, SITE_DTYPE, RawEnergy, RawSurfaceSize, adaptor
 from volcontact._closing import Closing
 from volcontact.compiling import compile_scene
-from volcontact.given_keys import GivenKeys, Values
+from volcontact.given_keys import GivenKeys, Values, refuse
 from volcontact.lookout import Lookout
 from volcontact.messages.names import name_of
 from volcontact.messages.spelling import nearest
@@ -121,7 +121,11 @@ def load(
 
 
 def attach(
-    model: mujoco.MjModel, *, material: Values | None = None, options: Values | None = None
+    model: mujoco.MjModel,
+    *,
+    material: Values | None = None,
+    options: Values | None = None,
+    **others: Any,
 ) -> Contact:
     """Makes the contact of a model volumetric, in all its data, until it is closed.
 
@@ -138,6 +142,7 @@ def attach(
             "friction_law": "bristle"}`; docs/writing_a_scene.md, "Materials".
         options: before those of the file, `{"tolerance": 1e-4, "mesh": "hull"}`;
             docs/writing_a_scene.md, "Options".
+        **others: refused, with where they belong.
 
     Returns:
         A context manager that closes at exit.
@@ -146,13 +151,15 @@ def attach(
     deep in each other and of grasps that friction without memory lets creep.
 
     Raises:
-        TypeError: not an MjModel, or a value that is neither number nor word.
+        TypeError: not an MjModel, an argument that there is not, or a value that is neither number
+            nor word.
         ValueError: a `volcontact/...` key is wrong, userdata is too small for the keys of the file,
             the model is attached already, or it uses what volumetric contact cannot serve.
         RuntimeError: the package has no adaptor for this MuJoCo.
     """
     if not isinstance(model, mujoco.MjModel):
         raise TypeError(f"attach takes a mujoco.MjModel, got {type(model).__name__}")
+    refuse("attach", others)
     return Contact(model, GivenKeys(material, options))
 
 

@@ -38,6 +38,8 @@ def explained(
         error: what nanobind raised.
     """
     signatures = _SIGNATURE.findall(str(error))
+    if "no constructor defined" in str(error):
+        return f"{callable_.__name__} is not called to make one{_how_it_is_made(callable_)}"
     if not signatures:
         return str(error)
     name = callable_.__name__
@@ -51,6 +53,12 @@ def explained(
             given = given if isinstance(callable_, type) else given[1:]
         lines.append(_fault(name, parameters, given, kwargs))
     return lines[0] if len(lines) == 1 else f"{name}: no form takes this; {'; or '.join(lines)}"
+
+
+def _how_it_is_made(made: Any) -> str:
+    """What the docstring of a class says of it, as the end of a sentence."""
+    found = re.search(r"^Made by (.*?)(?:\n *\n|\Z)", made.__doc__ or "", re.DOTALL | re.MULTILINE)
+    return f": it is made by {' '.join(found[1].split()).rstrip(':.')}" if found else ""
 
 
 def _parameters(text: str) -> Iterator[_Parameter]:

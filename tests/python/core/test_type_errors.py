@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import volcontact as vc
+from volcontact.messages.spelling import nearest
 
 BALL, FLOOR = vc.Sphere(radius=1.0), vc.HalfSpace()
 MODEL = vc.ContactModel(pairs=[vc.Pair(BALL, FLOOR)], normal=vc.HuntCrossley())
@@ -91,3 +92,12 @@ def test_good_calls_and_other_errors_are_as_they_were():
 
     with pytest.raises(TypeError):
         vc.ContactModel(pairs=[vc.Pair(BALL, FLOOR)], normal=Refuses(wrong=1))
+
+
+def test_of_many_names_the_closest_are_told() -> None:
+    known = ["zed.force", *(f"link{i}.position[{k}]" for i in range(20) for k in range(3))]
+    assert nearest("zed.forc", known) == "; did you mean 'zed.force'?"
+    shown = nearest("z_f", known)
+    assert shown.startswith(f"; of {len(known)} the closest are ")
+    assert "zed.force" in shown and shown.count(",") == 11
+    assert nearest("zzz", ["mass", "size"]) == "; there is mass, size"

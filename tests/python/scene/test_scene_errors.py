@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is wrong with a scene, told so that its author can put it right."""
 
+import re
+
 import mujoco
 import pytest
 
@@ -127,6 +129,25 @@ def test_open_mesh_that_can_touch_is_refused_by_name():
 def test_attach_takes_a_model(wrong):
     with pytest.raises(TypeError, match="MjModel"):
         vc.attach(wrong)
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"stiffness": 1}, "'stiffness': it is of the material, material={'stiffness': 1}"),
+        (
+            {"friction_law": "bristle"},
+            "it is of the material, material={'friction_law': 'bristle'}",
+        ),
+        ({"mesh": "hull"}, "'mesh': it is an option, options={'mesh': 'hull'}"),
+        ({"materials": {}}, "'materials'; did you mean 'material'?"),
+        ({"gravity": 0}, "'gravity'; there is material, options"),
+    ],
+)
+def test_attach_tells_where_an_argument_belongs(given, told):
+    with pytest.raises(TypeError, match=re.escape("attach has no argument ")) as raised:
+        vc.attach(vc.load(scene()), **given)
+    assert told in str(raised.value)
 
 
 def test_flags_that_skip_the_callback_are_warned_of():
