@@ -98,36 +98,42 @@ def _eigen() -> Path:
 
 
 @functools.cache
-def _listed(plugin: Path) -> tuple[tuple[str, ...], frozenset[str]]:
-    """Sources of the core, and those to be compiled by themselves, as its CMakeLists.txt says."""
+def _listed(plugin: Path) -> tuple[tuple[str, ...], frozenset[str], tuple[tuple[str, ...], ...]]:
+    """Of the core, by its CMakeLists.txt: sources, those to be compiled alone, rooms joined."""
     text = (plugin / "volcontact" / "CMakeLists.txt").read_text()
 
-    def files(command: str) -> list[str]:
+    def within(command: str) -> str:
         match = re.search(command + r"([^)]*)\)", text)
         if match is None:
             raise RuntimeError(f"the sources of volcontact have no {command!r}")
-        return re.findall(r"[\w/]+\.cc", match[1])
+        return match[1]
 
-    alone = files(r"volcontact_unity_by_folder\(volcontact_core ALONE")
+    def files(command: str) -> list[str]:
+        return re.findall(r"[\w/]+\.cc", within(command))
+
+    units = r"volcontact_unity_by_folder\(volcontact_core ALONE"
+    alone = files(units)
     alone += files(r"set\(kernels")
     alone += files(r"set_source_files_properties\((?=model)")
-    return tuple(files(r"add_library\(volcontact_core STATIC")), frozenset(alone)
+    joined = [tuple(names.split(",")) for names in re.findall(r"[\w/]+,[\w/,]+", within(units))]
+    return tuple(files(r"add_library\(volcontact_core STATIC")), frozenset(alone), tuple(joined)
 
 
 def _rooms(plugin: Path, fmi: int) -> dict[str, list[str]]:
     """Sources that are compiled as one, by the name of the file that includes them."""
-    core, alone = _listed(plugin)
+    core, alone, joined = _listed(plugin)
+    company = {room: "_".join(rooms) for rooms in joined for room in rooms}
     rooms: dict[str, list[str]] = {}
     for name in core:
-        room = name.removesuffix(".cc") if name in alone else name.rpartition("/")[0]
+        folder = name.rpartition("/")[0]
+        room = name.removesuffix(".cc") if name in alone else company.get(folder, folder)
         rooms.setdefault(f"core_{room.replace('/', '_')}.cc", []).append(f"volcontact/{name}")
     rooms["container.cc"] = [
         f"c_api/{path.name}" for path in sorted((plugin / "c_api").glob("*.cc"))
     ]
-    for path in sorted((plugin / "fmu").rglob("*.cc")):
-        if path.name != f"fmi{5 - fmi}.cc":
-            name = path.relative_to(plugin / "fmu").as_posix()
-            rooms[f"layer_{name.replace('/', '_')}"] = [f"fmu/{name}"]
+    layer = [path.relative_to(plugin).as_posix() for path in (plugin / "fmu").rglob("*.cc")]
+    rooms["layer.cc"] = sorted(name for name in layer if not name.startswith("fmu/fmi"))
+    rooms[f"fmi{fmi}.cc"] = [f"fmu/fmi{fmi}.cc"]
     return rooms
 
 
