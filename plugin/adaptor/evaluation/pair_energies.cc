@@ -225,22 +225,24 @@ void forgive(double work, const EnergyAccount& before, EvaluationScratch& scratc
 }
 
 double pay_for(const mjModel* m, mjData* d, double made, EvaluationScratch& scratch) {
-  double held = 0.0, payable = 0.0;
-  for (const PairEnergy& energy : scratch.energies) {
-    held += energy.held();
-    payable += energy.payable();
-  }
+  double held = 0.0;
+  for (const PairEnergy& energy : scratch.energies) held += energy.held();
   if (!(made > PairEnergy::kOverdraft * held)) return 0.0;
+  const auto payable = [&scratch] {
+    double sum = 0.0;
+    for (const PairEnergy& energy : scratch.energies) sum += energy.payable();
+    return sum;
+  };
+  double there = payable();
   // Beside so much there is no doubt, whatever motion may explain.
-  if (made > payable &&
-      made > PairEnergy::kOverdraft * (held + kinetic_energy(m, d, scratch.row))) {
+  if (made > there && made > PairEnergy::kOverdraft * (held + kinetic_energy(m, d, scratch.row))) {
     for (PairEnergy& energy : scratch.energies) energy.doubtful = HUGE_VAL;
-    payable = held;
+    there = payable();
   }
-  if (!(payable > 0.0)) return 0.0;
-  const double share = std::min(1.0, made / payable);
+  if (!(there > 0.0)) return 0.0;
+  const double share = std::min(1.0, made / there);
   for (PairEnergy& energy : scratch.energies) energy.pay(share);
-  return share * payable;
+  return share * there;
 }
 
 double last_share(const mjModel* m, mjData* d, double made, double power,

@@ -7,6 +7,11 @@
 #include "volcontact/base/sizes.h"
 
 namespace volcontact {
+namespace {
+
+constexpr int kConstraintRounds = 12;
+
+}  // namespace
 
 void ImplicitStep::clear() {
   sites_.clear();
@@ -195,11 +200,37 @@ void ImplicitStep::solve_island(ImplicitParts parts, double step, double resting
   limit_work(step, resting);
 }
 
+// Finds what the native constraints bear under the contact forces of now.
+void ImplicitStep::settle(LinearConstraints& constraints) {
+  for (int round = 0; round < kConstraintRounds; ++round) {
+    space_.constrain(constraints);
+    space_.accelerate(force_, acceleration_);
+    if (constraints.improve(acceleration_)) return;
+  }
+}
+
+// The rounds came to no end, so that the motion is not the one that the bodies will have. Under
+// forces that stay it can be found; these are the less, down to none, the more work they would do.
+void ImplicitStep::bound_unsettled(LinearConstraints& constraints, double step, double resting) {
+  constexpr double kLeast = 0.1;
+  before_ = force_;
+  for (double share = 1.0;; share = share > kLeast ? 0.5 * share : 0.0) {
+    for (std::size_t i = 0; i < force_.size(); ++i) force_[i] = share * before_[i];
+    settle(constraints);
+    space_.move(force_, velocity_);
+    add_up_work(step, resting);
+    bool kept = true;
+    for_each_pair([&kept](const WorkLimit& limit) { kept = kept && limit.is_kept_nearly(); });
+    if (kept || share == 0.0) break;
+  }
+  share_deficit();
+}
+
 // Solves again until the native constraints bear what was taken for granted.
 void ImplicitStep::solve_with_constraints(const Mechanism& mechanism,
                                           LinearConstraints& constraints, ImplicitParts parts,
                                           int island, const double* known) {
-  constexpr int kRounds = 12;
+  bool settled = false;
   const double step = mechanism.step, resting = mechanism.fall;
   const bool is_stiff = std::any_of(island_.begin(), island_.end(),
                                     [this](int i) { return sites_[size(i)].is_stiff; });
@@ -213,7 +244,7 @@ void ImplicitStep::solve_with_constraints(const Mechanism& mechanism,
   // Where forces are held, positions move with the mean of the velocities before and after.
   if (is_stiff) set_drift(mechanism, parts == ImplicitParts::kHeld ? step : 0.5 * step);
   space_.build(mechanism, places_, islands_, island, known);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kConstraintRounds && !settled; ++round) {
     space_.constrain(constraints);
     force_.resize(size(space_.rows()));
     velocity_.resize(size(space_.rows()));
@@ -222,10 +253,12 @@ void ImplicitStep::solve_with_constraints(const Mechanism& mechanism,
     } else {
       take_explicit();
     }
-    if (constraints.empty()) break;
+    settled = constraints.empty();
+    if (settled) break;
     space_.accelerate(force_, acceleration_);
-    if (constraints.improve(acceleration_)) break;
+    settled = constraints.improve(acceleration_);
   }
+  if (is_stiff && !settled) bound_unsettled(constraints, step, resting);
   if (is_stiff) {
     write_results();
   } else {

@@ -129,6 +129,8 @@ class ImplicitStep {
   }
   void solve_with_constraints(const Mechanism& mechanism, LinearConstraints& constraints,
                               ImplicitParts parts, int island, const double* known);
+  void settle(LinearConstraints& constraints);
+  void bound_unsettled(LinearConstraints& constraints, double step, double resting);
   void take_explicit();
   void write_explicit();
   void make_points(ImplicitParts parts, double step, double resting);

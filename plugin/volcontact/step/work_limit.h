@@ -40,6 +40,8 @@ struct PairEnergy {
   double bristle = HUGE_VAL;
   /// Of what is held, as much as may be there although no motion put it in [J]; not kept.
   double doubtful = HUGE_VAL;
+  /// Of what is held, as much as was there before the step that follows was solved [J]; not kept.
+  double at_hand = HUGE_VAL;
 
   /// The sites of a pair at the present evaluation, together.
   struct Now {
@@ -138,7 +140,7 @@ struct PairEnergy {
   /// What was lent, and is not repaid [J].
   double owed() const noexcept { return std::max(0.0, -stored); }
   /// The most that can be taken off what is held, for what the contacts have made [J].
-  double payable() const noexcept { return std::min(held(), doubtful); }
+  double payable() const noexcept { return std::min({held(), doubtful, at_hand}); }
   /// Lets off a share of what is owed.
   void forgive(double share) noexcept { stored += share * owed(); }
   void pay(double share) noexcept {
@@ -153,6 +155,7 @@ struct PairEnergy {
   void solve(double work, double friction_work = 0.0, double may_release = 0.0,
              double lent = 0.0) noexcept {
     is_solved = true;
+    at_hand = held();
     force = power = unpaid = 0.0;
     slow = may_release;
     rubbed = std::max(0.0, rubbed - friction_work);
