@@ -53,9 +53,9 @@ ContactLaws random_laws(test::Random& random) {
   return laws;
 }
 
-class NoEnergyFromNothing : public ::testing::TestWithParam<ImplicitParts> {};
+class NoEnergyInParts : public ::testing::TestWithParam<ImplicitParts> {};
 
-TEST_P(NoEnergyFromNothing, HoldsInEveryStep) {
+TEST_P(NoEnergyInParts, HoldsInEveryStep) {
   constexpr int kRuns = 3000;
   test::Random random(11);
   int touching = 0, limited = 0;
@@ -150,7 +150,62 @@ TEST_P(NoEnergyFromNothing, HoldsInEveryStep) {
   RecordProperty("worst", std::to_string(worst));
 }
 
-INSTANTIATE_TEST_SUITE_P(Parts, NoEnergyFromNothing,
+// A push that is another one whenever it is asked for, in as many rounds as a step takes, and then
+// none: constraints and contact that answer each other without end.
+class RestlessPush final : public LinearConstraints {
+ public:
+  RestlessPush(int dof, double force) : force_(force) {
+    begin_rows();
+    add_entry(dof, 1.0);
+    end_row(0.0);
+  }
+
+ private:
+  void respond(std::span<const int> rows, std::span<const double> /*violation*/) override {
+    constexpr int kRounds = 12;
+    ++asked_;
+    const double push = asked_ > kRounds ? 0.0 : asked_ % 2 == 0 ? force_ : 0.5 * force_;
+    for (const int row : rows) set_response(row, push, 0.0);
+  }
+
+  double force_;
+  int asked_ = 0;
+};
+
+TEST(NoEnergyFromNothing, HoldsWhereConstraintsComeToNoEnd) {
+  for (const double speed : {0.0, 0.1, 1.0}) {
+    test::FreeBodies bodies;
+    bodies.step = 1e-3;
+    const Vec3 centre(0.0, 0.0, 0.99 * kHalf);
+    const Twist twist{Vec3::Zero(), Vec3(0.0, 0.0, -speed)};
+    bodies.add(1.0, 4e-3 * Mat3::Identity(), centre, twist);
+    ContactLaws laws;
+    laws.normal = make_normal("hunt_crossley", {{"stiffness", {1e9}}, {"damping", {0.1}}});
+    laws.mass = 1.0;
+    const ContactModel model({{Sphere({.radius = kHalf}), HalfSpace(), {}, {}}}, laws);
+    ContactReport report;
+    report.keeps_inputs = true;
+    ContactModel::Workspace workspace;
+    const BodyMotion motion{{Mat3::Identity(), centre}, Pose(), twist, Twist()};
+    model.evaluate(motion, {}, workspace, report);
+    ASSERT_TRUE(report.touching());
+    PairEnergy energy;
+    energy.stored = energy.most = 0.01;
+    ImplicitStep step;
+    step.begin_pair(WorkLimit::of(energy, 0.0, 0.0));
+    step.add(model, report, 0, 1, 0, {}, true);
+    RestlessPush push(2, -1e4);  // 10 m/s a step
+    const std::vector<double> known(6, 0.0);
+    step.solve(bodies, push, ImplicitParts::kStiff, known.data());
+    const double v = -speed + bodies.step * report.wrench_on_A().force.z();
+    EXPECT_GE(v, -speed);
+    EXPECT_LE(0.5 * v * v, 0.5 * speed * speed + energy.stored * (1.0 + 2e-3)) << speed;
+    energy.solve(step.work(0), step.friction_work(0), step.released_at_most(0), step.lent(0));
+    EXPECT_LE(0.5 * v * v + energy.stored, 0.5 * speed * speed + 0.01 + 1e-9) << speed;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Parts, NoEnergyInParts,
                          ::testing::Values(ImplicitParts::kStiff, ImplicitParts::kAll,
                                            ImplicitParts::kHeld),
                          [](const auto& run) {
