@@ -296,8 +296,7 @@ void fill_slot(const SceneContact& contact, const mjModel* m, mjData* d, const U
   if (contact.is_implicit()) {
     if (account.continues() && m->opt.integrator != mjINT_RK4) {
       const EnergyAccount before = account.begin().energy();
-      const double powers =
-          before.force_power - before.friction_power + later - friction_later;
+      const double powers = before.force_power - before.friction_power + later - friction_later;
       const double work = 0.5 * account.elapsed() * powers - driven;
       if (!before.implicit) forgive(work, before, scratch, now);
     }

@@ -32,7 +32,7 @@ struct EvaluationScratch {
   /// Of the pairs in `near`, the inverse mass that their normal forces act on, as far as it was
   /// foreseen and matters; or 0 [1/kg].
   std::vector<double> yields;
-  bool knows = false;          ///< whether `known` is of this evaluation
+  bool knows = false;      ///< whether `known` is of this evaluation
   std::vector<char> held;  ///< of the pairs in `near`, whether other forces than its laws say act
   std::vector<int> order;  ///< of `near`, as worked off: the long pairs first
   std::vector<ContactModel::Workspace> workspaces;  ///< one per OpenMP thread
