@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "core/support/csg_solids.h"
 #include "core/support/evaluated.h"
 #include "core/support/random.h"
 
@@ -17,8 +18,6 @@ using test::evaluated;
 Csg placed(const SimpleShape& shape, double height = 0.0) {
   return Csg(shape, Pose{Mat3::Identity(), Vec3(0.0, 0.0, height)});
 }
-Csg operator-(const Csg& a, const Csg& b) { return Csg(Csg::Operation::kDifference, a, b); }
-Csg operator+(const Csg& a, const Csg& b) { return Csg(Csg::Operation::kUnion, a, b); }
 
 // What two discs have in common.
 double lens(double r, double R, double d) {
