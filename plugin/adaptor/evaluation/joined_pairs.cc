@@ -114,7 +114,9 @@ void JoinedPairs::look_closer(const SceneContact& contact, const mjData* d, Side
   const Pose X_Wb = pose_of_geom(d, other.frame) * pair.X_Bb;
   const Pose X_Fb = pose_of_geom(d, side.frame).inverse() * X_Wb;
   if (solid.bounds.bounded()) {
-    side.tiles.build(side.bounds, overlap_bounds(solid, X_Fb, all));
+    const Box* const box = std::get_if<Box>(&pair.b);
+    side.tiles.build(side.bounds,
+                     box ? overlap_bounds(*box, X_Fb, all) : overlap_bounds(solid, X_Fb, all));
     return;
   }
   const SolidView tiles = view_of(pair.a);

@@ -39,9 +39,26 @@ double reach_within(const SolidView& solid, const Pose& X_FS, const Vec3& e, con
   return least;
 }
 
-}  // namespace
+// The same of a box, whose support is linear between the l at which an edge of it turns: one of
+// these is the best, but for a box outside of the half-space, of which nothing is left.
+double reach_within(const Box& solid, const Pose& X_FS, const Vec3& e, const Vec3& n,
+                    double offset) {
+  constexpr double kFar = 1e8;
+  const Vec3 e_S = X_FS.rotation.transpose() * e, n_S = X_FS.rotation.transpose() * n;
+  const double along = e.dot(X_FS.translation), across = n.dot(X_FS.translation) - offset;
+  const auto bound = [&](double l) {
+    return (e_S - l * n_S).cwiseAbs().dot(solid.half_sizes()) + along - l * across;
+  };
+  double least = std::min(bound(0.0), bound(kFar));
+  for (int k = 0; k < 3; ++k) {
+    const double l = e_S[k] / n_S[k];
+    if (l > 0.0 && l < kFar) least = std::min(least, bound(l));
+  }
+  return least;
+}
 
-Aabb overlap_bounds(const SolidView& solid, const Pose& X_FS, const Aabb& box) {
+template <typename Solid>
+Aabb bounds_of_overlap(const Solid& solid, const Pose& X_FS, const Aabb& box) {
   Aabb overlap = box;
   for (int i = 0; i < 3; ++i) {
     for (const double sign : {1.0, -1.0}) {
@@ -57,6 +74,16 @@ Aabb overlap_bounds(const SolidView& solid, const Pose& X_FS, const Aabb& box) {
     }
   }
   return overlap;
+}
+
+}  // namespace
+
+Aabb overlap_bounds(const SolidView& solid, const Pose& X_FS, const Aabb& box) {
+  return bounds_of_overlap(solid, X_FS, box);
+}
+
+Aabb overlap_bounds(const Box& solid, const Pose& X_FS, const Aabb& box) {
+  return bounds_of_overlap(solid, X_FS, box);
 }
 
 }  // namespace volcontact::adaptor

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <random>
+#include <variant>
 
 namespace volcontact::adaptor::overlap_bounds_test {
 namespace {
@@ -40,6 +41,32 @@ TEST(OverlapBounds, OfABoxOnItsEdgeAreThoseOfAWedge) {
   EXPECT_NEAR(wedge.min.z(), -h, 1e-9);
 }
 
+// What is searched for any solid is known of a box.
+TEST(OverlapBounds, OfABoxAreThoseOfTheSearch) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> at(-1.0, 1.0);
+  const Box solid({.half_sizes = Vec3(0.3, 0.5, 0.2)});
+  const Shape shape = solid;
+  const Aabb box{{-0.3, -0.4, -0.2}, {0.3, 0.2, 0.4}};
+  int met = 0;
+  for (int round = 0; round < 500; ++round) {
+    const Vec3 axis = Vec3(at(random), at(random), at(random)).normalized();
+    const Mat3 turned = Eigen::AngleAxisd(3.0 * at(random), axis).toRotationMatrix();
+    const Pose X_FS{round % 5 == 0 ? Mat3(Mat3::Identity()) : turned,
+                    0.8 * Vec3(at(random), at(random), at(random))};
+    const Aabb known = overlap_bounds(solid, X_FS, box);
+    const Aabb searched = overlap_bounds(view_of(shape), X_FS, box);
+    if (!(searched.min.array() < searched.max.array()).all()) {
+      EXPECT_FALSE((known.min.array() < known.max.array()).all()) << round;
+      continue;
+    }
+    ++met;
+    EXPECT_LE((known.min - searched.min).cwiseAbs().maxCoeff(), 1e-6) << round;
+    EXPECT_LE((known.max - searched.max).cwiseAbs().maxCoeff(), 1e-6) << round;
+  }
+  EXPECT_GT(met, 250);
+}
+
 TEST(OverlapBounds, HoldEveryPointOfTheOverlap) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> at(-1.0, 1.0);
@@ -54,7 +81,8 @@ TEST(OverlapBounds, HoldEveryPointOfTheOverlap) {
     const Vec3 axis = Vec3(at(random), at(random), at(random)).normalized();
     const Pose X_FS{Eigen::AngleAxisd(3.0 * at(random), axis).toRotationMatrix(),
                     0.5 * Vec3(at(random), at(random), at(random))};
-    const Aabb bounds = overlap_bounds(view, X_FS, box);
+    const Box* const solid = std::get_if<Box>(&solids[round % 5]);
+    const Aabb bounds = solid ? overlap_bounds(*solid, X_FS, box) : overlap_bounds(view, X_FS, box);
     for (int sample = 0; sample < 200; ++sample) {
       const Vec3 p(0.3 * at(random), -0.1 + 0.3 * at(random), 0.1 + 0.3 * at(random));
       if (view.signed_distance(view.solid, X_FS.inverse() * p) > 0.0) continue;
