@@ -11,6 +11,33 @@
 #include "volcontact/base/check.h"
 
 namespace volcontact {
+namespace {
+
+// Of a line with a cylinder about z.
+RayInterval in_cylinder(double radius, double half_length, const Vec3& o, const Vec3& d) {
+  RayInterval span{-kInfinity, kInfinity};
+  const double slope = d.x() * d.x() + d.y() * d.y();
+  // The point of the line nearest the axis first: no cancellation for far origins.
+  const double t_mid = slope > 0.0 ? -(o.x() * d.x() + o.y() * d.y()) / slope : 0.0;
+  const double x = o.x() + t_mid * d.x(), y = o.y() + t_mid * d.y();
+  const double reach = radius * radius - (x * x + y * y);
+  if (!(reach > 0.0)) return {};
+  if (slope > 0.0) {
+    const double half = std::sqrt(reach / slope);
+    span = {t_mid - half, t_mid + half};
+  }
+  if (d.z() != 0.0) {
+    const double at_low = (-half_length - o.z()) / d.z();
+    const double at_high = (half_length - o.z()) / d.z();
+    span.enter = std::max(span.enter, std::min(at_low, at_high));
+    span.leave = std::min(span.leave, std::max(at_low, at_high));
+  } else if (std::abs(o.z()) > half_length) {
+    return {};
+  }
+  return span.empty() ? RayInterval{} : span;
+}
+
+}  // namespace
 
 Sphere::Sphere(const Params& params) : p_(validated<Sphere>(params)) {}
 Vec3 Sphere::gradient(const Vec3& p) const {
@@ -122,21 +149,7 @@ void Capsule::pieces(PieceList& list) const {
 }
 
 RayInterval Capsule::middle(const Vec3& o, const Vec3& d) const {
-  RayInterval span{-kInfinity, kInfinity};
-  const double slope = d.x() * d.x() + d.y() * d.y();
-  const double t_mid = slope > 0.0 ? -(o.x() * d.x() + o.y() * d.y()) / slope : 0.0;
-  const double x = o.x() + t_mid * d.x(), y = o.y() + t_mid * d.y();
-  const double reach = p_.radius * p_.radius - (x * x + y * y);
-  if (!(reach > 0.0)) return {};
-  if (slope > 0.0) {
-    const double half = std::sqrt(reach / slope);
-    span = {t_mid - half, t_mid + half};
-  }
-  if (d.z() == 0.0) return std::abs(o.z()) > p_.half_length ? RayInterval{} : span;
-  const double at_low = (-p_.half_length - o.z()) / d.z();
-  const double at_high = (p_.half_length - o.z()) / d.z();
-  return {std::max(span.enter, std::min(at_low, at_high)),
-          std::min(span.leave, std::max(at_low, at_high))};
+  return in_cylinder(p_.radius, p_.half_length, o, d);
 }
 
 RayInterval Capsule::end_ball(const Vec3& o, const Vec3& d, double z) const {
@@ -161,26 +174,7 @@ Vec3 Cylinder::gradient(const Vec3& p) const {
 }
 
 RayInterval Cylinder::ray(const Vec3& o, const Vec3& d) const {
-  RayInterval span{-kInfinity, kInfinity};
-  const double slope = d.x() * d.x() + d.y() * d.y();
-  // The point of the line nearest the axis first: no cancellation for far origins.
-  const double t_mid = slope > 0.0 ? -(o.x() * d.x() + o.y() * d.y()) / slope : 0.0;
-  const double x = o.x() + t_mid * d.x(), y = o.y() + t_mid * d.y();
-  const double reach = p_.radius * p_.radius - (x * x + y * y);
-  if (!(reach > 0.0)) return {};
-  if (slope > 0.0) {
-    const double half = std::sqrt(reach / slope);
-    span = {t_mid - half, t_mid + half};
-  }
-  if (d.z() != 0.0) {
-    const double at_low = (-p_.half_length - o.z()) / d.z();
-    const double at_high = (p_.half_length - o.z()) / d.z();
-    span.enter = std::max(span.enter, std::min(at_low, at_high));
-    span.leave = std::min(span.leave, std::max(at_low, at_high));
-  } else if (std::abs(o.z()) > p_.half_length) {
-    return {};
-  }
-  return span.empty() ? RayInterval{} : span;
+  return in_cylinder(p_.radius, p_.half_length, o, d);
 }
 
 VolumeMetrics Cylinder::own_metrics() const {
