@@ -247,14 +247,15 @@ double pay_for(const mjModel* m, mjData* d, double made, EvaluationScratch& scra
 
 double last_share(const mjModel* m, mjData* d, double made, double power,
                   EvaluationScratch& scratch) {
-  constexpr double kLeast = -4.0, kMost = 6.0;  // over the step the forces push, and at most twice
+  constexpr double kLeast = -4.0, kMost = 6.0;  // over the step they push, and at most twice
   double held = 0.0;
   for (const PairEnergy& energy : scratch.energies) held += energy.held();
   if (!(made > held) || power == 0.0) return 1.0;
   const double excess = made - held;
   const double there = held + kinetic_energy(m, d, scratch.row);
   if (!(excess > PairEnergy::kOverdraft * there)) return 1.0;
-  return std::clamp(1.0 - 6.0 * excess / (m->opt.timestep * power), kLeast, kMost);
+  const double share = 1.0 - 6.0 * excess / (m->opt.timestep * power);
+  return share < kLeast || share > kMost ? 0.0 : share;  // what hardly moves anything cannot brake
 }
 
 double release_for(double made, const EvaluationScratch& scratch) {
