@@ -115,7 +115,7 @@ SCENES: dict[tuple[str, str], Maker] = {
     ("dm-control", "rodent"): on_a_floor(f"{WALKERS}/rodent.xml", 0.08),
     ("dm-control", "humanoid CMU 2020"): on_a_floor(f"{WALKERS}/humanoid_CMU_V2020.xml", 1.1),
     ("dm-control", "jumping ball"): on_a_floor(
-        f"{WALKERS}/jumping_ball/jumping_ball_with_head.xml", 0.3
+        f"{WALKERS}/jumping_ball/jumping_ball_with_head.xml", 0.6
     ),
     ("metaworld", "assembly peg"): file(f"{METAWORLD}/sawyer_assembly_peg.xml"),
     ("metaworld", "peg insertion side"): file(f"{METAWORLD}/sawyer_peg_insertion_side.xml"),

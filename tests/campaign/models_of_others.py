@@ -109,14 +109,26 @@ def models() -> list[tuple[str, str]]:
 
 
 def compiled(path: Path) -> mujoco.MjModel:
-    """The model of a file; a walker that has no ground of its own gets one."""
+    """The model of a file; a walker that has no ground of its own gets one under its feet."""
     model = mujoco.MjModel.from_xml_path(str(path))
     plane = mujoco.mjtGeom.mjGEOM_PLANE
     if plane in model.geom_type or not hasattr(mujoco, "MjSpec"):
         return model
     spec = mujoco.MjSpec.from_file(str(path))
-    spec.worldbody.add_geom(type=plane, size=[10, 10, 1])
+    spec.worldbody.add_geom(type=plane, size=[10, 10, 1], pos=[0, 0, lowest(model)])
     return spec.compile()
+
+
+def lowest(model: mujoco.MjModel) -> float:
+    """The height of the lowest corner of the boxes around the geoms, where the model starts [m]."""
+    data = mujoco.MjData(model)
+    if model.nkey:
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_kinematics(model, data)
+    up = data.geom_xmat.reshape(-1, 3, 3)[:, 2]
+    centre, half = model.geom_aabb[:, :3], model.geom_aabb[:, 3:]
+    heights = data.geom_xpos[:, 2] + (up * centre).sum(1) - (np.abs(up) * half).sum(1)
+    return float(heights.min())
 
 
 def cases(sample: int = 1) -> Iterator[dict[str, Any]]:
