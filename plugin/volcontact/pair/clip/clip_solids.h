@@ -50,16 +50,28 @@ struct PosedPolytope {  // the polytope B
   double offset(int f) const { return solid.faces()[f].offset + normal(f).dot(translation); }
 };
 
+// The graph of a box whose faces have the numbers from `first_face` on.
+inline PolytopeGraph box_graph(int first_face) {
+  std::vector<Vec3> corners(8);
+  place_corners(Vec3::Ones(), Mat3::Identity(), Vec3::Zero(), corners.data());
+  std::vector<std::vector<int>> loops;
+  for (const auto& loop : kBoxLoops) loops.emplace_back(std::begin(loop), std::end(loop));
+  PolytopeGraph graph = make_polytope_graph(corners, loops);
+  for (int& face : graph.face) face += first_face;
+  return graph;
+}
+
 inline void start(const PosedBox& b, ClipScratch& scratch) {
-  static const PolytopeGraph graph = [] {
-    std::vector<Vec3> corners(8);
-    place_corners(Vec3::Ones(), Mat3::Identity(), Vec3::Zero(), corners.data());
-    std::vector<std::vector<int>> loops;
-    for (const auto& loop : kBoxLoops) loops.emplace_back(std::begin(loop), std::end(loop));
-    return make_polytope_graph(corners, loops);
-  }();
+  static const PolytopeGraph graph = box_graph(0);
   scratch.polytope.start(graph);
   place_corners(b.half, b.rotation, b.center, scratch.polytope.points().data());
+}
+
+// With the box A, to be cut by the planes of another one.
+inline void start(const AlignedBox& a, ClipScratch& scratch) {
+  static const PolytopeGraph graph = box_graph(6);
+  scratch.polytope.start(graph);
+  place_corners(a.half, Mat3::Identity(), -a.origin, scratch.polytope.points().data());
 }
 
 inline void start(const PosedPolytope& b, ClipScratch& scratch) {
@@ -116,6 +128,45 @@ inline bool cut(const AlignedBox& a, const Vec3&, int first_face, double roundin
     const double excess = (f & 1 ? box.max[axis] : -box.min[axis]) - a.offset(f);
     if (f == deepest || !(excess > rounding)) continue;
     if (!cut(a, f, first_face, rounding, polytope)) return false;
+  }
+  return true;
+}
+
+// How far a box reaches over each face of another one; pose of its axes and centre in those of the
+// other.
+struct Excess {
+  Excess(const Vec3& half, const Mat3& R, const Vec3& p, const Vec3& other_half)
+      : reach(R.cwiseAbs() * half), over(reach - other_half), center(p) {}
+  double operator()(int face) const {
+    return over[face >> 1] + (face & 1 ? center[face >> 1] : -center[face >> 1]);
+  }
+  int count(double rounding) const {
+    int faces = 0;
+    for (int f = 0; f < 6; ++f) faces += (*this)(f) > rounding;
+    return faces;
+  }
+  Vec3 reach, over, center;
+};
+
+// Cuts the box A by those planes of B over which it reaches, the one that leaves least first.
+inline bool cut(const PosedBox& b, const Excess& excess, double rounding, CutPolytope& polytope) {
+  const auto cut_by = [&](int face) {
+    const Vec3 normal = b.normal(face);
+    const double offset = b.offset(face);
+    return polytope.cut([&](const Vec3& p) { return normal.dot(p) - offset; }, face, rounding);
+  };
+  int deepest = 0;
+  double most = -kInfinity;
+  for (int f = 0; f < 6; ++f) {
+    const double share = excess(f) / excess.reach[f >> 1];
+    if (share > most) {
+      most = share;
+      deepest = f;
+    }
+  }
+  if (!cut_by(deepest)) return false;
+  for (int f = 0; f < 6; ++f) {
+    if (f != deepest && excess(f) > rounding && !cut_by(f)) return false;
   }
   return true;
 }
