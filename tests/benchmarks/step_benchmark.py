@@ -17,9 +17,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import assembly
 import mujoco
 import numpy as np
+from field import assembly
 
 import volcontact as vc
 

@@ -44,14 +44,27 @@ double mobility_across(const mjModel* m, mjData* d, const GeomPair& geoms, const
   return mobility_along(m, d, geoms, site.metrics.centroid, way.normalized(), row);
 }
 
+// Friction of a site, across its normal and about it, without what is rounding noise: solids that
+// lie still have no ratio of friction and slip.
+struct FrictionAt {
+  explicit FrictionAt(const SiteReport& site)
+      : force((site.force_on_A - site.normal_force * site.normal).norm()),
+        torque(std::abs(site.torque_on_A.dot(site.normal))) {
+    constexpr double kNoise = 1e-12;  // of the normal force
+    const double arm = std::sqrt(0.5 * site.metrics.inertia.trace() / site.metrics.volume);
+    if (force <= kNoise * site.normal_force) force = 0.0;
+    if (torque <= kNoise * arm * site.normal_force) torque = 0.0;
+  }
+  double force, torque;
+};
+
 // Whether friction without memory would throw the bodies back in an explicit step, faster than they
 // slide or spin now: h c > 2 m, with c the friction per slip. Once the slip is so small they would
-// chatter for ever. `most`: h c/m that a step holds.
+// chatter for ever.
 bool reverses_slip(const SiteReport& site, const InverseMass& inverse, double sliding, double h) {
-  const double across = (site.force_on_A - site.normal_force * site.normal).norm();
-  if (h * across * sliding > kEulerDamper * site.slip.norm()) return true;
-  const double torque = std::abs(site.torque_on_A.dot(site.normal));
-  return h * torque * inverse.about > kEulerDamper * std::abs(site.spin);
+  const FrictionAt friction(site);
+  return h * friction.force * sliding > kEulerDamper * site.slip.norm() ||
+         h * friction.torque * inverse.about > kEulerDamper * std::abs(site.spin);
 }
 
 // Whether friction that follows the patch shakes the bodies in an explicit step, where it could
@@ -59,8 +72,9 @@ bool reverses_slip(const SiteReport& site, const InverseMass& inverse, double sl
 bool shakes(const PairContact& pair, ContactReport& report, std::size_t site,
             const InverseMass& inverse, double sliding, double h) {
   const SiteReport& at = report.sites[site];
+  const FrictionAt friction(at);
+  if (friction.force == 0.0 && friction.torque == 0.0) return false;
   const double slip = at.slip.norm(), spin = std::abs(at.spin);
-  if (slip == 0.0 && spin == 0.0 && at.bristle_energy.sum() == 0.0) return false;
   const FrictionSlope slope =
       SiteLaws(pair.model, report, site).friction_slope(at.normal_force, at.slip, at.spin);
   if (!(h * slope.strength * sliding > kEulerDamper * slip ||

@@ -74,8 +74,11 @@ void ContactSpace::carry(int place, Carry carry, Block Carried::* out) {
   }
 }
 
-// J through the factors of Mh, which fill in nothing but what carries.
+// J through the factors of Mh, which fill in nothing but what carries. Forces that stay do without,
+// if no native constraint acts.
 void ContactSpace::respond() {
+  if (has_responses_) return;
+  has_responses_ = true;
   const TreeMatrix& factor = matrix_.free_factor();
   const auto lower = [&](const auto& support, double* x) { factor.carry_lower<kRows>(support, x); };
   const auto upper = [&](const auto& support, double* x) { factor.carry_upper<kRows>(support, x); };
@@ -119,7 +122,11 @@ void ContactSpace::make_free_row(int place, int end) {
 
 void ContactSpace::constrain_places() {
   const std::span<const StepMatrix::Column> columns = matrix_.columns();
-  if (matrix_.converts() && !columns.empty() && !is_massed_) {
+  opened_.clear();
+  closed_.clear();
+  if (columns.empty()) return;
+  respond();
+  if (matrix_.converts() && !is_massed_) {
     is_massed_ = true;
     const TreeMatrix& factor = matrix_.constraint_factor();
     const auto lower = [&](const auto& support, double* x) {
@@ -160,7 +167,6 @@ void ContactSpace::constrain_places() {
     sum_up(column.constrained, converts ? &Carried::massed : &Carried::forced, closed_);
     for (const int dof : column.support) is_in_tree_[size(matrix_.tree_begin(dof))] = 0;
   }
-  if (columns.empty()) return;
   const int count = static_cast<int>(columns.size());
   for (int place = 0; place < places(); ++place) {
     matrix_.coupling().solve<kRows>(closed_[size(place) * columns.size()].data(), 0, count);
@@ -178,6 +184,7 @@ ContactSpace::Square ContactSpace::constrained(const Square& free, int place, in
 }
 
 void ContactSpace::build_mobility() {
+  respond();
   choose_form();
   mobility_.resize(size(places()));
   if (!prefers_dofs_) build_delassus();
@@ -294,8 +301,7 @@ void ContactSpace::build(const Mechanism& mechanism, std::span<const ContactPlac
     add_driven(places[size(place)]);
   }
   add_motion(generalized_.data(), velocity_.data());
-  respond();
-  has_free_delassus_ = false;
+  has_responses_ = has_free_delassus_ = false;
 }
 
 void ContactSpace::constrain(const LinearConstraints& constraints) {

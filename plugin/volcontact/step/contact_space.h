@@ -116,7 +116,7 @@ class ContactSpace {
   std::vector<char> is_in_tree_;  // of a column, by the tree's first degree of freedom; likewise
   std::vector<int> envelope_;
   std::vector<Square> mobility_, delassus_, free_mobility_, free_delassus_;
-  bool has_free_delassus_ = false;
+  bool has_responses_ = false, has_free_delassus_ = false;
   std::vector<double> free_known_, known_, velocity_, free_, generalized_;
   bool prefers_dofs_ = true;
   double step_ = 0.0;

@@ -6,9 +6,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-import assembly
 import numpy as np
 import volcontact_timing
+from field import assembly
 
 import volcontact as vc
 
