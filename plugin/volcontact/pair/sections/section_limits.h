@@ -16,9 +16,11 @@ inline constexpr int kMoreKnotParts = 24;   ///< the same where a knot is known 
 inline constexpr int kDipSteps = 10;        ///< of the search for two knots between two places
 inline constexpr double kDipBeside = 0.25;  ///< of a step, that a dip may lie beside where it looks
 inline constexpr double kDipMargin = 0.5;   ///< of the bend, that a dip may go lower than it looks
-inline constexpr int kApexKnots = 7;        ///< about the sharp bend of a cone near its apex
-inline constexpr double kSharpBend = 0.25;  ///< length of a bend that is one, of a section
-inline constexpr int kRootSteps = 8;        ///< at most; each of them squares the error
+inline constexpr double kNearMeeting = 0.25;     ///< of a lead: less at an end is a meeting there
+inline constexpr double kNextToEnd = 1.0 / 256;  ///< of a part, to the place next to an end
+inline constexpr int kApexKnots = 7;             ///< about the sharp bend of a cone near its apex
+inline constexpr double kSharpBend = 0.25;       ///< length of a bend that is one, of a section
+inline constexpr int kRootSteps = 8;             ///< at most; each of them squares the error
 /// Relative error of V from which on a piece of a section has eight nodes.
 inline constexpr double kFineTolerance = 1e-5;
 
