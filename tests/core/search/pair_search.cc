@@ -248,7 +248,7 @@ class CaseJudge {
     Pose X = c_.X_AB;
     constexpr int kSteps = 4;
     for (int i = 0; i < kSteps; ++i) {
-      const Pose next = moved(X, shift, angle);
+      const Pose next = screwed(X, shift, angle);
       if (is_broken(X, next, shift, angle, kHalvings)) {
         Interference out;
         evaluate(c_.a.shape, c_.b.shape, broken_at_, out);
@@ -279,7 +279,7 @@ class CaseJudge {
       broken_rate_ = 0.5 * (from.rate + to.rate);
       return true;
     }
-    const Pose middle = moved(X, 0.5 * shift, 0.5 * angle);
+    const Pose middle = screwed(X, 0.5 * shift, 0.5 * angle);
     return is_broken(X, middle, 0.5 * shift, 0.5 * angle, halvings - 1) ||
            is_broken(middle, next, 0.5 * shift, 0.5 * angle, halvings - 1);
   }

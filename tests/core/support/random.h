@@ -67,4 +67,18 @@ inline Pose moved(const Pose& X, const Vec3& shift, const Vec3& angle) {
   return Pose{r, shift} * X;
 }
 
+/// The pose after a motion whose twist about the outside origin is (shift, angle) from its
+/// beginning to its end: two halves of it in turn are all of it.
+inline Pose screwed(const Pose& X, const Vec3& shift, const Vec3& angle) {
+  const double size = angle.norm();
+  if (!(size > 0.0)) return Pose{Mat3::Identity(), shift} * X;
+  const double half_sine = std::sin(0.5 * size) / size;
+  const double third = size > 1e-2 ? (size - std::sin(size)) / (size * size * size)
+                                   : (1.0 - size * size / 20.0) / 6.0;
+  const Vec3 across = angle.cross(shift);
+  return Pose{turn(angle, size),
+              shift + 2.0 * half_sine * half_sine * across + third * angle.cross(across)} *
+         X;
+}
+
 }  // namespace volcontact::test
