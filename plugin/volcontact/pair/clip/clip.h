@@ -27,10 +27,10 @@ struct ClipScratch {
 ///
 ///   V = 1/3 sum over faces of int x . n dS, with x from a point of the overlap; moments likewise
 ///
-/// volume_error bounds the rounding; a volume below it is reported as none. One solid inside the
-/// other, and a solid pierced so evenly that S is rounding noise: S = 0, no normal, and no depth
-/// (but in a half-space depth is always along its axis). Faces of both solids in one plane, facing
-/// the same way, count as B's.
+/// volume_error bounds the rounding; a volume below it is reported as none, with an error that
+/// holds it. One solid inside the other, and a solid pierced so evenly that S is rounding noise: S
+/// = 0, no normal, and no depth (but in a half-space depth is always along its axis). Faces of both
+/// solids in one plane, facing the same way, count as B's.
 VolumeMetrics clip(const HalfSpace& a, const Box& b, const Pose& X_AB, ClipScratch& scratch);
 VolumeMetrics clip(const HalfSpace& a, const ConvexPolytope& b, const Pose& X_AB,
                    ClipScratch& scratch);

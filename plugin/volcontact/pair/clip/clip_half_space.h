@@ -138,7 +138,7 @@ VolumeMetrics measure_below(std::span<const Vec3> corners, int faces, Loop&& loo
   }
   lid.add_to(sum);
   sum.area = lid.area();
-  if (!(sum.volume > sum.volume_error(rounding))) return VolumeMetrics{};
+  if (!(sum.volume > sum.volume_error(rounding))) return sum.none(rounding);
   VolumeMetrics m = sum.metrics(rounding);
   const Vec3 moved = shift + sum.origin;
   m.depth_moment = std::max(0.0, -(m.centroid.z() + sum.origin.z()) * m.volume);

@@ -36,7 +36,7 @@ class Region {
   VolumeMetrics measure(const Vec3& local_origin) {
     sum_faces();
     const double surface = sum_.area + sum_.counter_area;
-    if (!(sum_.volume > sum_.volume_error(rounding_))) return VolumeMetrics{};
+    if (!(sum_.volume > sum_.volume_error(rounding_))) return sum_.none(rounding_);
     VolumeMetrics m = sum_.metrics(rounding_);
     const Vec3 shift = local_origin + sum_.origin;
     m.centroid += shift;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -72,6 +73,13 @@ struct RegionSum {
   /// Bound of the rounding in the volume, when positions are known to `rounding` [m].
   double volume_error(double rounding) const {
     return 8.0 * kEpsilon * volume + 2.0 * rounding * (area + counter_area);
+  }
+
+  /// A volume that its rounding may have made: none, with an error that holds what may be there.
+  VolumeMetrics none(double rounding) const {
+    VolumeMetrics m;
+    m.volume_error = volume_error(rounding) + std::max(0.0, volume);
+    return m;
   }
 
   /// Volume with its error, areas, centroid and inertia; the centroid still relative to `origin`.

@@ -260,6 +260,36 @@ TEST(Clip, TouchingIsNothing) {
           .volume > 1e-30);
 }
 
+// Plates that lie on a face by a few units in the last place: what is reported, or none, is the
+// plate's area times what the numbers of the pose say, within the error.
+TEST(Clip, NothingIsKnownToTheRounding) {
+  Random random(19);
+  int none = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3 half(random.uniform(0.05, 0.4), random.uniform(0.05, 0.4),
+                    random.log_uniform(1e-6, 1e-2));
+    const double thick = random.log_uniform(0.01, 1.0);
+    const Box plate({.half_sizes = half}), table({.half_sizes = Vec3(3.0, 3.0, thick)});
+    const double height = thick + half.z() - random.log_uniform(1e-18, 1e-13);
+    const long double depth = static_cast<long double>(thick) + half.z() - height;
+    const double expected = static_cast<double>(std::max(0.0L, depth)) * 4.0 * half.x() * half.y();
+    const double slack = 1e-15 * half.z() * half.x() * half.y();
+    const Mat3 R = test::turn(Vec3::UnitZ(), random.uniform(0.0, 2.0 * kPi)) *
+                   Vec3(1.0, -1.0, -1.0).asDiagonal();
+    const Vec3 at(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), height);
+    for (const VolumeMetrics& m :
+         {clipped(table, plate, {R, at}), clipped(polytope_of(table), plate, {R, at}),
+          clipped(polytope_of(table), polytope_of(plate), {R, at}),
+          clipped(HalfSpace(), plate, {R, at - Vec3(0.0, 0.0, thick)}),
+          clipped(HalfSpace(), polytope_of(plate), {R, at - Vec3(0.0, 0.0, thick)})}) {
+      // Of the half-space the height is another number, as far off as its last place.
+      EXPECT_NEAR(m.volume, expected, m.volume_error + slack) << i;
+      none += !m.touching();
+    }
+  }
+  EXPECT_GT(none, 1000);
+}
+
 TEST(Clip, ZeroSizesAreNothing) {
   Random random(7);
   const Box solid({.half_sizes = Vec3(0.5, 0.4, 0.3)});
