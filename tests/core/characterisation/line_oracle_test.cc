@@ -58,6 +58,25 @@ TEST(LineOracle, KnowsTheVolumesOfOverlaps) {
                 kPi * cap * cap * (r - cap / 3.0), "cap");
 }
 
+// Few lines meet a needle at first: what they saw of it is not all there is.
+TEST(LineOracle, KnowsNeedles) {
+  Random random(4);
+  for (int i = 0; i < 60; ++i) {
+    const double r = random.log_uniform(2e-5, 1e-2), h = random.uniform(0.05, 0.3);
+    const bool is_cone = i % 2 == 1;
+    const ImplicitSolid needle =
+        is_cone ? ImplicitSolid::frustum(r, 0.0, h) : ImplicitSolid::capsule(r, h);
+    const double volume = kPi * r * r * (is_cone ? 2.0 / 3.0 * h : 2.0 * h + 4.0 / 3.0 * r);
+    LineOracle oracle(ImplicitSolid::box(Vec3(0.4, 0.5, 0.6)), needle,
+                      static_cast<std::uint64_t>(i));
+    LineEstimate lines;
+    for (int level = i % 3; level <= 3; ++level) lines = oracle.estimate(level);
+    EXPECT_NEAR(lines.volume, volume, 2.0 * lines.volume_error + 0.05 * volume)
+        << i << ": radius " << r << ", half length " << h;
+    EXPECT_LE(lines.volume_error, 1.5 * volume) << i;
+  }
+}
+
 TEST(LineOracle, KnowsComposedSolids) {
   const double R = 0.3, r = 0.2, h = 0.25;
   const ImplicitSolid pipe =

@@ -165,11 +165,13 @@ LineEstimate LineOracle::estimate(int level) {
   }
   result.share = static_cast<double>(hits) / kLines[level][0];
   result.area_vector = frame_ * Vec3(sums[0].flux, sums[1].flux, sums[2].flux);
-  // What two convex solids have in common hangs together: the lines have met nearly all of it.
-  if (a_.is_convex() && b_.is_convex() && all.volume > 0.0) {
+  // What two convex solids have in common hangs together: the lines have met nearly all of it where
+  // many of them did. Of a needle few do, and any part of it may be between them.
+  if (a_.is_convex() && b_.is_convex() && hits >= kFewHits) {
     const Vec3 size = high_ - low_;
-    const Vec3 margin =
-        0.1 * (all.high - all.low) + 4.0 / std::sqrt(static_cast<double>(kLines[level][0])) * size;
+    const double between = 0.1 + 1.0 / std::sqrt(static_cast<double>(hits));
+    const Vec3 margin = between * (all.high - all.low) +
+                        4.0 / std::sqrt(static_cast<double>(kLines[level][0])) * size;
     low_ = low_.cwiseMax(all.low - margin);
     high_ = high_.cwiseMin(all.high + margin);
   }

@@ -38,7 +38,7 @@ class LineOracle {
   double most_volume() const { return most_volume_; }
 
   /// All lines of a level, from 0. The window narrows to what the lines of earlier calls hit where
-  /// both solids are convex.
+  /// both solids are convex and many of the lines hit them.
   LineEstimate estimate(int level);
 
  private:
