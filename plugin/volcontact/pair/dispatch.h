@@ -286,10 +286,9 @@ class Dispatch<TypeList<Engines...>> {
     }
 
     bool accepts(const Service& service) {
-      // Nothing of what follows compares an answer of zeros with the limits.
-      const bool compares = !out_.sites.empty() || out_.total.volume_error > 0.0;
-      const OverlapLimits a = compares ? dispatch::limits_of_shape(q_.a) : OverlapLimits{};
-      const OverlapLimits b = compares ? dispatch::limits_of_shape(q_.b) : OverlapLimits{};
+      if (is_none()) return true;
+      const OverlapLimits a = dispatch::limits_of_shape(q_.a);
+      const OverlapLimits b = dispatch::limits_of_shape(q_.b);
       if (!service.has_bounds && !service.exact && is_doubtful(out_.total, a, b)) return false;
       bool possible = dispatch::are_possible(a, b, q_.X_AB, out_);
       if (service.has_bounds && !possible && out_.total.status != Status::kInvalid) {
@@ -307,6 +306,15 @@ class Dispatch<TypeList<Engines...>> {
       }
       if (possible) dispatch::bound_depth_moments(a, b, out_);
       return possible;
+    }
+
+    // The most frequent answer, in which there is nothing to doubt.
+    bool is_none() {
+      VolumeMetrics& m = out_.total;
+      if (!out_.sites.empty() || m.touching() || m.status != Status::kOk) return false;
+      if (m.volume_error != 0.0 || !is_finite(m)) return false;
+      m.depth_moment = 0.0;
+      return true;
     }
 
     bool settle_no_number() {
