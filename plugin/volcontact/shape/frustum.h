@@ -60,11 +60,14 @@ class Frustum {
   void pieces(PieceList& list) const;
   template <typename Writer>
   void write_faces(Writer& writer) const {
-    constexpr double kStraight = 1e-12;  // radii that differ less are one, relatively
+    // An apex as far away as the digits of a double are long says less of the wall, by its
+    // rounding, than a tube of the mean radius: nothing is nearer to a wall that leans by less.
+    constexpr double kStraight = 1e-8;
     const double mean = 0.5 * (p_.bottom_radius + p_.top_radius);
     const double slope = (p_.top_radius - p_.bottom_radius) / (2.0 * p_.half_length);
-    if (std::abs(slope) * p_.half_length < kStraight * mean) {
-      writer.round({1.0 / mean, 1.0 / mean, 0.0}, Vec3::Zero());
+    const double off = std::abs(slope) * p_.half_length;
+    if (off < kStraight * mean) {
+      writer.round({1.0 / mean, 1.0 / mean, 0.0}, Vec3::Zero(), off);
     } else {
       writer.cone(slope, -mean / slope);
     }

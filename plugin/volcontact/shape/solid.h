@@ -68,11 +68,11 @@ concept ConvexSolid = Solid<S> && requires(const S& solid, const Vec3& x) {
 
 /// What `write_faces` may say, in the solid's frame.
 struct AnyFaces {
-  void plane(const Vec3&, double) {}       ///< normal . x <= offset
-  void round(const Vec3&, const Vec3&) {}  ///< |diag(scales) (x - center)| <= 1
-  void cone(double, double) {}             ///< sqrt(x^2 + y^2) <= slope (z - apex)
-  void rounded_tube(double, double) {}     ///< radius, half_length
-  void end(double, double, double) {}      ///< side z <= half_length, with its radius
+  void plane(const Vec3&, double) {}                     ///< normal . x <= offset
+  void round(const Vec3&, const Vec3&, double = 0.0) {}  ///< |diag(scales) (x - center)| <= 1
+  void cone(double, double) {}                           ///< sqrt(x^2 + y^2) <= slope (z - apex)
+  void rounded_tube(double, double) {}                   ///< radius, half_length
+  void end(double, double, double) {}                    ///< side z <= half_length, with its radius
 };
 /// What `write_parts` may say, in the solid's frame.
 struct AnyParts {

@@ -32,6 +32,7 @@ struct RoundFace {
   Owner owner;
   bool cone = false;
   CapsulePart part = CapsulePart::kNone;
+  double off = 0.0;  ///< at most, from the face of the solid that it stands for [m]
 
   double level() const { return cone ? 0.0 : 1.0; }
   Vec3 weighted(const Vec3& y) const { return {y.x(), y.y(), cone ? -y.z() : y.z()}; }
@@ -115,8 +116,10 @@ class FaceWriter {
     faces_.planes.push_back({normal, offset + normal.dot(X_.translation), owner_});
   }
   /// |diag(scales) (x - center)| <= 1: a ball, an ellipsoid, or a tube about z where that scale is
-  /// 0.
-  void round(const Vec3& scales, const Vec3& center_S) { add_round(scales, center_S); }
+  /// 0. The face may be `off` by so much.
+  void round(const Vec3& scales, const Vec3& center_S, double off = 0.0) {
+    add_round(scales, center_S).off = off;
+  }
   /// sqrt(x^2 + y^2) <= slope (z - apex).
   void cone(double slope, double apex) {
     add_round({1.0, 1.0, slope}, {0.0, 0.0, apex}).cone = true;

@@ -28,10 +28,11 @@ constexpr double kWhole = 0.999;     // share of a solid in the overlap, that is
 // Of the smaller solid. An overlap of 1e-9 is not to be missed, and from a far corner of a thin one
 // the window sees a small part of it.
 constexpr double kLeastSeen = 1e-12;
-constexpr double kSamePlace = 1e-9;   // of the height of an overlap
-constexpr double kRounding = 2e-15;   // of a place, per size
-constexpr int kLeastArcs = 4;         // where no corners are known
-constexpr double kWidestAngle = 2.3;  // of an arc between corners [rad]
+constexpr double kSamePlace = 1e-9;      // of the height of an overlap
+constexpr double kRounding = 2e-15;      // of a place, per size
+constexpr double kApexRounding = 1e-15;  // of the wall of a cone, per distance of its apex
+constexpr int kLeastArcs = 4;            // where no corners are known
+constexpr double kWidestAngle = 2.3;     // of an arc between corners [rad]
 
 // The shortest turn of one direction to another that is not opposite. Eigen's FromTwoVectors, in
 // the same bits, without the singular values that it needs for opposite ones: seconds to compile.
@@ -172,6 +173,17 @@ class LinesRun {
              return &f == &face || f.part != CapsulePart::kNone ||
                     f(x) <= 4.0 * slack * f.half_gradient(x).norm();
            });
+  }
+
+  // How far round faces may be from those of the solids, by what they stand for or by the rounding
+  // of an apex far away.
+  double off_faces() const {
+    double most = 0.0;
+    for (const RoundFace& face : s_.faces.active.rounds) {
+      const double apex = face.cone ? (face.center - frame_.center).norm() : 0.0;
+      most = std::max({most, face.off, kApexRounding * apex});
+    }
+    return most;
   }
 
   bool is_flat(Owner owner) const { return !s_.faces.active.has_rounds(owner); }
@@ -414,7 +426,7 @@ class LinesRun {
     result.depth_moment = sums.depth_moment;
     result.depth = std::max(sums.high, s_.breaks.high) - std::min(sums.low, s_.breaks.low);
     // Of the pose, and of places that are worked out from it.
-    const double rounding = std::numeric_limits<double>::epsilon() * reach() *
+    const double rounding = (std::numeric_limits<double>::epsilon() * reach() + off_faces()) *
                             std::max(result.area, result.counter_area);
     const double error = std::max(error_, open_) + rounding;
     result.volume_error = error + outer_rule::kInnerError * result.volume;
