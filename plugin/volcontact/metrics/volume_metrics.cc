@@ -99,8 +99,9 @@ VolumeMetrics MomentSum::metrics() const {
 }
 
 bool is_finite(const VolumeMetrics& m) {
-  const double sum = m.volume + m.volume_error + m.area + m.counter_area + m.depth + m.depth_moment +
-                     m.centroid.sum() + m.inertia.sum() + m.area_vector.sum() + m.area_moment.sum();
+  const double sum = m.volume + m.volume_error + m.area + m.counter_area + m.depth +
+                     m.depth_moment + m.centroid.sum() + m.inertia.sum() + m.area_vector.sum() +
+                     m.area_moment.sum();
   if (std::isfinite(sum)) return true;
   return std::isfinite(m.volume) && m.centroid.allFinite() && m.inertia.allFinite() &&
          m.area_vector.allFinite() && m.area_moment.allFinite() && std::isfinite(m.area) &&
