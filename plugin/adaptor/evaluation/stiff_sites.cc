@@ -44,27 +44,29 @@ double mobility_across(const mjModel* m, mjData* d, const GeomPair& geoms, const
   return mobility_along(m, d, geoms, site.metrics.centroid, way.normalized(), row);
 }
 
-// Friction of a site, across its normal and about it, without what is rounding noise: solids that
-// lie still have no ratio of friction and slip.
-struct FrictionAt {
-  explicit FrictionAt(const SiteReport& site)
-      : force((site.force_on_A - site.normal_force * site.normal).norm()),
-        torque(std::abs(site.torque_on_A.dot(site.normal))) {
-    constexpr double kNoise = 1e-12;  // of the normal force
-    const double arm = std::sqrt(0.5 * site.metrics.inertia.trace() / site.metrics.volume);
-    if (force <= kNoise * site.normal_force) force = 0.0;
-    if (torque <= kNoise * arm * site.normal_force) torque = 0.0;
-  }
-  double force, torque;
-};
+// Whether nothing moves at a site but by rounding: neither friction nor the change of the normal
+// force over the step is more than noise beside that force. Solids that lie still have no ratio of
+// friction and slip.
+bool lies_still(const SiteReport& site, const SiteInputs& inputs, double h) {
+  constexpr double kNoFriction = 1e-12, kNoChange = 1e-9;  // of the normal force
+  const VolumeMetrics& metrics = site.metrics;
+  const double force = site.normal_force;
+  const double stiffness = inputs.normal_out.elastic / metrics.volume * metrics.area_vector.norm();
+  const double damping = inputs.normal_out.rolling_damping * metrics.volume;
+  if ((h * stiffness + damping) * std::abs(site.approach_speed) > kNoChange * force) return false;
+  const double arm = std::sqrt(0.5 * metrics.inertia.trace() / metrics.volume);
+  return (site.force_on_A - force * site.normal).norm() <= kNoFriction * force &&
+         std::abs(site.torque_on_A.dot(site.normal)) <= kNoFriction * arm * force;
+}
 
 // Whether friction without memory would throw the bodies back in an explicit step, faster than they
 // slide or spin now: h c > 2 m, with c the friction per slip. Once the slip is so small they would
 // chatter for ever.
 bool reverses_slip(const SiteReport& site, const InverseMass& inverse, double sliding, double h) {
-  const FrictionAt friction(site);
-  return h * friction.force * sliding > kEulerDamper * site.slip.norm() ||
-         h * friction.torque * inverse.about > kEulerDamper * std::abs(site.spin);
+  const double across = (site.force_on_A - site.normal_force * site.normal).norm();
+  if (h * across * sliding > kEulerDamper * site.slip.norm()) return true;
+  const double torque = std::abs(site.torque_on_A.dot(site.normal));
+  return h * torque * inverse.about > kEulerDamper * std::abs(site.spin);
 }
 
 // Whether friction that follows the patch shakes the bodies in an explicit step, where it could
@@ -72,9 +74,8 @@ bool reverses_slip(const SiteReport& site, const InverseMass& inverse, double sl
 bool shakes(const PairContact& pair, ContactReport& report, std::size_t site,
             const InverseMass& inverse, double sliding, double h) {
   const SiteReport& at = report.sites[site];
-  const FrictionAt friction(at);
-  if (friction.force == 0.0 && friction.torque == 0.0) return false;
   const double slip = at.slip.norm(), spin = std::abs(at.spin);
+  if (slip == 0.0 && spin == 0.0 && at.bristle_energy.sum() == 0.0) return false;
   const FrictionSlope slope =
       SiteLaws(pair.model, report, site).friction_slope(at.normal_force, at.slip, at.spin);
   if (!(h * slope.strength * sliding > kEulerDamper * slip ||
@@ -91,7 +92,8 @@ bool is_stiff(const mjModel* m, mjData* d, const PairContact& pair, ContactRepor
   const double h = m->opt.timestep;
   const InverseMass inverse = inverse_mass(m, pair.geoms);
   const Friction* friction = pair.model.laws().friction.get();
-  const bool rubs = friction && !most.friction_is_explicit;
+  const bool may_rub = friction && !most.friction_is_explicit;
+  const bool rubs = may_rub && !lies_still(report.sites[site], report.inputs[site], h);
   const auto throws_back = [&](double sliding) {
     if (friction->states().empty() && reverses_slip(report.sites[site], inverse, sliding, h)) {
       return true;
@@ -99,7 +101,8 @@ bool is_stiff(const mjModel* m, mjData* d, const PairContact& pair, ContactRepor
     return pair.friction_follows_patch && shakes(pair, report, site, inverse, sliding, h);
   };
   // Bodies yield by turning, too.
-  if (rubs && (shakes_at_rest(pair, h) || throws_back(kBall * inverse.along))) return true;
+  if (may_rub && shakes_at_rest(pair, h)) return true;
+  if (rubs && throws_back(kBall * inverse.along)) return true;
   const VolumeMetrics& metrics = report.sites[site].metrics;
   const SiteInputs& inputs = report.inputs[site];
   const double spread = 0.5 * metrics.inertia.trace() / metrics.volume;

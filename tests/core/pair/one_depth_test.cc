@@ -9,6 +9,7 @@
 #include "core/support/csg_solids.h"
 #include "core/support/evaluated.h"
 #include "core/support/meshes.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::one_depth_test {
 namespace {
@@ -79,6 +80,7 @@ TEST(OneDepth, APegAtTheEdgeOfAChamferedHole) {
   const Cylinder peg({.radius = kPeg, .half_length = kHalfPeg});
   const Mesh mesh = mesh_of(prism(kPeg, kHalfPeg, 256));
   for (const double tilt : {0.0, 0.02}) {
+    if (test::kSanitized && tilt == 0.0) continue;
     for (const double low : {.0078, .0079, .00799, .0082, .0086}) {
       for (const double aside : {.0003, .001}) {
         if (low - kCorner > 0.8 * aside) continue;

@@ -202,7 +202,10 @@ TEST(Csg, OwnMetricsOfBoredAndHollowSolidsAreClosedForms) {
 }
 
 TEST(Csg, OwnMetricsAndTheQuadratureAgree) {
-  for (const NamedSolid& named : kinds_of_solids()) {
+  constexpr std::size_t kEvery = test::cases(1, 4);
+  const std::vector<NamedSolid> kinds = kinds_of_solids();
+  for (std::size_t i = 0; i < kinds.size(); i += kEvery) {
+    const NamedSolid& named = kinds[i];
     const VolumeMetrics m = named.solid.own_metrics();
     const VolumeMetrics lines = csg_metrics_by_lines(named.solid);
     EXPECT_NEAR(m.volume, lines.volume, 1e-9 * m.volume) << named.name;

@@ -295,7 +295,7 @@ TEST(RoundColumns, ABarThroughTheMiddleTakesItsPart) {
       const Box box({.half_sizes = half});
       const Mesh bar = mesh_of(box_soup(half, 1 + axis));
       for (double off : {0.0, 1e-15, 1e-9, 1e-6}) {
-        for (int k = 0; k < 3; ++k) {
+        for (int k = 0; k < test::cases(3, 2); ++k) {
           // Turned about the bar, and along it: the middle stays on its axis.
           const Mat3 about = test::turn(Vec3::Unit(axis), k == 0 ? 0.0 : random.uniform(0.0, 6.0));
           Pose X_AB{about * test::turn(random.direction(), off), off * random.in_box(1.0)};
