@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace volcontact {
 namespace {
@@ -14,6 +15,15 @@ constexpr double kSlack = 1e-9;      // of places on faces, per radius of the ri
 constexpr int kMaxPlanes = 12;       // with more, corners are left to the refinement
 constexpr int kEdgeSteps = 12;       // places tried on an edge in search of the ring
 constexpr int kRootSteps = 8;
+constexpr int kWideRootSteps = 16;      // between places that are far apart
+constexpr int kDipSteps = 16;           // of the search for two roots between two places
+constexpr double kDipMargin = 0.2;      // of the bend, that a dip may go lower than it looks
+constexpr double kSmallHole = 0.1;      // R^2 - r^2, per R^2
+constexpr double kSlightLean = 0.1;     // sine of the angle between a plane and the axis
+constexpr double kSlightOffset = 1e-2;  // per R
+constexpr double kSwing = 4.0;          // angle by that sine or offset: half of a section's swing
+constexpr double kWidestSwing = 0.7;    // [rad]
+constexpr double kTail = 32.0;          // the same: beyond it little is left
 
 class TorusBreaks {
  public:
@@ -26,6 +36,7 @@ class TorusBreaks {
     if (planes.size() > kMaxPlanes) return;
     for (std::size_t i = 0; i < planes.size(); ++i) {
       touch(planes[i]);
+      swing(planes[i]);
       for (std::size_t j = 0; j < i; ++j) edge(planes[i], planes[j]);
     }
     for (const Rim& rim : faces_.rims) follow(rim);
@@ -49,7 +60,8 @@ class TorusBreaks {
   }
 
   // Where the line of a plane in a half-plane touches the disc: the distance of the line from its
-  // middle is a function of p = n_rho, and r^2 (p^2 + n_z^2) = (p R - c)^2.
+  // middle is a function of p = n_rho, and r^2 (p^2 + n_z^2) = (p R - c)^2. A ring without a hole
+  // has one such p and not two.
   void touch(const PlaneFace& plane) {
     const double n_xy = std::hypot(plane.normal.x(), plane.normal.y()), n_z = plane.normal.z();
     const double a = (major_ - minor_) * (major_ + minor_), c = plane.offset;
@@ -57,8 +69,9 @@ class TorusBreaks {
     const double square = minor_ * minor_ * (c * c + n_z * n_z * a);
     if (!(n_xy > 0.0)) return;
     const double to = std::atan2(plane.normal.y(), plane.normal.x());
-    for (double side : {-1.0, 1.0}) {
-      const double p = (b + side * std::sqrt(square)) / a;
+    const double larger = b + std::copysign(std::sqrt(square), b);
+    const double product = (c - minor_ * n_z) * (c + minor_ * n_z);  // of both p, times a
+    for (const double p : {larger / a, product / larger}) {
       if (!(std::abs(p) < n_xy)) continue;
       const double turn = std::acos(p / n_xy), across = std::hypot(p, n_z);
       const double way = (c - p * major_) / across;  // from the middle to the line, signed
@@ -66,6 +79,29 @@ class TorusBreaks {
         const double rho = major_ + way * p / across;
         const Vec3 x(rho * std::cos(angle), rho * std::sin(angle), way * n_z / across);
         if (inside(x)) angles_.push_back(angle);
+      }
+    }
+  }
+
+  // Near a plane that all but holds the axis a section changes from all to next to none in a small
+  // angle, and a ring with next to no hole has always some of it left. A plane that is nearer to
+  // the middle than it leans to the axis swings about the rim of the disc and need not touch it;
+  // another one touches it once, and what is left then falls like a power of the angle.
+  void swing(const PlaneFace& plane) {
+    const double a = (major_ - minor_) * (major_ + minor_), lean = std::abs(plane.normal.z());
+    if (a > kSmallHole * major_ * major_) return;
+    const double to = std::atan2(plane.normal.y(), plane.normal.x()), off = plane.offset / major_;
+    const auto note_p = [&](double p) {
+      if (std::abs(p) > kWidestSwing) return;
+      for (const double side : {-1.0, 1.0}) angles_.push_back(to + side * (0.5 * kPi - p));
+    };
+    if (std::abs(plane.offset) > 2.0 * lean * minor_) {
+      if (std::abs(off) > kSlightOffset) return;
+      for (const double p : {kSwing * off, kTail * off}) note_p(p);
+    } else if (lean < kSlightLean) {
+      for (const double p : {0.0, kSwing * lean, kTail * lean}) {
+        note_p(-p);
+        if (p > 0.0) note_p(p);
       }
     }
   }
@@ -130,34 +166,80 @@ class TorusBreaks {
               });
   }
 
-  // Between places that are not far apart, by bracketed false position. A closed curve ends where
-  // it began, at the same value: a root there is then seen, whatever its rounding.
+  // Between places that are not far apart, by bracketed false position; two close to each other
+  // from the place between them where the function is nearest to zero. A closed curve ends where it
+  // began, at the same value: a root there is then seen, whatever its rounding.
   template <typename Function, typename Use>
   static void each_root(Function&& f, double from, double to, Curve curve, Use&& use) {
-    const double first = f(from);
-    double x0 = from, f0 = first;
-    for (int i = 1; i <= kEdgeSteps; ++i) {
-      const double x1 = from + (to - from) * i / kEdgeSteps;
-      const double f1 = i == kEdgeSteps && curve == Curve::kClosed ? first : f(x1);
-      if ((f0 > 0.0) != (f1 > 0.0)) {
-        double a = x0, fa = f0, b = x1, fb = f1;
-        for (int step = 0; step < kRootSteps && fb != fa; ++step) {
-          const double x = b - fb * (b - a) / (fb - fa), fx = f(x);
-          if ((fx > 0.0) != (fb > 0.0)) {
-            a = b;
-            fa = fb;
-          } else {
-            fa *= 0.5;
-          }
-          b = x;
-          fb = fx;
-          if (fx == 0.0) break;
-        }
-        use(b);
-      }
-      x0 = x1;
-      f0 = f1;
+    double x[kEdgeSteps + 2], y[kEdgeSteps + 2];
+    for (int i = 0; i <= kEdgeSteps; ++i) {
+      x[i] = from + (to - from) * i / kEdgeSteps;
+      y[i] = i == kEdgeSteps && curve == Curve::kClosed ? y[0] : f(x[i]);
     }
+    int last = kEdgeSteps;
+    if (curve == Curve::kClosed) {
+      x[++last] = to + (to - from) / kEdgeSteps;
+      y[last] = y[1];
+    }
+    for (int i = 0; i < kEdgeSteps; ++i) {
+      if ((y[i] > 0.0) != (y[i + 1] > 0.0)) use(root_between(f, x[i], y[i], x[i + 1], y[i + 1]));
+    }
+    for (int i = 1; i < last; ++i) {
+      if (!dips(y + i)) continue;
+      const double sign = y[i] > 0.0 ? 1.0 : -1.0;
+      const double at = lowest([&](double t) { return sign * f(t); }, x[i - 1], x[i + 1]);
+      const double value = f(at);
+      if ((value > 0.0) == (y[i] > 0.0)) continue;
+      use(root_between(f, x[i - 1], y[i - 1], at, value, kWideRootSteps));
+      use(root_between(f, at, value, x[i + 1], y[i + 1], kWideRootSteps));
+    }
+  }
+
+  // Whether the middle one of three values of one sign is nearest to zero, and a parabola through
+  // them comes near zero or beyond.
+  static bool dips(const double* y) {
+    const double before = std::abs(y[-1]), here = std::abs(y[0]), after = std::abs(y[1]);
+    if ((y[-1] > 0.0) != (y[0] > 0.0) || (y[0] > 0.0) != (y[1] > 0.0)) return false;
+    if (!(here <= before && here <= after)) return false;
+    const double bend = before - 2.0 * here + after, slope = 0.5 * (after - before);
+    return here * bend < 0.5 * slope * slope + kDipMargin * bend * bend;
+  }
+
+  // By golden section; the first place found below zero will do.
+  template <typename Function>
+  static double lowest(Function&& f, double x0, double x3) {
+    constexpr double kGolden = 0.6180339887498949;
+    double x1 = x3 - kGolden * (x3 - x0), x2 = x0 + kGolden * (x3 - x0), f1 = f(x1), f2 = f(x2);
+    for (int step = 0; step < kDipSteps && f1 >= 0.0 && f2 >= 0.0; ++step) {
+      if (f1 < f2) {
+        x3 = x2;
+        x2 = std::exchange(x1, x2 - kGolden * (x2 - x0));
+        f2 = std::exchange(f1, f(x1));
+      } else {
+        x0 = x1;
+        x1 = std::exchange(x2, x1 + kGolden * (x3 - x1));
+        f1 = std::exchange(f2, f(x2));
+      }
+    }
+    return f1 < f2 ? x1 : x2;
+  }
+
+  template <typename Function>
+  static double root_between(Function&& f, double a, double fa, double b, double fb,
+                             int steps = kRootSteps) {
+    for (int step = 0; step < steps && fb != fa; ++step) {
+      const double x = b - fb * (b - a) / (fb - fa), fx = f(x);
+      if ((fx > 0.0) != (fb > 0.0)) {
+        a = b;
+        fa = fb;
+      } else {
+        fa *= 0.5;
+      }
+      b = x;
+      fb = fx;
+      if (fx == 0.0) break;
+    }
+    return b;
   }
 
   const FaceSet& faces_;

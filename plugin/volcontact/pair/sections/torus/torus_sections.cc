@@ -15,20 +15,19 @@
 namespace volcontact {
 namespace {
 
-constexpr double kAxial = 1e-2;         // of directions, and of R: a face that holds the axis
-constexpr double kLostFace = 1e-5;      // of the area: a face that the sums have missed
-constexpr double kWidestAngle = 1.6;    // of an undivided arc [rad]
-constexpr double kSameAngle = 1e-11;    // [rad]
-constexpr double kNearRangeEnd = 3e-4;  // of a range: to which its ends are known at least
-constexpr double kOnAxis = 1e-13;       // of a plane from the axis, per radius; a body may be thin
-constexpr double kInPlane = 1e-9;       // per R, and the sine of a slope: a rim of a face
-constexpr double kAlongAxis = 1e-8;     // of a plane: the sine of its slope
-constexpr double kEndError = 5.0;       // error by its estimate where an arc ends in nothing
-constexpr double kByChance = 10.0;      // of an error, by its estimate, that is small by chance
-constexpr double kTarget = 1e-2;    // share of the tolerance asked of an arc: kinks may be hidden
-constexpr double kGapError = 3.0;   // error of V by the gap on a first look, at most as measured
-constexpr double kLeftOver = 1e-4;  // of a surface: so little of the other is told by rounding
-constexpr double kWhole = 0.999;    // share of a solid in the overlap, that is all of it
+constexpr double kAxial = 1e-2;       // of directions, and of R: a face that holds the axis
+constexpr double kLostFace = 1e-5;    // of the area: a face that the sums have missed
+constexpr double kWidestAngle = 1.6;  // of an undivided arc [rad]
+constexpr double kSameAngle = 1e-11;  // [rad]
+constexpr double kOnAxis = 1e-13;     // of a plane from the axis, per radius; a body may be thin
+constexpr double kInPlane = 1e-9;     // per R, and the sine of a slope: a rim of a face
+constexpr double kAlongAxis = 1e-8;   // of a plane: the sine of its slope
+constexpr double kEndError = 5.0;     // error by its estimate where an arc ends in nothing
+constexpr double kByChance = 10.0;    // of an error, by its estimate, that is small by chance
+constexpr double kTarget = 1e-2;      // share of the tolerance asked of an arc: kinks may be hidden
+constexpr double kGapError = 3.0;     // error of V by the gap on a first look, at most as measured
+constexpr double kLeftOver = 1e-4;    // of a surface: so little of the other is told by rounding
+constexpr double kWhole = 0.999;      // share of a solid in the overlap, that is all of it
 
 class TorusSectionsRun {
  public:
@@ -97,24 +96,25 @@ class TorusSectionsRun {
   };
 
   // The breaks within a range, in order, with its ends. A whole turn begins at a break. A break
-  // near an end is the end, known better: a plane across the tube ends a section at once.
+  // beyond the last column found is the end, known better: a plane across the tube ends a section
+  // at once.
   void set_corners(TorusRange& range) {
     corners_.clear();
     if (range.whole && !s_.breaks.empty()) {
       range.low = s_.breaks[0];
       range.high = range.low + 2.0 * kPi;
     }
-    const double near_end = kNearRangeEnd * (range.high - range.low);
     for (double angle : s_.breaks) {
       const double turned =
           angle - 2.0 * kPi * std::floor((angle - range.low + kSameAngle) / (2.0 * kPi));
       if (turned < range.high + kSameAngle) corners_.push_back(turned);
     }
     std::sort(corners_.begin(), corners_.end());
-    if (corners_.empty() || range.whole || corners_.front() > range.low + near_end) {
+    if (corners_.empty() || range.whole || corners_.front() > range.full_low + kSameAngle) {
       corners_.insert(corners_.begin(), range.low);
     }
-    if (range.whole || corners_.back() < range.high - near_end) corners_.push_back(range.high);
+    if (range.whole || corners_.back() < range.full_high - kSameAngle)
+      corners_.push_back(range.high);
     corners_.erase(std::unique(corners_.begin(), corners_.end(),
                                [](double a, double b) { return b - a < kSameAngle; }),
                    corners_.end());

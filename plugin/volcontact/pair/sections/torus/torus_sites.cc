@@ -215,7 +215,7 @@ class SiteSearch {
     }
     if (!any) return;
     if (first == n) {
-      s_.ranges.push_back({start_ - kPi, start_ + kPi, true});
+      s_.ranges.push_back({start_ - kPi, start_ + kPi, start_ - kPi, start_ + kPi, true});
       return;
     }
     for (std::size_t k = 0; k < n;) {
@@ -274,7 +274,7 @@ class SiteSearch {
         }
       }
     }
-    s_.ranges.push_back({empty[0], empty[1], false});
+    s_.ranges.push_back({empty[0], empty[1], full[0], full[1], false});
   }
 
   const ConvexView& body_;

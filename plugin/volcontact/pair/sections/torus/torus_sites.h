@@ -10,8 +10,9 @@ namespace volcontact {
 
 /// A range of half-planes through the axis of a ring that meet an overlap [rad].
 struct TorusRange {
-  double low, high;
-  bool whole;  ///< all of the turn
+  double low, high;            ///< nothing beyond
+  double full_low, full_high;  ///< columns that far out at least
+  bool whole;                  ///< all of the turn
 };
 
 /// Memory of the search.

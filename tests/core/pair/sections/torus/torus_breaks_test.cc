@@ -33,6 +33,21 @@ TEST(TorusBreaks, APlaneAlongTheAxisTouchesWhereItMeetsTheEquators) {
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(found[i], expected[i], 1e-12);
 }
 
+// Without a hole a line along the axis touches the disc at the outer equator alone.
+TEST(TorusBreaks, APlaneTouchesARingWithoutAHoleOnce) {
+  const double d = 0.15;
+  FaceSet faces;
+  faces.planes.push_back({Vec3::UnitY(), d, Owner::kB});
+  for (const double hole : {0.0, 1e-16, 1e-9}) {
+    std::vector<double> found;
+    find_torus_breaks(faces, kMajor + hole, kMajor, found);
+    std::sort(found.begin(), found.end());
+    ASSERT_EQ(found.size(), 2u) << hole;
+    EXPECT_NEAR(found[0], std::asin(d / (2.0 * kMajor)), 1e-8);
+    EXPECT_NEAR(found[1], kPi - found[0], 1e-8);
+  }
+}
+
 TEST(TorusBreaks, ThePlaneUnderTheRingHasNone) {
   FaceSet faces;
   faces.planes.push_back({Vec3::UnitZ(), -0.05, Owner::kB});
@@ -52,6 +67,33 @@ TEST(TorusBreaks, CornersAndPiercedEdgesAreFound) {
   EXPECT_TRUE(has(0.0));  // the corner, and the edges along x and z
   // The edge (0.3, y, 0) leaves the outer equator.
   EXPECT_TRUE(has(std::acos(0.3 / (kMajor + kMinor))));
+}
+
+// A rim about the middle of the ring, in a plane through its axis, a little smaller than the outer
+// equator: it leaves the tube and comes back on a short arc. At the angle a from the equator it is
+// inside where (rho cos a - R)^2 + (rho sin a)^2 < r^2.
+TEST(TorusBreaks, ARimThatIsInTheTubeForAShortWhileIsSeen) {
+  for (const double radius : {0.3999, 0.399, 0.39, 0.37}) {
+    for (const double spin : {0.0, 0.1, 0.25, 0.4}) {
+      const double x = (radius * radius + kMajor * kMajor - kMinor * kMinor) / (2.0 * kMajor);
+      if (!(x < radius)) continue;
+      // A hair beside the axis, so that places on the rim have different angles.
+      const double beside = 0.01;
+      FaceSet faces;
+      const Vec3 u(std::cos(spin), 0.0, std::sin(spin)), v(-std::sin(spin), 0.0, std::cos(spin));
+      faces.rims.push_back({{0.0, beside, 0.0}, radius * u, radius * v, Owner::kB});
+      // There rho^2 = x^2 + beside^2 and x^2 + z^2 = radius^2.
+      const double square = radius * radius + beside * beside;
+      const double rho = (square + kMajor * kMajor - kMinor * kMinor) / (2.0 * kMajor);
+      if (!(rho * rho < square)) continue;
+      const double expected = std::asin(beside / rho);
+      const std::vector<double> found = breaks(faces);
+      const auto count = std::count_if(found.begin(), found.end(), [&](double a) {
+        return std::min(std::abs(a - expected), std::abs(a - (kPi - expected))) < 2e-5;
+      });
+      EXPECT_GE(count, 4) << radius << " " << spin;
+    }
+  }
 }
 
 TEST(TorusBreaks, TheRimOfATubeIsFollowed) {
