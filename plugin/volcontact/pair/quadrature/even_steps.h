@@ -12,8 +12,9 @@ namespace volcontact {
 /// Eight equal steps of theta over half a turn: the rule for integrands that are even and periodic
 /// in theta, such as what grows from nothing to nothing between angle = middle -+ half cos theta.
 struct EvenSteps {
-  static constexpr double kFallError = 10.0;    ///< error by the fall of waves, as measured
-  static constexpr double kSymmetric = 1e-3;    ///< of the second wave: what the odd ones are then
+  static constexpr double kHalfSeen = 0.1;    ///< of the second wave: of odd ones that tell little
+  static constexpr double kFallError = 10.0;  ///< error by the fall of waves, as measured
+  static constexpr double kSymmetric = 1e-3;  ///< of the second wave: what the odd ones are then
   static constexpr double kUnsteadyFall = 3.0;  ///< by the fall from the wave before
   double cos[kLanes][kLanes], sin[kLanes];      ///< of multiples 0 to 7 of theta, and of theta
 
@@ -45,6 +46,18 @@ struct EvenSteps {
       return last;
     }
     return first > 0.0 ? last * std::min(1.0, kFallError * last / first) : last;
+  }
+  /// Whether the integrand is nearly symmetric about its middle and so has four values, not eight,
+  /// and of their waves, which are the even ones, more than `share` of the sum is left at the end:
+  /// a kink that they stepped over may be as large. Closed surfaces look closed whatever it is.
+  bool may_hide_a_kink(const double* terms, double share) const {
+    double waves[kLanes] = {};
+    for (int i = 0; i < kLanes; ++i) {
+      for (int k = 0; k < kLanes; ++k) waves[k] += (k == 0 ? 1.0 : 2.0) * terms[i] * cos[k][i];
+    }
+    const double odd =
+        std::abs(waves[1]) + std::abs(waves[3]) + std::abs(waves[5]) + std::abs(waves[7]);
+    return odd < kHalfSeen * std::abs(waves[2]) && std::abs(waves[6]) > share * waves[0];
   }
 };
 

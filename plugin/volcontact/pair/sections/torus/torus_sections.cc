@@ -27,7 +27,8 @@ constexpr double kByChance = 10.0;    // of an error, by its estimate, that is s
 constexpr double kTarget = 1e-2;      // share of the tolerance asked of an arc: kinks may be hidden
 constexpr double kGapError = 3.0;     // error of V by the gap on a first look, at most as measured
 constexpr double kLeftOver = 1e-4;    // of a surface: so little of the other is told by rounding
-constexpr double kWhole = 0.999;      // share of a solid in the overlap, that is all of it
+constexpr double kHalfwayError = 0.6;  // of even steps, by those halfway between: half
+constexpr double kWhole = 0.999;       // share of a solid in the overlap, that is all of it
 
 class TorusSectionsRun {
  public:
@@ -234,7 +235,24 @@ class TorusSectionsRun {
       return false;
     }
     s_.sections.accept_batch();
-    return true;
+    const double share = outer_rule::kTarget * options_.tolerance;
+    if (s_.faces.rounds.empty() || !steps.may_hide_a_kink(section, share)) return true;
+    // The sum over half-planes in the middle between these has the opposite error.
+    double between = 0.0;
+    for (int i = 0; i < kLanes; ++i) {
+      const double theta = kPi * i / kLanes, angle = middle - half * std::cos(theta);
+      u[i] = std::cos(angle);
+      v[i] = std::sin(angle);
+      weight[i] = half * kPi / kLanes * std::sin(theta);
+    }
+    s_.sections.integrate(s_.path, u, v, weight, section);
+    for (int i = 0; i < kLanes; ++i) between += section[i] * weight[i];
+    error_ = std::max(error_, kHalfwayError * std::abs(between - volume));
+    if (error_ <= options_.tolerance * volume) return true;
+    s_.sections.clear();
+    even_error_ = std::exchange(error_, 0.0);
+    even_volume_ = volume;
+    return false;
   }
 
   void integrate_arc(const Arc& arc, double x_from, double x_to, int divisions) {
