@@ -112,12 +112,14 @@ VolumeMetrics clip(const Box& a, const Box& b, const Pose& X_AB, ClipScratch& sc
   }
   // The box that fewer planes of the other one cut is begun with, unless it is so large that its
   // corners lose digits.
-  const Excess of_a(half_a, R_BA, -(R_BA * p_AB), half_b), of_b(half_b, R_AB, p_AB, half_a);
-  if (half_a.sum() < half_b.sum() && of_a.count(rounding) < of_b.count(rounding)) {
-    start(planes, scratch);
-    const double of_corners = rounding + rounding_at(planes.origin.lpNorm<1>());
-    if (!cut(box, of_a, of_corners, scratch.polytope)) return VolumeMetrics{};
-    return Region(planes, box, of_corners, scratch).measure(planes.origin);
+  if (half_a.sum() < half_b.sum()) {
+    const Excess of_a(half_a, R_BA, -(R_BA * p_AB), half_b), of_b(half_b, R_AB, p_AB, half_a);
+    if (of_a.count(rounding) < of_b.count(rounding)) {
+      start(planes, scratch);
+      const double of_corners = rounding + rounding_at(planes.origin.lpNorm<1>());
+      if (!cut(box, of_a, of_corners, scratch.polytope)) return VolumeMetrics{};
+      return Region(planes, box, of_corners, scratch).measure(planes.origin);
+    }
   }
   return clip_solids(planes, box, box.center, rounding, scratch);
 }

@@ -51,7 +51,7 @@ struct PosedPolytope {  // the polytope B
 };
 
 // The graph of a box whose faces have the numbers from `first_face` on.
-inline PolytopeGraph box_graph(int first_face) {
+inline PolytopeGraph graph_with_faces_from(int first_face) {
   std::vector<Vec3> corners(8);
   place_corners(Vec3::Ones(), Mat3::Identity(), Vec3::Zero(), corners.data());
   std::vector<std::vector<int>> loops;
@@ -62,14 +62,14 @@ inline PolytopeGraph box_graph(int first_face) {
 }
 
 inline void start(const PosedBox& b, ClipScratch& scratch) {
-  static const PolytopeGraph graph = box_graph(0);
+  static const PolytopeGraph graph = graph_with_faces_from(0);
   scratch.polytope.start(graph);
   place_corners(b.half, b.rotation, b.center, scratch.polytope.points().data());
 }
 
 // With the box A, to be cut by the planes of another one.
 inline void start(const AlignedBox& a, ClipScratch& scratch) {
-  static const PolytopeGraph graph = box_graph(6);
+  static const PolytopeGraph graph = graph_with_faces_from(6);
   scratch.polytope.start(graph);
   place_corners(a.half, Mat3::Identity(), -a.origin, scratch.polytope.points().data());
 }

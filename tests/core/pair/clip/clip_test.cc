@@ -475,6 +475,43 @@ TEST(Clip, ShallowFaceContactKeepsItsDigitsFarFromTheOrigin) {
   EXPECT_NEAR(m.depth / 1e-6, 1.0, 1e-9);
 }
 
+// A small box that stands in the face of a large one, turned about its axis and tilted, with all of
+// its lower face inside: one plane cuts it, and five of its own would cut the large box. V is that
+// face times the depth of its middle along the small box's axis.
+TEST(Clip, ASmallBoxInAFaceOfALargeOneIsAPrism) {
+  const Vec3 half(0.1, 0.08, 0.05), large(0.4, 0.5, 0.3);
+  const Box small({.half_sizes = half}), block({.half_sizes = large});
+  Random random(14);
+  for (const double most_tilt : {0.0, 1e-15, 1e-9, 1e-3, 0.1}) {
+    for (int i = 0; i < 50; ++i) {
+      // Upside down in the small box's frame: its upper face is in the block's lower one.
+      const double tilt = most_tilt * random.uniform(-1.0, 1.0), turn = random.uniform(-3.0, 3.0);
+      const Mat3 R = (Eigen::AngleAxisd(tilt, Vec3::UnitX()) *
+                      Eigen::AngleAxisd(i % 5 == 0 ? 0.0 : turn, Vec3::UnitZ()))
+                         .toRotationMatrix();
+      const double depth = 0.012 + random.uniform(0.0, 0.02);
+      const Vec3 normal = -R.col(2);  // out of the block's lower face
+      const double d = depth * -normal.z();
+      const Vec3 lower = Vec3(0.0, 0.0, half.z()) + d * normal;  // below the middle of that face
+      const Vec3 aside = i % 7 == 0 ? 0.0 * R.col(0) : R.col(0) * random.uniform(-0.2, 0.2);
+      const Pose X{R, lower + aside - large.z() * normal};
+      const double expected = 4.0 * half.x() * half.y() * depth;
+      const VolumeMetrics m = clipped(small, block, X);
+      const VolumeMetrics n = transformed(clipped(block, small, X.inverse()), X);
+      EXPECT_NEAR(m.volume, expected, 1e-12 * expected) << tilt << " " << turn;
+      EXPECT_NEAR(n.volume, expected, 1e-12 * expected) << tilt << " " << turn;
+      EXPECT_LT((m.centroid - n.centroid).norm(), 1e-13);
+      EXPECT_LT((m.inertia - n.inertia).norm(), 1e-11 * m.inertia.norm());
+      EXPECT_LT((m.area_vector + n.area_vector).norm(), 1e-11 * m.area);
+      // S of the small box is its sides and the face inside: as large as the cut, along the normal.
+      EXPECT_LT((m.area_vector + 4.0 * half.x() * half.y() / -normal.z() * normal).norm(),
+                1e-11 * m.area);
+      EXPECT_NEAR(m.depth_moment, n.depth_moment, 1e-10 * m.depth_moment);
+      EXPECT_NEAR(m.depth, n.depth, 1e-12);
+    }
+  }
+}
+
 TEST(Clip, ScratchKeepsNoState) {
   // The same query before and after others gives the same bits.
   Random random(12);
