@@ -40,6 +40,11 @@ class FaceCut {
           std::vector<Vec3>& corners)
       : s_(solid), face_(face), sliver_share_(sliver_share), pieces_(pieces), corner_(corners) {}
 
+  void add_inside(const Vec3 (&corner)[3]) {
+    for (int i = 0; i < 3; ++i) add_line_of_round(corner[i], corner[i == 2 ? 0 : i + 1]);
+    add_triangle(corner[0], corner[1], corner[2]);
+  }
+
   // Cuts by the plane faces, at the seams, then each part by the round face.
   void cut(const Vec3 (&corner)[3]) {
     normal_ = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
@@ -108,7 +113,7 @@ class FaceCut {
       inside[i] = level(corner[i], gradient) <= 0.0;
       count_inside += inside[i] ? 1 : 0;
     }
-    if (count_inside == 3) return add_triangle(a, b, c);
+    if (count_inside == 3) return add_inside(corner);
     if (count_inside == 0) {
       const Vec3 middle = (a + b + c) / 3.0;
       const double f = level(middle, gradient);
@@ -233,11 +238,7 @@ class FaceCut {
   // larger than `most` where halving can help it.
   void add_arc(const Arc& arc, double most, int halvings) {
     if (!(arc.sag > 0.0)) {
-      // No sliver beside a straight line of the round face, but the outline runs there.
-      if (s_.has_axis && arc.chord() > 0.0) {
-        const Vec3 middle = 0.5 * (arc.p + arc.q);
-        pieces_.slivers.push_back({middle, Vec3::Zero(), middle, face_});
-      }
+      if (s_.has_axis && arc.chord() > 0.0) add_empty_sliver(arc.p, arc.q);
       return;
     }
     const double area = 2.0 / 3.0 * arc.chord() * arc.sag;
@@ -250,6 +251,22 @@ class FaceCut {
     pieces_.slivers.push_back({0.5 * (arc.p + arc.q), area * unit_, arc.tip, face_});
   }
 
+  // No sliver beside a straight line of the round face, but the outline runs there.
+  void add_empty_sliver(const Vec3& p, const Vec3& q) {
+    const Vec3 middle = 0.5 * (p + q);
+    pieces_.slivers.push_back({middle, Vec3::Zero(), middle, face_});
+  }
+
+  // An edge that runs along the round face may be inside by rounding alone.
+  void add_line_of_round(const Vec3& p, const Vec3& q) {
+    if (!s_.has_axis) return;
+    for (const Vec3& x : {p, Vec3(0.5 * (p + q)), q}) {
+      Vec3 gradient;
+      if (level(x, gradient) < -kTinySag * s_.size * gradient.norm()) return;
+    }
+    if (p != q) add_empty_sliver(p, q);
+  }
+
   // With as many points on the arcs as make the slivers small beside the polygon within them.
   void add_outline(const Vec3* outline, const bool* arc_after, const Arc* arc, int count) {
     const std::size_t before = pieces_.slivers.size();
@@ -260,7 +277,11 @@ class FaceCut {
       corner_.clear();
       for (int i = 0; i < count; ++i) {
         corner_.push_back(outline[i]);
-        if (arc_after[i]) add_arc(arc[i], most, 0);
+        if (arc_after[i]) {
+          add_arc(arc[i], most, 0);
+        } else {
+          add_line_of_round(outline[i], outline[i + 1 == count ? 0 : i + 1]);
+        }
       }
       double area = 0.0, slivers = 0.0;
       for (std::size_t i = 2; i < corner_.size(); ++i) {
@@ -331,10 +352,11 @@ bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid
     const int face = static_cast<int>(pieces.slot_of_face.size());
     const std::size_t before = pieces.triangles.size() + pieces.slivers.size();
     const Vec3 corner[3] = {corner_of(slot, 0), corner_of(slot, 1), corner_of(slot, 2)};
+    FaceCut cut(solid, face, share, pieces, scratch.corners);
     if (inside && !(solid.half_length > 0.0)) {
-      pieces.triangles.push_back({{corner[0], corner[1], corner[2]}, face});
+      cut.add_inside(corner);
     } else {
-      FaceCut(solid, face, share, pieces, scratch.corners).cut(corner);
+      cut.cut(corner);
     }
     uncut &= inside;
     // A section as thin as its arcs has slivers alone.
