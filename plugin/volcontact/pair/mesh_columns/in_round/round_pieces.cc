@@ -21,6 +21,7 @@ constexpr double kSlivers = 10.0;     // by the tolerance, of the area of the po
 constexpr double kMostSlivers = 0.3;  // the same where it is one of many
 constexpr int kMostDivisions = 24;    // of a triangle in four
 constexpr double kTinySag = 1e-9;     // of the solid's size
+constexpr double kRounding = 1e-13;   // the same
 
 // Corners of a plane convex polygon, at most those of a triangle cut by two planes.
 struct Outline {
@@ -92,7 +93,8 @@ class FaceCut {
 
   void cut_by_round(const Outline& outline) {
     for (int i = 2; i < outline.count; ++i) {
-      cut_by_round(outline.corner[0], outline.corner[i - 1], outline.corner[i], 0);
+      const Vec3 &a = outline.corner[0], &b = outline.corner[i - 1], &c = outline.corner[i];
+      if (a != b && b != c && c != a) cut_by_round(a, b, c, 0);
     }
   }
 
@@ -147,9 +149,9 @@ class FaceCut {
       outline[count] = p + in.leave * d;
       arc_after[count++] = true;
     }
+    // Where the plane only touches, what rounding finds inside would be followed to the last.
+    if (divisions == 0 && only_touches(corner, gradient, count == 0 ? kTinySag : kRounding)) return;
     if (count == 0) {
-      // Where the plane only touches, the search would follow the line of touch to the last.
-      if (divisions == 0 && only_touches(corner, gradient)) return;
       if (divisions < kMostDivisions && reaches_in(a, b, c)) divide(a, b, c, divisions);
       return;
     }
@@ -161,11 +163,11 @@ class FaceCut {
     add_outline(outline, arc_after, arc, count);
   }
 
-  // Whether the plane of a triangle goes no deeper than rounding into the round face. `gradient` is
-  // that of the level somewhere on it.
-  bool only_touches(const Vec3 (&corner)[3], const Vec3& gradient) const {
+  // Whether the plane of a triangle goes less deep into the round face than `share` of its size.
+  // `gradient` is that of the level somewhere on it.
+  bool only_touches(const Vec3 (&corner)[3], const Vec3& gradient, double share) const {
     return least_round_level(s_, corner, normal_.normalized()) >=
-           -kTinySag * s_.size * gradient.norm();
+           -share * s_.size * gradient.norm();
   }
 
   // Whether a triangle without corners and edges in the solid may hold all of its section.
@@ -176,12 +178,14 @@ class FaceCut {
     const Vec3 n = normal_.normalized();
     for (int step = 0; step < 4; ++step) {
       const double f = level(x, gradient);
-      if (f <= 0.0) return true;
+      const double rounding = kRounding * s_.size * gradient.norm();
+      if (f <= -rounding) return true;
       const Vec3 slope = gradient - gradient.dot(n) * n;
       const double steepness = slope.squaredNorm();
       double least = kInfinity;
       for (const Vec3& p : {a, b, c}) least = std::min(least, slope.dot(p - x));
-      if (f + least > 0.0) return false;
+      // An edge along the round face would be followed to the last.
+      if (f + least > -rounding) return false;
       x -= f / steepness * slope;
     }
     return true;
