@@ -429,7 +429,7 @@ class LinesRun {
     const double rounding = (std::numeric_limits<double>::epsilon() * reach() + off_faces()) *
                             std::max(result.area, result.counter_area);
     const double error = std::max(error_, open_) + rounding;
-    result.volume_error = error + outer_rule::kInnerError * result.volume;
+    result.volume_error = error + s_.sections.inner_error() * result.volume;
     if (error > options_.tolerance * result.volume) result.status = Status::kApproximate;
     return transformed(result, Pose{Mat3::Identity(), frame_.center});
   }
