@@ -7,6 +7,8 @@
 namespace volcontact {
 namespace {
 
+constexpr double kRounding = 1e-14;  // of a sum, per summand
+
 Vec3 mapped(const RoundSolid& s, const Vec3& x) {
   Vec3 y;
   for (int i = 0; i < 3; ++i) {
@@ -148,7 +150,12 @@ double least_round_level(const RoundSolid& s, const Vec3 (&corner)[3], const Vec
       high = std::max(high, z);
     }
     if (!(across > 0.0)) return -high;
-    const auto least_at = [&](double z) { return std::abs(offset - n.z() * z) / across - z; };
+    // Of a plane across the axis `off` is a difference, and little more than its rounding.
+    const auto least_at = [&](double z) {
+      const double off = std::abs(offset - n.z() * z);
+      const double rounding = kRounding * (std::abs(offset) + std::abs(n.z() * z));
+      return std::max(0.0, off - rounding) / across - z;
+    };
     double least = std::min(least_at(low), least_at(high));
     if (n.z() != 0.0) least = std::min(least, least_at(std::clamp(offset / n.z(), low, high)));
     return least;

@@ -93,5 +93,29 @@ TEST(TangentFaces, AConeLiesOnAFace) {
   }
 }
 
+// Faces across the axis of a cone but for rounding do not touch it, they cut it: the slab between.
+TEST(TangentFaces, FacesAcrossAConeCutIt) {
+  for (const double top : {0.36, 0.2, 0.0}) {
+    const Frustum cone({.bottom_radius = 0.3, .top_radius = top, .half_length = 0.25});
+    const double slope = (top - 0.3) / 0.5;
+    for (const double middle : {0.0, 0.07}) {
+      for (const double half : {0.05, 0.1}) {
+        for (int i = 0; i < 40; ++i) {
+          const double angle = 0.1 * i;
+          const Mat3 turned = test::turn(Vec3::UnitZ(), angle) *
+                              test::turn(Vec3::UnitX(), i % 2 == 0 ? 0.5 * kPi : -0.5 * kPi) *
+                              test::turn(Vec3::UnitY(), 0.7 * angle);
+          const Pose X{turned, Vec3(0.01 * i, 0.0, middle)};
+          const Shape mesh = mesh_of(box_soup(Vec3(1.0, half, 1.0), 1 + i % 3));
+          const double r = 0.5 * (0.3 + top) + slope * (middle - half), R = r + slope * 2.0 * half;
+          const double volume = kPi * 2.0 * half / 3.0 * (r * r + r * R + R * R);
+          const VolumeMetrics m = in_time(cone, mesh, X).total;
+          EXPECT_NEAR(m.volume, volume, m.volume_error + 1e-9 * volume) << top << " " << i;
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace volcontact::tangent_faces_test
