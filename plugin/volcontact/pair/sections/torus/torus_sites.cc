@@ -15,6 +15,8 @@ constexpr double kNothing = 1e-9;        // an arc this short holds nothing [rad
 constexpr double kSampleStep = kPi / 24.0;  // between half-planes, at most [rad]
 constexpr int kLeastSamples = 8;            // of an arc
 constexpr int kBesideRounds = 8;            // each of them narrows a search to two ninths
+constexpr double kBesideShare = 0.25;       // of the way to the next half-plane, again and again
+constexpr double kLeastBeside = 1e-12;      // of that way
 constexpr int kEndRounds = 9;               // each of them narrows an end to a fifth
 constexpr double kEndWidth = 1e-4;          // to which an end is known, of the range
 
@@ -149,7 +151,8 @@ class SiteSearch {
       }
       const double low = i > 0 ? s_.samples[i - 1].angle : sample.angle - kSampleStep;
       const double high = last ? sample.angle + kSampleStep : s_.samples[i + 1].angle;
-      const Sample found = longest_between(low, high);
+      Sample found = longest_between(low, high);
+      if (!(found.length > 0.0)) found = close_to(sample.angle, low, high);
       if (!(found.length > 0.0)) continue;
       const bool before = found.angle < sample.angle;
       s_.samples.insert(s_.samples.begin() + static_cast<std::ptrdiff_t>(before ? i : i + 1),
@@ -171,6 +174,23 @@ class SiteSearch {
       if (best.length > 0.0) break;
       low = best.angle - step;
       high = best.angle + step;
+    }
+    return best;
+  }
+
+  // A half-plane with a column at any distance from one that may lie in a face of a thin plate: of
+  // those beside it without one none is nearer to having one than another.
+  Sample close_to(double angle_met, double low, double high) {
+    Sample best{};
+    for (double share = kBesideShare; share > kLeastBeside && !(best.length > 0.0);) {
+      double angle[kLanes], length[kLanes];
+      for (int i = 0; i < kLanes; i += 2, share *= kBesideShare) {
+        angle[i] = angle_met - share * (angle_met - low);
+        angle[i + 1] = angle_met + share * (high - angle_met);
+      }
+      probe(angle, length);
+      const auto most = std::max_element(length, length + kLanes) - length;
+      best = {angle[most], length[most]};
     }
     return best;
   }
