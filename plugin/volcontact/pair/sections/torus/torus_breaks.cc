@@ -21,17 +21,20 @@ constexpr double kDipMargin = 0.2;      // of the bend, that a dip may go lower 
 constexpr double kSmallHole = 0.1;      // R^2 - r^2, per R^2
 constexpr double kSlightLean = 0.1;     // sine of the angle between a plane and the axis
 constexpr double kSlightOffset = 1e-2;  // per R
+constexpr double kSlightTip = 0.1;      // per R: a tip of a cone beside the axis
 constexpr double kSwing = 4.0;          // angle by that sine or offset: half of a section's swing
 constexpr double kWidestSwing = 0.7;    // [rad]
 constexpr double kTail = 32.0;          // the same: beyond it little is left
 
 class TorusBreaks {
  public:
-  TorusBreaks(const FaceSet& faces, double major, double minor, std::vector<double>& angles)
-      : faces_(faces), major_(major), minor_(minor), angles_(angles) {}
+  TorusBreaks(const FaceSet& faces, double major, double minor, std::vector<double>& angles,
+              std::vector<double>* roots)
+      : faces_(faces), major_(major), minor_(minor), angles_(angles), roots_(roots) {}
 
   void run() {
     angles_.clear();
+    if (roots_) roots_->clear();
     const std::vector<PlaneFace>& planes = faces_.planes;
     if (planes.size() > kMaxPlanes) return;
     for (std::size_t i = 0; i < planes.size(); ++i) {
@@ -40,6 +43,9 @@ class TorusBreaks {
       for (std::size_t j = 0; j < i; ++j) edge(planes[i], planes[j]);
     }
     for (const Rim& rim : faces_.rims) follow(rim);
+    if (has_small_hole()) {
+      for (const RoundFace& face : faces_.rounds) swing(face);
+    }
   }
 
  private:
@@ -88,8 +94,8 @@ class TorusBreaks {
   // the middle than it leans to the axis swings about the rim of the disc and need not touch it;
   // another one touches it once, and what is left then falls like a power of the angle.
   void swing(const PlaneFace& plane) {
-    const double a = (major_ - minor_) * (major_ + minor_), lean = std::abs(plane.normal.z());
-    if (a > kSmallHole * major_ * major_) return;
+    const double lean = std::abs(plane.normal.z());
+    if (!has_small_hole()) return;
     const double to = std::atan2(plane.normal.y(), plane.normal.x()), off = plane.offset / major_;
     const auto note_p = [&](double p) {
       if (std::abs(p) > kWidestSwing) return;
@@ -104,6 +110,58 @@ class TorusBreaks {
         if (p > 0.0) note_p(p);
       }
     }
+  }
+
+  bool has_small_hole() const {
+    return (major_ - minor_) * (major_ + minor_) < kSmallHole * major_ * major_;
+  }
+
+  // The same of a cone or tube, where a plane along the axis touches it in a line. Behind that
+  // plane a section is next to nothing; before it, it grows like the root of the angle.
+  void swing(const RoundFace& face) {
+    const Vec3 row = face.map.row(2).transpose();
+    if (face.cone) {
+      const double slope = row.norm(), cosine = 1.0 / std::sqrt(1.0 + slope * slope);
+      const Vec3 axis = row / slope;
+      const double across = std::hypot(axis.x(), axis.y()), sine = slope * cosine;
+      if (!(across > sine)) return;
+      const double at = std::atan2(axis.y(), axis.x()), turn = std::acos(-sine / across);
+      for (const double angle : {at - turn, at + turn}) {
+        const Vec3 normal(std::cos(angle), std::sin(angle), 0.0);
+        swing(normal, normal.dot(face.center), axis + sine * normal);
+      }
+    } else if (face.part == CapsulePart::kNone || face.part == CapsulePart::kTube) {
+      const Vec3 axis = Vec3(face.map.row(0)).cross(Vec3(face.map.row(1)));
+      const double across = std::hypot(axis.x(), axis.y());
+      if (!row.isZero(0.0) || !(across > 0.0)) return;
+      const double radius = 1.0 / Vec3(face.map.row(0)).norm();
+      for (const double side : {-1.0, 1.0}) {
+        const Vec3 normal(side * axis.y() / across, -side * axis.x() / across, 0.0);
+        const double offset = normal.dot(face.center) + radius;
+        for (const double way : {-1.0, 1.0}) swing(normal, offset, way * axis);
+      }
+    }
+  }
+
+  // The plane touches a face along a line with this direction, which is not the axis's.
+  void swing(const Vec3& normal, double offset, const Vec3& along) {
+    const double off = offset / major_;
+    if (std::abs(off) > kSlightTip) return;
+    const double to = std::atan2(along.y(), along.x());
+    const double side = along.x() * normal.y() - along.y() * normal.x() > 0.0 ? 1.0 : -1.0;
+    note_root(to);
+    if (off == 0.0) return;
+    note_root(to + side * off * major_ / (major_ + minor_));
+    for (const double p : {kSwing * off, kTail * off}) {
+      if (std::abs(p) > kWidestSwing) return;
+      note_root(to - p);
+      note_root(to + p);
+    }
+  }
+
+  void note_root(double angle) {
+    angles_.push_back(angle);
+    if (roots_) roots_->push_back(angle);
   }
 
   double distance(const Vec3& x) const {
@@ -245,13 +303,14 @@ class TorusBreaks {
   const FaceSet& faces_;
   double major_, minor_;
   std::vector<double>& angles_;
+  std::vector<double>* roots_;
 };
 
 }  // namespace
 
 void find_torus_breaks(const FaceSet& faces, double major_radius, double minor_radius,
-                       std::vector<double>& angles) {
-  TorusBreaks(faces, major_radius, minor_radius, angles).run();
+                       std::vector<double>& angles, std::vector<double>* roots) {
+  TorusBreaks(faces, major_radius, minor_radius, angles, roots).run();
 }
 
 }  // namespace volcontact

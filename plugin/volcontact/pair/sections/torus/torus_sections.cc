@@ -48,7 +48,7 @@ class TorusSectionsRun {
     set_sections();
     find_torus_sites(body_, X_, s_.path, s_.sections, s_.sites);
     if (s_.sites.ranges.empty()) return true;
-    find_torus_breaks(s_.faces, torus_.major_radius(), torus_.minor_radius(), s_.breaks);
+    find_torus_breaks(s_.faces, torus_.major_radius(), torus_.minor_radius(), s_.breaks, &s_.roots);
     for (const TorusRange& range : s_.sites.ranges) {
       integrate(range);
       if (is_open(std::max(options_.tolerance, outer_rule::kLeastOpen))) return false;
@@ -173,7 +173,8 @@ class TorusSectionsRun {
                     : corners_.size() == 2 && !has_axial_plane() && whole_range(range);
     for (std::size_t i = 0; i + 1 < corners_.size() && !done; ++i) {
       const double from = corners_[i], to = corners_[i + 1];
-      const bool begins = !range.whole && i == 0, ends = !range.whole && i + 2 == corners_.size();
+      const bool begins = (!range.whole && i == 0) || is_root(from);
+      const bool ends = (!range.whole && i + 2 == corners_.size()) || is_root(to);
       const int parts =
           std::max(begins && ends ? 2 : 1, static_cast<int>(std::ceil((to - from) / kWidestAngle)));
       for (int k = 0; k < parts; ++k) {
@@ -183,6 +184,13 @@ class TorusSectionsRun {
       }
     }
     open_ = openness();
+  }
+
+  // Whether sections grow there like the root of the angle, from next to nothing.
+  bool is_root(double angle) const {
+    return std::any_of(s_.roots.begin(), s_.roots.end(), [angle](double root) {
+      return std::abs(std::remainder(angle - root, 2.0 * kPi)) < kSameAngle;
+    });
   }
 
   // How far from closed the surface is, see SurfaceFlux. A face through the axis is not in the

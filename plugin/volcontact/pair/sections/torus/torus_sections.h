@@ -14,7 +14,7 @@ struct TorusSectionsScratch {
   FaceSet faces;
   TorusSection sections;
   TorusSites sites;
-  std::vector<double> breaks, corners;
+  std::vector<double> breaks, roots, corners;
 };
 
 /// Where area vector and depth are taken from: a body without round faces gives them best by its

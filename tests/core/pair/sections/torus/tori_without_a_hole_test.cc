@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/reference/implicit_solid.h"
@@ -107,6 +108,65 @@ TEST(ToriWithoutAHole, AnEndOfAPlateHoldsTheAxis) {
     }
   }
   EXPECT_GE(seen, test::cases(350, 30));
+}
+
+// What a cone that leaves the apex along `axis` and is cut off at `from` has in common with a ring,
+// which the base is out of reach of: rays from the apex.
+double volume_of_rays(const ImplicitSolid& ring, const Vec3& apex, const Mat3& frame, double slope,
+                      double from, int rays, int parts) {
+  const double least = 1.0 / std::sqrt(1.0 + slope * slope);
+  test::LineParts in_ring;
+  double sum = 0.0;
+  for (int i = 0; i < 8 * parts; ++i) {
+    const double cosine = least + (1.0 - least) * (i / 8 + GaussRule<8>::kNodes[i % 8]) / parts;
+    const double sine = std::sqrt(1.0 - cosine * cosine);
+    for (int k = 0; k < rays; ++k) {
+      const double turn = 2.0 * kPi * (k + 0.5) / rays;
+      const Vec3 along = frame * Vec3(sine * std::cos(turn), sine * std::sin(turn), cosine);
+      test::SolidLines of_ring(ring, along);
+      of_ring.parts(apex, 1.0, in_ring);
+      for (const auto& part : in_ring) {
+        const double a = std::max(part.enter, from / cosine), b = std::max(part.leave, a);
+        sum += (b * b * b - a * a * a) / 3.0 * GaussRule<8>::kWeights[i % 8];
+      }
+    }
+  }
+  return sum * (1.0 - least) / parts * 2.0 * kPi / rays;
+}
+
+// Cones with their tips, sharp or blunt, on the axis or beside it: next to nothing of them is in
+// half-planes behind a plane along the axis that touches the cone, and before it a section grows
+// like the root of the angle.
+TEST(ToriWithoutAHole, AConeHasItsTipAtTheAxis) {
+  test::Random random(43);
+  for (int i = 0; i < test::cases(400, 20); ++i) {
+    const double r = random.uniform(0.05, 0.15), R = r * kBy[i % 5];
+    const double slope = random.log_uniform(0.1, 5.0), half = random.uniform(2.0, 3.0) * r;
+    const double beside = i % 4 == 0 ? 0.0 : random.log_uniform(1e-8, 0.03) * r;
+    const double tip = i % 3 == 0 ? 0.0 : slope * random.log_uniform(1e-8, 0.1) * r;
+    const double wide = tip + 2.0 * half * slope;
+    // The middle of the tip is near the origin of the ring, and the body lies towards -a.
+    const double lean = i % 2 == 0 ? 0.0 : random.uniform(-1.2, 1.2);
+    const Mat3 rotation = test::turn(Vec3::UnitZ(), random.uniform(0.0, 2.0 * kPi)) *
+                          test::turn(Vec3::UnitX(), 0.5 * kPi + lean);
+    const Vec3 a = rotation.col(2);
+    const Vec3 end(beside * random.uniform(-1.0, 1.0), beside * random.uniform(-1.0, 1.0),
+                   i % 7 < 3 ? 0.0 : random.uniform(-0.5, 0.5) * r);
+    const Pose X{rotation, end - half * a};
+    const ImplicitSolid of_ring = ImplicitSolid::torus(R, r);
+    const Vec3 apex = end + tip / slope * a;
+    const Mat3 frame = rotation * Vec3(1.0, -1.0, -1.0).asDiagonal();
+    const double expected = volume_of_rays(of_ring, apex, frame, slope, tip / slope, 120, 6);
+    const double again = volume_of_rays(of_ring, apex, frame, slope, tip / slope, 90, 4);
+    const double doubt = 2.0 * std::abs(expected - again) + 2e-5 * expected;
+    const Shape ring = Torus({.major_radius = R, .minor_radius = r});
+    const Shape body = Frustum({.bottom_radius = wide, .top_radius = tip, .half_length = half});
+    for (const VolumeMetrics& m :
+         {evaluated(ring, body, X).total, evaluated(body, ring, X.inverse()).total}) {
+      EXPECT_NEAR(m.volume, expected, m.volume_error + doubt)
+          << i << ": " << R / r - 1.0 << " " << slope << " " << beside << " " << tip << " " << lean;
+    }
+  }
 }
 
 }  // namespace
