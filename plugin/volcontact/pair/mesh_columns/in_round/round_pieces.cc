@@ -20,6 +20,7 @@ constexpr int kMostPasses = 6;        // over the arcs of a polygon
 constexpr double kSlivers = 10.0;     // by the tolerance, of the area of the polygon within
 constexpr double kMostSlivers = 0.3;  // the same where it is one of many
 constexpr int kMostDivisions = 24;    // of a triangle in four
+constexpr double kNeedle = 1.0 / 16;  // width of a triangle over its length
 constexpr double kTinySag = 1e-9;     // of the solid's size
 constexpr double kRounding = 1e-13;   // the same
 
@@ -94,15 +95,29 @@ class FaceCut {
   void cut_by_round(const Outline& outline) {
     for (int i = 2; i < outline.count; ++i) {
       const Vec3 &a = outline.corner[0], &b = outline.corner[i - 1], &c = outline.corner[i];
-      if (a != b && b != c && c != a) cut_by_round(a, b, c, 0);
+      const double square = std::max((b - a).squaredNorm(), (c - a).squaredNorm());
+      // Of a needle each quarter would be looked at as the whole.
+      if ((b - a).cross(c - a).norm() > kRounding * square) cut_by_round(a, b, c, 0);
     }
   }
 
   void divide(const Vec3& a, const Vec3& b, const Vec3& c, int level) {
     InterruptScope::poll();
+    const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
+    const double least = kNeedle * kNeedle * std::max({ab, bc, ca});
+    if (bc < least) return divide_needle(a, b, c, level);
+    if (ca < least) return divide_needle(b, c, a, level);
+    if (ab < least) return divide_needle(c, a, b, level);
     for (const RoundPieces::Triangle& t : RoundPieces::Triangle{{a, b, c}, face_}.quarters()) {
       cut_by_round(t.corner[0], t.corner[1], t.corner[2], level + 1);
     }
+  }
+  // In half along its length alone: across it there is nothing to find, as many times as it is cut.
+  void divide_needle(const Vec3& tip, const Vec3& b, const Vec3& c, int level) {
+    const Vec3 middle_b = 0.5 * (tip + b), middle_c = 0.5 * (tip + c);
+    cut_by_round(tip, middle_b, middle_c, level + 1);
+    cut_by_round(middle_b, b, c, level + 1);
+    cut_by_round(middle_b, c, middle_c, level + 1);
   }
 
   void cut_by_round(const Vec3& a, const Vec3& b, const Vec3& c, int divisions) {

@@ -75,6 +75,38 @@ TEST(TangentFaces, ABoxAroundHoldsAll) {
   }
 }
 
+// Of a half ball about the origin, in a bar of these half sizes: a sum over disks and their strips.
+double half_ball_in_bar(double r, double a, double b) {
+  constexpr int kDisks = 400, kStrips = 400;
+  double sum = 0.0;
+  for (int i = 0; i < kDisks; ++i) {
+    const double z = r * (i + 0.5) / kDisks, rho = std::sqrt(r * r - z * z);
+    const double wide = std::min(a, rho);
+    for (int j = 0; j < kStrips; ++j) {
+      const double x = wide * (j + 0.5) / kStrips;
+      sum += wide / kStrips * std::min(b, std::sqrt(rho * rho - x * x));
+    }
+  }
+  return 4.0 * r / kDisks * sum;
+}
+
+// Up to the seam between ball and tube, which touch the edges of the bar there.
+TEST(TangentFaces, ACapsuleWithItsEndInABarAsWideAcross) {
+  const double a = 0.05, b = 0.0844, r = std::hypot(a, b);
+  const Capsule capsule({.radius = r, .half_length = 0.3763});
+  const Shape bar = mesh_of(box_soup(Vec3(a, b, 0.4)));
+  const double volume = half_ball_in_bar(r, a, b);
+  for (const double off : {0.0, 1e-15, 1e-13, 1e-12, 1.7e-11, -1.7e-11, 1e-10, 1e-8}) {
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 to(0.04 * off, off, 0.4 + capsule.half_length() + (i % 3 - 1) * off);
+      const Pose X{
+          test::turn(Vec3::UnitZ(), 0.8 * i) * test::turn(Vec3::UnitX(), i < 4 ? kPi : 0.0), to};
+      const VolumeMetrics m = in_time(bar, capsule, X).total;
+      EXPECT_NEAR(m.volume, volume, m.volume_error + 2e-5 * volume) << off << " " << i;
+    }
+  }
+}
+
 // The wall of a cone on a face of a large box, and half of it outside by a hair or not at all.
 TEST(TangentFaces, AConeLiesOnAFace) {
   for (const double top : {0.1, 0.0}) {
