@@ -57,8 +57,8 @@ option(VOLCONTACT_PRECOMPILE "Parse the headers that most sources need once for 
 
 # Headers that most sources of a target need, as <name>: a path would differ from checkout to
 # checkout, and the compiler cache with it. A source must still include
-# what it uses: the build under the sanitizers precompiles nothing. FROM another target of the same
-# flags takes what that one has.
+# what it uses: tests/test_includes.py reads that, and the build under the thread sanitizer
+# precompiles nothing. FROM another target of the same flags takes what that one has.
 function(volcontact_precompile name)
   cmake_parse_arguments(PARSE_ARGV 1 argument "" "FROM" "")
   if(NOT VOLCONTACT_PRECOMPILE)

@@ -31,6 +31,7 @@ def lint() -> None:
         ("pymarkdown", "scan", *_pages()),
         ("proselint", "check", "--config", ROOT / "docs" / "proselint.json", *_pages()),
         (python, ROOT / "tests" / "test_layering.py"),
+        (python, ROOT / "tests" / "test_includes.py"),
     ]
     failed = [Path(check[0]).name for check in checks if not _passes(check)]
     if failed:

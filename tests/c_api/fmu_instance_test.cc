@@ -2,6 +2,7 @@
 // The life of instances: values, states to come back to, derivatives, wrong use.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "volcontact/metrics/volume_metrics.h"
 
 namespace volcontact::test {
