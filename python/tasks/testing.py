@@ -21,8 +21,16 @@ from tasks.stages import Stages
 from tasks.system import need_system, use_compiler_cache, wish_system
 
 # Tests that no MuJoCo release can change: they run once, on the first release that is tested.
-WITHOUT_MUJOCO = "tests/python/core"
+WITHOUT_MUJOCO = (
+    "tests/python/core",
+    "tests/python/identify/test_bench_noise.py",
+    "tests/python/study/test_study_clusters.py",
+    "tests/test_includes.py",
+    "tests/test_layering.py",
+)
 _NO_TESTS = 5  # pytest: none was selected
+# A file to each process, in the order of tests/conftest.py: xdist's own begins with many short tests.
+_SHARED_OUT = ("--dist", "loadfile", "--no-loadscope-reorder")
 
 
 def test(arguments: list[str]) -> None:
@@ -120,7 +128,7 @@ def _test_release(stages: Stages, release: str, *, everything: bool) -> None:
             f"MuJoCo {made[0].version}: C++ tests",
             lambda: ctest(made[0].tree, f"{name}-cpp"),
         )
-    arguments = [] if everything else [f"--ignore={WITHOUT_MUJOCO}"]
+    arguments = [] if everything else [f"--ignore={path}" for path in WITHOUT_MUJOCO]
     stages.run(f"MuJoCo {made[0].version}: Python tests", lambda: pytest(made[0], arguments))
 
 
@@ -164,7 +172,7 @@ def pytest(environment: Environment, arguments: list[str]) -> None:
     pictures = os.environ.get("VOLCONTACT_SCREENSHOTS") or str(RESULTS / f"{name}-screenshots")
     Path(pictures).mkdir(parents=True, exist_ok=True)
     run(
-        environment.python, "-m", "pytest", "-n", JOBS, "--dist", "loadfile",
+        environment.python, "-m", "pytest", "-n", JOBS, *_SHARED_OUT,
         f"--junit-xml={RESULTS / name}-python.xml", *arguments,
         env={"VOLCONTACT_SCREENSHOTS": pictures},
     )  # fmt: skip
@@ -228,7 +236,7 @@ def _pytest_selected(environment: Environment, arguments: list[str], *, may_be_n
     # A few tests are sooner run than shared out: each process imports all files to choose of them.
     jobs = "0" if "-k" in arguments else JOBS
     done = subprocess.run(
-        [str(environment.python), "-m", "pytest", "-n", jobs, "--dist", "loadfile",
+        [str(environment.python), "-m", "pytest", "-n", jobs, *_SHARED_OUT,
          f"--junit-xml={report}", *arguments],
         cwd=ROOT, check=False,
     )  # fmt: skip
