@@ -2,8 +2,8 @@
 """A file includes what it uses, itself or by its headers. Also runs as a program, before any build.
 
 The compiler does not see what is missing: with a precompiled header every file has those headers,
-and of several files compiled as one a later one has what an earlier one includes. Read are our types
-and what three headers of the standard library hold; the build under the thread sanitizer, which
+and of several files compiled as one a later one has what an earlier one includes. Our types are
+read, and names of three standard headers. The build under the thread sanitizer, which
 precompiles nothing, sees functions as well.
 """
 

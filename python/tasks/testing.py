@@ -29,7 +29,7 @@ WITHOUT_MUJOCO = (
     "tests/test_layering.py",
 )
 _NO_TESTS = 5  # pytest: none was selected
-# A file to each process, in the order of tests/conftest.py: xdist's own begins with many short tests.
+# A file to each process, in the order of tests/conftest.py: xdist would begin with many short.
 _SHARED_OUT = ("--dist", "loadfile", "--no-loadscope-reorder")
 
 
