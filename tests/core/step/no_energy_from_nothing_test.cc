@@ -10,6 +10,7 @@
 
 #include "core/support/free_bodies.h"
 #include "core/support/random.h"
+#include "core/support/sanitized.h"
 #include "volcontact/force/laws.h"
 #include "volcontact/step/implicit_step.h"
 
@@ -56,7 +57,7 @@ ContactLaws random_laws(test::Random& random) {
 class NoEnergyInParts : public ::testing::TestWithParam<ImplicitParts> {};
 
 TEST_P(NoEnergyInParts, HoldsInEveryStep) {
-  constexpr int kRuns = 3000;
+  constexpr int kRuns = test::cases(3000, 400);
   test::Random random(11);
   int touching = 0, limited = 0;
   double worst = 0.0;

@@ -7,6 +7,7 @@
 
 #include "core/support/evaluated.h"
 #include "core/support/random.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::meeting_faces_test {
 namespace {
@@ -76,7 +77,7 @@ void check(double slope, double height, double radius, double half, double cente
 // bounds the overlap below, and farther out the ball.
 TEST(MeetingFaces, OfAConeOnTheBottomOfABall) {
   test::Random random(3);
-  for (int i = 0; i < 1500; ++i) {
+  for (int i = 0; i < test::cases(1500, 100); ++i) {
     const double radius = random.uniform(0.1, 0.4);
     const double half = radius * (random.uniform() < 0.5 ? 1.0 : random.uniform(0.4, 2.0));
     // The height, of that of the ball, at which the cone is as wide.
@@ -91,7 +92,7 @@ TEST(MeetingFaces, OfAConeOnTheBottomOfABall) {
 // next to the rim only.
 TEST(MeetingFaces, OfABallThroughTheRimOfACone) {
   test::Random random(5);
-  for (int i = 0; i < 1500; ++i) {
+  for (int i = 0; i < test::cases(1500, 100); ++i) {
     const double height = random.uniform(0.05, 0.4), rim = random.log_uniform(0.1, 10.0) * height;
     const double slope = rim / height,
                  share = random.uniform() < 0.5 ? 1.0 : random.uniform(0.4, 2.0);

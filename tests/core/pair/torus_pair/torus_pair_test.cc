@@ -7,6 +7,7 @@
 #include "core/support/gradient.h"
 #include "core/support/matchers.h"
 #include "core/support/random.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::torus_pair_test {
 namespace {
@@ -160,7 +161,7 @@ TEST(TorusPair, ACircleMayPassThroughAnotherFourTimes) {
 
 TEST(TorusPair, OctreeBoundsHoldTheVolume) {
   test::Random random(5);
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < test::cases(6, 2); ++i) {
     const Shape a = ring(random.uniform(0.2, 0.5), random.uniform(0.05, 0.15)),
                 b = ring(random.uniform(0.2, 0.5), random.uniform(0.05, 0.15));
     const Pose X{random.rotation(), random.in_box(0.4)};
@@ -228,15 +229,17 @@ TEST(TorusPair, VolumeIsContinuousAlongAMotion) {
 // a sum over slices of the thin tube.
 TEST(TorusPair, AThinRingThatLeavesAThickOneBesideATouch) {
   constexpr double kThin = 7e-5, kWide = 0.15, kThick = 0.0577;
-  for (const double off : {-1.0, -0.97, -1e-3, 0.0, 1e-7, 1e-3, 1.0}) {
+  constexpr double kOff[] = {-1.0, -0.97, -1e-3, 0.0, 1e-7, 1e-3, 1.0};
+  for (std::size_t i = 0; i < std::size(kOff); i += test::cases(1, 3)) {
+    const double off = kOff[i];
     // The circles of the two in one plane but for `lower`; the thin tube ends `off` of itself off.
     const double major = 0.1154, lower = -kThin, out = major + kThick + kThin * (1.0 + 1e-6 * off);
     const Pose X{test::turn(Vec3::UnitX(), 1e-8), Vec3(0.0, out - kWide, lower)};
     // Columns of the thin tube, slice by slice.
     constexpr int kAngles = 1500, kPoints = 40;
     double expected = 0.0;
-    for (int i = 0; i < kAngles; ++i) {
-      const double t = kPi * (i + 0.5) / kAngles;
+    for (int slice = 0; slice < kAngles; ++slice) {
+      const double t = kPi * (slice + 0.5) / kAngles;
       for (int k = 0; k < kPoints; ++k) {
         const double r = kThin * std::sqrt((k + 0.5) / kPoints);
         for (int j = 0; j < kPoints; ++j) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/support/random.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::torus_patch_test {
 namespace {
@@ -47,7 +48,7 @@ TEST(TorusPatch, AreaIsThatOfPlacesInside) {
   test::Random random(1);
   TorusPatchScratch scratch;
   constexpr int kSteps = 400;
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < test::cases(20, 4); ++i) {
     const Pose X{random.rotation(), random.in_box(0.4)};
     find_patch(kRing, X, kRing, kEffort, scratch);
     double expected = 0.0;

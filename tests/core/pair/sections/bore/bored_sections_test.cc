@@ -228,7 +228,7 @@ TEST(BoredLines, WhatFitsABoreExactlyTouchesNothing) {
   using namespace testing;
   const Csg block = box(.3, .3, .2) - tube(.15, .4), pipe = tube(.3, .3) - tube(.2, .4);
   test::Random random(3);
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < test::cases(20, 4); ++i) {
     const Pose X = i == 0 ? Pose{} : random.pose(.3);
     for (const double z : {0.0, .05, .2}) {
       for (const auto& [hollow, radius] : {std::pair{block, .15}, {pipe, .2}}) {

@@ -149,6 +149,7 @@ TEST(ConeBores, ACapsuleThatHoldsTheApexOfAChamfer) {
     const Capsule pill({.radius = .25, .half_length = half_length});
     for (const double z : {-.2, 0.0}) {
       for (const double x : {.05, .2}) {
+        if (test::kSanitized && (z < 0.0) == (x < .1)) continue;
         const Pose X = testing::at(x, -.1, z);
         const VolumeMetrics exact = csg_metrics_by_lines(slab & Csg(pill, X));
         const Interference out = evaluated(slab, pill, X);

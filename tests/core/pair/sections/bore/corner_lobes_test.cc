@@ -7,6 +7,7 @@
 
 #include "core/support/evaluated.h"
 #include "core/support/random.h"
+#include "core/support/sanitized.h"
 #include "volcontact/shape/csg/csg.h"
 
 namespace volcontact::corner_lobes_test {
@@ -59,7 +60,7 @@ TEST(CornerLobes, ARimThatLeavesAFaceHasOne) {
 TEST(CornerLobes, RandomBarsAndCansHaveAllOfThem) {
   test::Random random(11);
   const Box block({.half_sizes = Vec3(0.4, 0.45, 0.1)});
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < test::cases(400, 40); ++i) {
     const Cylinder bore({.radius = random.uniform(0.1, 0.35), .half_length = 0.2});
     const Vec3 half = Vec3(0.2, 0.2, 0.2) + random.in_box(0.12);
     const Pose X = random.pose(0.2);

@@ -9,6 +9,7 @@
 #include "core/support/csg_solids.h"
 #include "core/support/evaluated.h"
 #include "core/support/random.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::stepped_holes_test {
 namespace {
@@ -52,7 +53,7 @@ double volume_in_wall(const std::function<double(double)>& body,
 // narrow bore: shifted until it presses on walls, sunk until it presses on the shoulder.
 TEST(SteppedHoles, AScrewShiftedInAChamferedCounterbore) {
   test::Random random(41);
-  for (int i = 0; i < 80; ++i) {
+  for (int i = 0; i < test::cases(80, 16); ++i) {
     const double scale = random.log_uniform(1e-3, 1.0);
     const double bore = 0.1 * scale, wide = random.uniform(0.15, 0.2) * scale, half = 0.3 * scale,
                  floor = random.uniform(0.05, 0.15) * scale,
