@@ -97,9 +97,9 @@ void BoreOutline::places_at(const double* angles, Place* places) {
   }
 }
 
-// Fills `places_` in the present frame. False when the outline is not round in it, unless that is
-// good enough; then the frame is a rounder one.
-bool BoreOutline::place_all_round(bool good_enough) {
+// Fills `places_` in the present frame. False when the outline is not round in it; then the frame
+// is a rounder one.
+bool BoreOutline::place_all_round() {
   constexpr int kStep = kEvenTurn / kLanes;
   double shortest = kInfinity, longest = 0.0;
   RimShape farthest;
@@ -108,7 +108,7 @@ bool BoreOutline::place_all_round(bool good_enough) {
     even_directions(kEvenTurn, k, rim.u, rim.v);
     s_.sections.ends(s_.path, rim.u, rim.v, rim.rho, rim.height);
     const double near = rim.shortest(), far = rim.longest();
-    if (k == 0 && !good_enough && far > kRoundRim * near) {
+    if (k == 0 && far > kRoundRim * near) {
       if (!rim.round_off(frame_)) rim.go_inwards(frame_);
       return false;
     }
@@ -121,17 +121,20 @@ bool BoreOutline::place_all_round(bool good_enough) {
                           rim.height[i]);
     }
   }
-  if (good_enough || longest < kSpike * shortest) return true;
+  if (longest < kSpike * shortest) return true;
   farthest.go_inwards(frame_);
   return false;
 }
 
-void BoreOutline::trace() {
+bool BoreOutline::trace() {
   choose_frame();
   set_frame();
   places_.resize(kEvenTurn);
   // The window knows a thin overlap's shape only roughly.
-  for (int turns = 0; !place_all_round(turns == kMaxRoundings); ++turns) set_frame();
+  for (int turns = 0; !place_all_round(); ++turns) {
+    if (turns == kMaxRoundings) return false;
+    set_frame();
+  }
   // Places that come nearest to the wall may hide a lobe between them, or a dip.
   const int n = kEvenTurn;
   for (int k = 0; k < n; ++k) {
@@ -151,6 +154,7 @@ void BoreOutline::trace() {
   look_behind_corners();
   std::sort(places_.begin(), places_.end(),
             [](const Place& p, const Place& q) { return p.angle < q.angle; });
+  return true;
 }
 
 // Between two places within the wall a part of the outline may stick out of it. As the outline is

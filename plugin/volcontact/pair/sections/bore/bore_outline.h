@@ -47,8 +47,9 @@ class BoreOutline {
       : bore_(bore), body_(body), window_(window), s_(lines), places_(places) {}
 
   /// Places all round, in the order of their angle. One lies on every part outside of the wall, and
-  /// on every part inside, however small.
-  void trace();
+  /// on every part inside, however small. False where the outline is round from nowhere:
+  /// places all round would stand at its ends.
+  bool trace();
   const std::vector<Place>& places() const { return places_; }
 
   /// Where the outline crosses the wall, between two pairs of an inner and an outer place.
@@ -59,7 +60,7 @@ class BoreOutline {
 
  private:
   void choose_frame();
-  bool place_all_round(bool good_enough);
+  bool place_all_round();
   void set_frame();
   void places_at(const double* angles, Place* places);
   Place place(double angle, double x, double y, double height) const;

@@ -22,6 +22,7 @@ constexpr double kOnWall = 1e-12;  // of a place from the wall, per the size of 
 constexpr double kEndError =
     5.0;  // error by its estimate where an arc ends in nothing, as measured
 constexpr double kInnerCone = 1e-4;   // error of the rule along a half-plane, from an apex, per V
+constexpr double kLeastLobe = 1e-6;   // of radii: what rounding may leave nothing of
 constexpr double kNearWall = 1e-3;    // of a place from the wall, in radii: there may be a film
 constexpr double kThroughBore = 0.5;  // of radii: between places outside of the wall nothing is
 
@@ -51,7 +52,7 @@ class BoreRun {
     s_.sections.choose_rule(options_.tolerance);
     move_off_axis();
     if (bore_.is_cone()) look_straight_ahead();
-    outline_.trace();
+    if (!outline_.trace()) return false;
     set_rounding();
     const std::vector<Place>& places = outline_.places();
     for (const Place& place : places) {
@@ -148,7 +149,7 @@ class BoreRun {
     set_bore_frame(outline_.places()[0].point);
     if (has_gap()) return false;
     if (!goes_round_axis()) return add_lines_region(a_, b_, X_AB_, options_, s_, regions_);
-    return integrate(-kPi, kPi, false);
+    return integrate(-kPi, kPi, false) && !is_lost(kInfinity);
   }
 
   // Whether the way from one place to the next passes near the axis, though both lie outside of the
@@ -245,7 +246,12 @@ class BoreRun {
           (angle >= low && angle <= high) || angle - 2.0 * kPi >= low || angle + 2.0 * kPi <= high;
       if (!within) return false;
     }
-    return integrate(low, high, true);
+    return integrate(low, high, true) && !is_lost(top.rho - 1.0);
+  }
+
+  // Nothing where the outline reaches this far out of the bore, in radii: it was not traced.
+  bool is_lost(double out) const {
+    return out > kLeastLobe && !(s_.sections.total().moments[0] > 0.0);
   }
 
   void set_breaks(double low, double high, bool open) {
