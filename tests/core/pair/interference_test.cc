@@ -275,14 +275,7 @@ TEST(Interference, DepthMeansTheSameInEveryEngine) {
   const Cylinder peg({.radius = r, .half_length = 0.02});
   const Csg block(Csg::Operation::kDifference, Csg(Box({.half_sizes = Vec3(0.02, 0.02, 0.01)})),
                   Csg(Cylinder({.radius = r + play, .half_length = 0.03})));
-  std::vector<Eigen::Vector2d> outline;
-  std::vector<Triangle> cuts;
-  for (int i = 0; i < sides; ++i) {
-    const double angle = 2.0 * kPi * i / sides;
-    outline.emplace_back(r * std::cos(angle), r * std::sin(angle));
-    if (i >= 2) cuts.push_back({0, i - 1, i});
-  }
-  const Mesh peg_mesh = test::mesh_of(test::prism_soup(outline, cuts, 0.02));
+  const Mesh peg_mesh = test::mesh_of(test::regular_prism_soup(sides, r, 0.02));
   const Mesh sleeve = test::mesh_of(test::ring_soup(r + play, 0.02, 0.01, sides));
   const double facet = r * (1.0 - std::cos(kPi / sides));  // of play that facets take or give
   const std::tuple<Shape, Shape, Engine> cases[] = {{block, peg, Engine::kLines},

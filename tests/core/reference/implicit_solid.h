@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -28,6 +29,17 @@ struct LineParts {
   const Part* begin() const { return part.data(); }
   const Part* end() const { return part.data() + count; }
 };
+
+/// Length of what lies in both, parts of one line.
+inline double common_length(const LineParts& one, const LineParts& other) {
+  double length = 0.0;
+  for (const LineParts::Part& a : one) {
+    for (const LineParts::Part& b : other) {
+      length += std::max(0.0, std::min(a.leave, b.leave) - std::max(a.enter, b.enter));
+    }
+  }
+  return length;
+}
 
 /// One solid that is not made of others, posed in the frame of the whole.
 class ImplicitMember {

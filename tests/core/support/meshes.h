@@ -169,6 +169,18 @@ inline Soup prism_soup(const std::vector<Eigen::Vector2d>& polygon,
   return soup;
 }
 
+/// A regular one with this many sides, its corners `radius` away from z; one is on x.
+inline Soup regular_prism_soup(int sides, double radius, double half) {
+  std::vector<Eigen::Vector2d> polygon;
+  std::vector<Triangle> cuts;
+  for (int i = 0; i < sides; ++i) {
+    const double angle = 2.0 * kPi * i / sides;
+    polygon.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+    if (i >= 2) cuts.push_back({0, i - 1, i});
+  }
+  return prism_soup(polygon, cuts, half);
+}
+
 /// A channel along z, open towards y: 6 wide, 5 high, its walls 1 thick, as everything by `unit`;
 /// around its middle. It is made of three boxes.
 inline Soup channel_soup(double unit, double half) {

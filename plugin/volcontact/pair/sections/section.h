@@ -5,7 +5,7 @@
 
 #include "volcontact/base/simd.h"
 #include "volcontact/pair/convex/face_set.h"
-#include "volcontact/pair/sections/section_limits.h"
+#include "volcontact/pair/quadrature/outer_rule.h"
 
 namespace volcontact {
 
@@ -141,7 +141,9 @@ class Sections {
   /// nodes they are off by 1e-7 to 1e-4.
   void choose_rule(double tolerance);
   /// Of the rule along a half-plane, of V.
-  double inner_error() const { return section_limits::inner_error(faces_.fine, faces_.two_round); }
+  double inner_error() const {
+    return faces_.two_round && !faces_.fine ? outer_rule::kNearTurnError : outer_rule::kInnerError;
+  }
   /// For what set() brings next: looks for more changes of face in a half-plane, and has eight
   /// nodes between them.
   void look_closer();

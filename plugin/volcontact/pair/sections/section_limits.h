@@ -29,9 +29,6 @@ struct InnerRule {
   int count;
   const double *nodes, *weights;
 };
-/// Its error, of V, as measured. With five nodes it is largest where a round face of one solid
-/// turns back a little beyond the other's, as a tube does in a ball that is 6 % wider.
-inline double inner_error(bool fine, bool two_round) { return fine || !two_round ? 3e-6 : 2.5e-5; }
 inline InnerRule inner_rule(bool fine) {
   if (fine) return {8, GaussRule<8>::kNodes, GaussRule<8>::kWeights};
   return {5, GaussRule<5>::kNodes, GaussRule<5>::kWeights};

@@ -167,16 +167,9 @@ TEST(Columns, AMeshFlushWithTwoOppositeFacesCountsOnce) {
                                        mesh_of(box_soup(half, 3))};
     for (int sides = 3; sides <= 8; ++sides) {
       // A prism of that many sides from face to face; in its plane it stays away from the others.
-      std::vector<Eigen::Vector2d> outline;
-      std::vector<Triangle> cuts;
-      for (int i = 0; i < sides; ++i) {
-        const double angle = 2.0 * kPi * i / sides;
-        outline.emplace_back(r * std::cos(angle), r * std::sin(angle));
-        if (i >= 2) cuts.push_back({0, i - 1, i});
-      }
       const double base = 0.5 * sides * r * r * std::sin(2.0 * kPi / sides);
       const Pose up{basis_with_z(Vec3::Unit(axis)), Vec3::Zero()};
-      const Mesh prism = mesh_of(test::prism_soup(outline, cuts, h).moved(up));
+      const Mesh prism = mesh_of(test::regular_prism_soup(sides, r, h).moved(up));
       for (const Shape& other : others) {
         for (double off : kOffsets) {
           for (double sign : {-1.0, 0.0, 1.0}) {

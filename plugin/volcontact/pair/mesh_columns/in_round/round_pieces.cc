@@ -94,10 +94,7 @@ class FaceCut {
 
   void cut_by_round(const Outline& outline) {
     for (int i = 2; i < outline.count; ++i) {
-      const Vec3 &a = outline.corner[0], &b = outline.corner[i - 1], &c = outline.corner[i];
-      const double square = std::max((b - a).squaredNorm(), (c - a).squaredNorm());
-      // Of a needle each quarter would be looked at as the whole.
-      if ((b - a).cross(c - a).norm() > kRounding * square) cut_by_round(a, b, c, 0);
+      cut_by_round(outline.corner[0], outline.corner[i - 1], outline.corner[i], 0);
     }
   }
 

@@ -399,7 +399,7 @@ class BoreRun {
                      (1.0 - share) * length * sums.depth_moment;
     m.depth = share * across * sums.bore.depth + (1.0 - share) * length * height;
     const double error = std::max(error_, open_);
-    m.volume_error = error + (frame_.central ? kInnerCone : outer_rule::kInnerError) * m.volume;
+    m.volume_error = error + (frame_.central ? kInnerCone : s_.sections.inner_error()) * m.volume;
     if (error > options_.tolerance * m.volume) m.status = Status::kApproximate;
     LinesRegion& region = regions_.add();
     region.metrics = transformed(m, Pose{Mat3::Identity(), frame_.center});

@@ -26,11 +26,7 @@ double volume_of_lines(const ImplicitSolid& plate, const ImplicitSolid& ring, do
       of_plate.parts(o, 1.0, in_plate);
       if (in_plate.count == 0) continue;
       of_ring.parts(o, 1.0, in_ring);
-      for (const auto& a : in_ring) {
-        for (const auto& b : in_plate) {
-          sum += std::max(0.0, std::min(a.leave, b.leave) - std::max(a.enter, b.enter));
-        }
-      }
+      sum += test::common_length(in_ring, in_plate);
     }
   }
   return sum * 4.0 * radius * radius / lines / lines;

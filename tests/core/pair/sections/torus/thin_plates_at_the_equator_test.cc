@@ -26,11 +26,7 @@ double volume_of_lines(const ImplicitSolid& plate, const ImplicitSolid& ring, do
       of_ring.parts(o, 2.0, in_ring);
       if (in_ring.count == 0) continue;
       of_plate.parts(o, 2.0, in_plate);
-      for (const auto& a : in_ring) {
-        for (const auto& b : in_plate) {
-          sum += std::max(0.0, std::min(a.leave, b.leave) - std::max(a.enter, b.enter));
-        }
-      }
+      sum += test::common_length(in_ring, in_plate);
     }
   }
   return sum * 4.0 * y * z / lines / lines;

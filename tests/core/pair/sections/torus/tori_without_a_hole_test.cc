@@ -64,13 +64,8 @@ double volume_of_lines(const ImplicitSolid& body, const ImplicitSolid& ring, dou
       const double x = 0.5 * (low + high) - 0.5 * (high - low) * std::cos(t);
       of_ring.parts({x, 0.0, z}, 2.0, in_ring);
       of_body.parts({x, 0.0, z}, 2.0, in_body);
-      double length = 0.0;
-      for (const auto& a : in_ring) {
-        for (const auto& b : in_body) {
-          length += std::max(0.0, std::min(a.leave, b.leave) - std::max(a.enter, b.enter));
-        }
-      }
-      sum += length * std::sin(t) * GaussRule<8>::kWeights[layer % 8];
+      sum +=
+          test::common_length(in_ring, in_body) * std::sin(t) * GaussRule<8>::kWeights[layer % 8];
     }
   }
   return sum * (top - bottom) / parts * 0.5 * (high - low) * kPi / lines;
