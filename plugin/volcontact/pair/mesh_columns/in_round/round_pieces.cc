@@ -42,8 +42,8 @@ class FaceCut {
           std::vector<Vec3>& corners)
       : s_(solid), face_(face), sliver_share_(sliver_share), pieces_(pieces), corner_(corners) {}
 
-  void add_inside(const Vec3 (&corner)[3]) {
-    for (int i = 0; i < 3; ++i) add_line_of_round(corner[i], corner[i == 2 ? 0 : i + 1]);
+  void add_inside(const Vec3 (&corner)[3], bool deep) {
+    for (int i = 0; i < 3 && !deep; ++i) add_line_of_round(corner[i], corner[i == 2 ? 0 : i + 1]);
     add_triangle(corner[0], corner[1], corner[2]);
   }
 
@@ -122,12 +122,14 @@ class FaceCut {
     std::copy(corner, corner + 3, part_);
     Vec3 gradient;
     bool inside[3];
-    int count_inside = 0;
+    int count_inside = 0, count_deep = 0;
     for (int i = 0; i < 3; ++i) {
-      inside[i] = level(corner[i], gradient) <= 0.0;
+      const double f = level(corner[i], gradient);
+      inside[i] = f <= 0.0;
       count_inside += inside[i] ? 1 : 0;
+      count_deep += f <= s_.wall_level ? 1 : 0;
     }
-    if (count_inside == 3) return add_inside(corner);
+    if (count_inside == 3) return add_inside(corner, count_deep > 1);
     if (count_inside == 0) {
       const Vec3 middle = (a + b + c) / 3.0;
       const double f = level(middle, gradient);
@@ -278,7 +280,7 @@ class FaceCut {
     if (!s_.has_axis) return;
     for (const Vec3& x : {p, Vec3(0.5 * (p + q)), q}) {
       Vec3 gradient;
-      if (level(x, gradient) < -kTinySag * s_.size * gradient.norm()) return;
+      if (level(x, gradient) <= s_.wall_level) return;
     }
     if (p != q) add_empty_sliver(p, q);
   }
@@ -364,13 +366,13 @@ bool find_round_pieces(const ObbTree& tree, const Vec3& origin, const RoundSolid
   pieces.slot_of_face.clear();
   pieces.patch_count = 0;
   bool uncut = !scratch.found.empty();
-  for (const auto& [slot, inside] : scratch.found) {
+  for (const auto& [slot, inside, deep] : scratch.found) {
     const int face = static_cast<int>(pieces.slot_of_face.size());
     const std::size_t before = pieces.triangles.size() + pieces.slivers.size();
     const Vec3 corner[3] = {corner_of(slot, 0), corner_of(slot, 1), corner_of(slot, 2)};
     FaceCut cut(solid, face, share, pieces, scratch.corners);
     if (inside && !(solid.half_length > 0.0)) {
-      cut.add_inside(corner);
+      cut.add_inside(corner, deep);
     } else {
       cut.cut(corner);
     }

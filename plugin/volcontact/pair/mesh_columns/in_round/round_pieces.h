@@ -48,6 +48,7 @@ struct RoundSearchScratch {
   struct Found {
     int slot;
     bool inside;
+    bool deep;  ///< no corner is on the round face
   };
   SimdPath path = best_simd_path();
   std::vector<int> stack;

@@ -8,6 +8,7 @@ namespace volcontact {
 namespace {
 
 constexpr double kRounding = 1e-14;  // of a sum, per summand
+constexpr double kOnWall = 1e-9;     // of the solid's size
 
 Vec3 mapped(const RoundSolid& s, const Vec3& x) {
   Vec3 y;
@@ -87,6 +88,7 @@ bool round_solid_of(const ConvexView& b, const Pose& X_QB, FaceSet& faces, Round
   }
   if (capsule) solid.half_length = faces.capsule[1].half_length;
   if (solid.plane_count == 0) solid.size = 1.0 / face.map.cwiseAbs().maxCoeff();
+  solid.wall_level = -kOnWall * solid.size * face.map.norm();
   solid.has_axis = capsule || solid.plane_count > 0;
   if (solid.has_axis) solid.axis_direction = X_QB.rotation.col(2);
   return true;

@@ -25,6 +25,8 @@ struct RoundSolid {
   bool has_axis = false;  ///< not a ball or an ellipsoid
   Vec3 axis_direction = Vec3::UnitZ();
   double size = 0.0;  ///< about its width [m]
+  double wall_level =
+      0.0;  ///< convex(x) above this is on the round face or outside, but for rounding
 
   Vec3 plane_normal(int k) const { return Vec3::Map(normal[k]); }
   /// Height of x over plane face k, negative inside.
