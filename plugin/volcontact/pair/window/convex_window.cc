@@ -283,21 +283,25 @@ class WindowSearch {
       if (one.owner != Owner::kA) continue;
       for (const PlaneFace& two : faces_.active.planes) {
         if (two.owner != Owner::kB || (one.normal + two.normal).norm() > kFlush) continue;
-        const Solid2& b = solid(Owner::kB);
-        const double depth = one.offset + b.view.support_height(b.X, -one.normal);
+        const Solid2 &a = solid(Owner::kA), &b = solid(Owner::kB);
+        // A long solid leans far into a face that hardly reaches into its own.
+        const double depth = std::min(one.offset + b.view.support_height(b.X, -one.normal),
+                                      two.offset + a.view.support_height(a.X, -two.normal));
         if (!(depth > 0.0 && depth < kFlush * size())) continue;
         const FlushFaces faces{one.normal, one.offset, two.normal, depth, size()};
-        if (!find_common_point_in_layer(solids_[0].view, b.view, b.X, faces, start)) continue;
+        if (!find_common_point_in_layer(a.view, b.view, b.X, faces, start)) continue;
         // Off the edges, along the layer. A place on one of the two faces may be out of it by
         // rounding, and so may be all of a line along it.
-        for (int step = 0; step < kMaxMoves && !inside(start); ++step) {
-          go_between(one, two, start);
+        for (int step = 0; step < kMaxMoves; ++step) {
+          if (!inside(start)) {
+            go_between(one, two, start);
+            move_to_middle(one.normal, start);
+          }
           move_to_middle(one.normal, start);
-          if (inside(start)) break;
+          if (inside(start)) return true;
           const Vec3 way = way_from_faces(start, &one, &two);
           if (!move_to_middle(way - way.dot(one.normal) * one.normal, start)) break;
         }
-        move_to_middle(one.normal, start);
         if (inside(start)) return true;
       }
     }

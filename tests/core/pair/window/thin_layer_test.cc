@@ -21,11 +21,13 @@ constexpr double kRadius = 0.3, kEnd = 0.2, kWide = 0.25, kLong = 0.4, kThick = 
 struct Case {
   bool box;
   Pose X;
+  Vec3 plate{kWide, kLong, kThick};  // half sizes of the box
+  double end = kEnd;
 
   // How far the second reaches behind the end of the first, at a place of it.
   double reach(double x, double y) const {
     const Vec3 w = X.rotation.col(2), middle = X.translation - kThick * w;
-    return kEnd - middle.z() + (w.x() * (x - middle.x()) + w.y() * (y - middle.y())) / w.z();
+    return end - middle.z() + (w.x() * (x - middle.x()) + w.y() * (y - middle.y())) / w.z();
   }
 
   // Where the line at x, along y, lies in both footprints.
@@ -42,7 +44,7 @@ struct Case {
     }
     for (int side = 0; side < 2 && box; ++side) {
       const Vec3& e = side == 0 ? u : v;
-      const double half = side == 0 ? kWide : kLong;
+      const double half = plate[side];
       const double at = e.x() * (x - middle.x()) - e.y() * middle.y();
       const double one = (-half - at) / e.y(), other = (half - at) / e.y();
       low = std::max(low, std::min(one, other));
@@ -82,10 +84,10 @@ Case random_case(test::Random& random, double lean, double depth, double nearest
 }
 
 // Both orders, to the error that they claim and 1e-5 of the sum over strips.
-void expect_right(const Shape& a, const Case& c, double expected, int number) {
-  const Shape b = c.box ? Shape(Box({.half_sizes = {kWide, kLong, kThick}}))
+void expect_right(const Shape& a, const Case& c, double expected, double rounding, int number) {
+  const Shape b = c.box ? Shape(Box({.half_sizes = c.plate}))
                         : Shape(Cylinder({.radius = kLong, .half_length = kThick}));
-  const double slack = 1e-5 * expected + 1e-15;
+  const double slack = 1e-5 * expected + rounding;
   const VolumeMetrics ab = evaluated(a, b, c.X).total, ba = evaluated(b, a, c.X.inverse()).total;
   EXPECT_NEAR(ab.volume, expected, ab.volume_error + slack) << number;
   EXPECT_NEAR(ba.volume, expected, ba.volume_error + slack) << number;
@@ -101,7 +103,7 @@ TEST(ThinLayer, FacesNearlyInOnePlaneAreRightToTheirClaims) {
     const double lean = random.log_uniform(1e-11, 1e-8);
     const Case c = random_case(random, lean, lean * random.uniform(0.01, 0.3), 0.2);
     const double expected = c.volume();
-    expect_right(kDrum, c, expected, i);
+    expect_right(kDrum, c, expected, 1e-15, i);
     touching += expected > 0.0 ? 1 : 0;
   }
   EXPECT_GT(3 * touching, 2 * kPoses);
@@ -112,7 +114,7 @@ TEST(ThinLayer, ANanometreIsRightToItsClaim) {
   for (int i = 0; i < test::cases(600, 60); ++i) {
     const double lean = i % 3 == 0 ? 0.0 : random.log_uniform(1e-10, 1e-7);
     const Case c = random_case(random, lean, 1e-9, 0.0);
-    expect_right(kDrum, c, c.volume(), i);
+    expect_right(kDrum, c, c.volume(), 1e-15, i);
   }
 }
 
@@ -127,7 +129,29 @@ TEST(ThinLayer, OnTheRimOfABore) {
     const double lean = i % 4 == 0 ? 0.0 : random.log_uniform(1e-10, 1e-8);
     Case c = random_case(random, lean, 1e-9, 0.0);
     c.box = true;
-    expect_right(i % 2 == 0 ? tube : cone, c, c.volume() - c.volume(kBore), i);
+    expect_right(i % 2 == 0 ? tube : cone, c, c.volume() - c.volume(kBore), 1e-15, i);
+  }
+}
+
+// The end of a pin on the edge of a sheet that leans and is so long that it reaches far more into
+// the pin's plane than the pin into its own.
+TEST(ThinLayer, APinOnTheEdgeOfALongSheet) {
+  constexpr double kPin = 2e-4, kLength = 0.1;
+  const Shape pin = Cylinder({.radius = kPin, .half_length = kLength});
+  test::Random random(14);
+  for (int i = 0; i < test::cases(2000, 200); ++i) {
+    const double lean = random.log_uniform(1e-10, 1e-7), to = random.uniform(0.0, 2.0 * kPi);
+    Case c{true, {}, Vec3(0.3, random.log_uniform(2e-4, 1e-2), kThick), kLength};
+    c.X.rotation = Eigen::AngleAxisd(lean, Vec3(std::cos(to), std::sin(to), 0)).toRotationMatrix() *
+                   Eigen::AngleAxisd(random.uniform(0.0, 6.0), Vec3::UnitZ()).toRotationMatrix();
+    // This place of the sheet's face is in the plane of the pin's end, off its middle.
+    const Vec3 place(0.9 * random.uniform(-c.plate.x(), c.plate.x()),
+                     c.plate.y() - random.uniform(0.0, kPin), -c.plate.z());
+    const double off = kPin * random.uniform(-1.0, 1.0);
+    c.X.translation = Vec3(std::sin(to), -std::cos(to), 0.0) * off + Vec3(0, 0, kLength) -
+                      c.X.rotation * place;
+    const double expected = c.volume(kPin);
+    expect_right(pin, c, expected, 3e-16 * kPin * kPin, i);
   }
 }
 
