@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
+#include <utility>
+#include <variant>
 
 #include "volcontact/pair/surface_sweep/face_edge.h"
 #include "volcontact/pair/surface_sweep/sweep_depth.h"
@@ -48,7 +51,7 @@ class SweepRun {
     bool looked = views_[0].convex && views_[1].convex;  // they have one region
     for (const double target : kTargets) {
       if (!sweep(target)) return false;
-      if (!looked && look_along_edges() && !sweep(target)) return false;
+      if (!looked && look_closer() && !sweep(target)) return false;
       looked = true;
       find_regions();
       if (!(volume_ > 0.0)) return false;
@@ -60,6 +63,8 @@ class SweepRun {
   }
 
  private:
+  using ScratchRegion = SurfaceSweepScratch::Region;
+
   bool make_families() {
     const std::vector<SweepFace>& faces = s_.solids.faces;
     const auto count = static_cast<int>(faces.size());
@@ -226,8 +231,14 @@ class SweepRun {
     return false;
   }
 
-  // A region may be so small that the first curves miss it in all its faces. Most have an edge in
-  // a plane. True when there is surface along one that has not been looked at.
+  // A region may be so small that the first curves miss it in all its faces. True when there is
+  // surface that has not been looked at.
+  bool look_closer() {
+    const bool along_edges = look_along_edges();
+    return look_along_rings() || along_edges;
+  }
+
+  // Most regions have an edge in a plane.
   bool look_along_edges() {
     const auto count = static_cast<int>(s_.family_of.size());
     const double beside = kBesideEdge * s_.solids.half.norm();
@@ -253,6 +264,52 @@ class SweepRun {
     return more;
   }
 
+  // A thin ring may go through a thin plate between two of its curves.
+  bool look_along_rings() {
+    bool more = false;
+    for (int ring = 0; ring < 2; ++ring) {
+      const auto* torus = std::get_if<Torus>(shapes_[ring]);
+      if (!torus) continue;
+      s_.pieces.clear();
+      std::visit(
+          [&](const auto& solid) {
+            using S = std::decay_t<decltype(solid)>;
+            if constexpr (HasFaces<S> || std::is_same_v<S, Csg>) {
+              if (has_lines_pieces(solid)) add_lines_pieces(solid, s_.pieces);
+            }
+          },
+          *shapes_[1 - ring]);
+      const Pose X_TO = ring == 0 ? X_AB_ : X_AB_.inverse();
+      for (const LinesPiece& piece : s_.pieces) {
+        if (!piece.body.bounded()) continue;
+        const double R = torus->major_radius(), r = torus->minor_radius();
+        find_torus_arcs(piece.body, X_TO * piece.X_SB, R, r, s_.arcs);
+        for (const double angle : s_.arcs.met) {
+          const Vec3 x(R * std::cos(angle), R * std::sin(angle), 0.0);
+          more |= is_new_on_ring(window_.X_AW.inverse() * (ring == 0 ? x : X_AB_ * x), ring);
+        }
+      }
+    }
+    return more;
+  }
+
+  // Whether the curve of a ring about a place of its circle has surface that was not known.
+  bool is_new_on_ring(const Vec3& x, int ring) {
+    bool more = false;
+    const auto count = static_cast<int>(s_.family_of.size());
+    for (int f = 0; f < count; ++f) {
+      const SweepFace& face = s_.solids.faces[f];
+      if (s_.family_of[f] < 0 || face.kind != SweepFace::Kind::kTorus) continue;
+      if (index(face.owner) != ring) continue;
+      const CurveFamily& family = s_.families[s_.family_of[f]];
+      double u, t;
+      family.locate(x, u, t);
+      find_spans(s_.solids, family.curve(u), f, s_.patch.curve, spans_);
+      more |= spans_.count > 0 && is_new_curve(f, u);
+    }
+    return more;
+  }
+
   static bool meets_box(const FaceCurve& line, const Vec3& half) {
     double low = -kInfinity, high = kInfinity;
     for (int i = 0; i < 3; ++i) {
@@ -269,12 +326,15 @@ class SweepRun {
     const CurveFamily& family = s_.families[k];
     double u, t;
     family.locate(x, u, t);
-    if (span_at(f, family, u, t) < 0) return false;
-    for (const SweepStretch& stretch : s_.patches[k].stretches) {
+    return span_at(f, family, u, t) >= 0 && is_new_curve(f, u);
+  }
+  bool is_new_curve(int f, double u) {
+    SweepPatch& patch = s_.patches[s_.family_of[f]];
+    for (const SweepStretch& stretch : patch.stretches) {
       if (u >= stretch.low && u <= stretch.high && stretch.count == spans_.count) return false;
     }
-    s_.patches[k].hints.push_back(u);
-    s_.patches[k].swept = false;
+    patch.hints.push_back(u);
+    patch.swept = false;
     return true;
   }
 
@@ -312,26 +372,76 @@ class SweepRun {
     }
     volume_ = all.moment.trace() / 3.0;
     // Cavities and specks are no regions of their own, nor is a surface with a gap.
+    bool any_open = false;
     for (int i = 0; i < count; ++i) {
       ScratchRegion& region = s_.regions[i];
-      region.into = i;
       const double volume = volume_of(region);
-      if (i != largest && (volume < kSpeck * volume_ || error_of(region) > kWorst * volume)) {
-        region.into = largest;
-      }
+      region.into = i;
+      region.open = error_of(region) > kWorst * volume;
+      region.part = i != largest && (volume < kSpeck * volume_ || region.open);
+      any_open |= region.part && region.open;
     }
+    if (any_open) join_open();
     for (int i = 0; i < count; ++i) {
-      if (s_.regions[i].into == i) continue;
-      ScratchRegion& to = s_.regions[s_.regions[i].into];
-      for (int k = 0; k < 2; ++k) to.flux[k] += s_.regions[i].flux[k];
-      to.error += s_.regions[i].error;
+      if (s_.regions[i].part) merge(i, largest);
     }
     for (const ScratchRegion& region : s_.regions) {
       if (region.into == &region - s_.regions.data()) error_ += error_of(region);
     }
   }
 
-  using ScratchRegion = SurfaceSweepScratch::Region;
+  // Regions with gaps are parts of one that was not seen to hang together, next to each other. Far
+  // from the middle of the box a gap by rounding looks larger than it is.
+  void join_open() {
+    for (ScratchRegion& region : s_.regions) region.box.setEmpty();
+    const auto add = [&](int strip, const Vec3& x) { region_of(root(strip)).box.extend(x); };
+    for (const SweepPlace& place : s_.surface.places) add(place.strip, place.x);
+    for (const SweepTip& tip : s_.surface.tips) add(tip.strip, tip.x);
+    const auto count = static_cast<int>(s_.regions.size());
+    for (int joined = 0; joined < count; ++joined) {
+      for (ScratchRegion& region : s_.regions) {
+        region.open = region.open && has_gap(region);
+        region.part = region.part && (region.open || volume_of(region) < kSpeck * volume_);
+      }
+      int one = -1, other = -1;
+      double least = kInfinity;
+      for (int i = 0; i < count; ++i) {
+        for (int k = i + 1; k < count && s_.regions[i].is_open(i); ++k) {
+          if (!s_.regions[k].is_open(k)) continue;
+          const double way = s_.regions[i].box.exteriorDistance(s_.regions[k].box);
+          if (way < least) {
+            least = way;
+            one = i;
+            other = k;
+          }
+        }
+      }
+      if (one < 0) return;
+      if (s_.regions[other].part) std::swap(one, other);
+      merge(one, other);
+    }
+  }
+
+  // The same as error_of(), about the middle of the region.
+  bool has_gap(const ScratchRegion& region) const {
+    const Vec3 gap = region.flux[0].normal + region.flux[1].normal;
+    const Mat3 moment =
+        region.flux[0].moment + region.flux[1].moment - region.box.center() * gap.transpose();
+    const double volume = moment.trace() / 3.0;
+    const double open = (moment - volume * Mat3::Identity()).cwiseAbs().maxCoeff();
+    return open + gap.norm() * 0.5 * region.box.diagonal().norm() + region.error > kWorst * volume;
+  }
+
+  void merge(int part, int whole) {
+    ScratchRegion &from = s_.regions[part], &to = s_.regions[whole];
+    for (ScratchRegion& region : s_.regions) {
+      if (region.into == part) region.into = whole;
+    }
+    for (int k = 0; k < 2; ++k) to.flux[k] += from.flux[k];
+    to.error += from.error;
+    to.box.extend(from.box);
+    from.part = false;
+  }
 
   ScratchRegion& region_of(int root) {
     for (ScratchRegion& region : s_.regions) {

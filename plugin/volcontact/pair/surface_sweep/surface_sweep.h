@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Geometry>
+#include <vector>
+
 #include "volcontact/pair/overlap.h"
+#include "volcontact/pair/sections/bore/composed_sections.h"
+#include "volcontact/pair/sections/torus/torus_arcs.h"
 #include "volcontact/pair/surface_sweep/sweep_patch.h"
 #include "volcontact/pair/window/overlap_window.h"
 #include "volcontact/shape/shapes.h"
@@ -21,9 +26,16 @@ struct SurfaceSweepScratch {
     SweepFlux flux[2];  ///< through the surface of A, of B
     double error = 0.0;
     int root = -1;
-    int into = -1;  ///< the region it is counted with
+    int into = -1;      ///< the region it is counted with
+    bool open = false;  ///< its surface has a gap
+    bool part = false;  ///< no region of its own
+    Eigen::AlignedBox3d box;
+
+    bool is_open(int self) const { return open && into == self; }
   };
   std::vector<Region> regions;
+  std::vector<LinesPiece> pieces;
+  TorusArcs arcs;
 };
 
 /// Interference of any two solids made of simple ones, from the surface of their overlap: metrics

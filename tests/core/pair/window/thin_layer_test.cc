@@ -148,8 +148,8 @@ TEST(ThinLayer, APinOnTheEdgeOfALongSheet) {
     const Vec3 place(0.9 * random.uniform(-c.plate.x(), c.plate.x()),
                      c.plate.y() - random.uniform(0.0, kPin), -c.plate.z());
     const double off = kPin * random.uniform(-1.0, 1.0);
-    c.X.translation = Vec3(std::sin(to), -std::cos(to), 0.0) * off + Vec3(0, 0, kLength) -
-                      c.X.rotation * place;
+    c.X.translation =
+        Vec3(std::sin(to), -std::cos(to), 0.0) * off + Vec3(0, 0, kLength) - c.X.rotation * place;
     const double expected = c.volume(kPin);
     expect_right(pin, c, expected, 3e-16 * kPin * kPin, i);
   }

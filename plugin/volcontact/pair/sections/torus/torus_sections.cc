@@ -26,7 +26,7 @@ constexpr double kEndError = 5.0;     // error by its estimate where an arc ends
 constexpr double kByChance = 10.0;    // of an error, by its estimate, that is small by chance
 constexpr double kTarget = 1e-2;      // share of the tolerance asked of an arc: kinks may be hidden
 constexpr double kGapError = 3.0;     // error of V by the gap on a first look, at most as measured
-constexpr double kLeftOver = 1e-4;    // of a surface: so little of the other is told by rounding
+constexpr double kLeftOver = 1e-3;    // of a surface: so little of the other is told to per cents
 constexpr double kHalfwayError = 0.6;  // of even steps, by those halfway between: half
 constexpr double kWhole = 0.999;       // share of a solid in the overlap, that is all of it
 

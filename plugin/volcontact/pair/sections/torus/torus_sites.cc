@@ -4,14 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "volcontact/pair/convex/gjk.h"
-
 namespace volcontact {
 namespace {
 
-constexpr int kMaxBalls = 96;            // tried at most
-constexpr double kShortArc = kPi / 6.0;  // one with a ball that meets the body is not divided [rad]
-constexpr double kNothing = 1e-9;        // an arc this short holds nothing [rad]
 constexpr double kSampleStep = kPi / 24.0;  // between half-planes, at most [rad]
 constexpr int kLeastSamples = 8;            // of an arc
 constexpr int kBesideRounds = 8;            // each of them narrows a search to two ninths
@@ -24,92 +19,25 @@ class SiteSearch {
  public:
   SiteSearch(const ConvexView& body, const Pose& X, SimdPath path, TorusSection& sections,
              TorusSites& sites)
-      : body_(body),
-        X_(X),
-        path_(path),
-        sections_(sections),
-        s_(sites),
-        major_(sections.faces().major),
-        minor_(sections.faces().minor) {}
+      : body_(body), X_(X), path_(path), sections_(sections), s_(sites) {}
 
   void run() {
     s_.ranges.clear();
-    s_.doubtful.clear();
     s_.samples.clear();
-    part_by_planes();
-    if (s_.doubtful.empty()) return;
+    find_torus_arcs(body_, X_, sections_.faces().major, sections_.faces().minor, s_.arcs);
+    if (s_.arcs.doubtful.empty()) return;
+    for (const double angle : s_.arcs.met) s_.samples.push_back({angle, 0.0, true});
     add_samples();
     read_samples();
   }
 
  private:
-  using Arc = TorusSites::Arc;
+  using Arc = TorusArcs::Arc;
   using Sample = TorusSites::Sample;
 
-  static double turned_near(double angle, double to) {
-    return angle - 2.0 * kPi * std::floor((angle - to) / (2.0 * kPi) + 0.5);
-  }
-
-  // Leaves the arcs that no plane parts from the body in `doubtful`, and half-planes that meet it
-  // in `samples`.
-  void part_by_planes() {
-    const Vec3 middle = body_.middle(X_);
-    start_ = std::atan2(middle.y(), middle.x());
-    s_.arcs.clear();
-    s_.arcs.push_back({start_ - kPi, start_ + kPi});
-    for (int balls = 0; !s_.arcs.empty(); ++balls) {
-      const Arc arc = s_.arcs.back();
-      s_.arcs.pop_back();
-      if (!(arc.high - arc.low > kNothing)) continue;
-      if (balls >= kMaxBalls) {
-        s_.doubtful.push_back(arc);
-        continue;
-      }
-      divide(arc);
-    }
-  }
-
-  void divide(const Arc& arc) {
-    const double angle = 0.5 * (arc.low + arc.high);
-    const Vec3 center(major_ * std::cos(angle), major_ * std::sin(angle), 0.0);
-    const BallGap gap = ball_gap(body_, X_, center, minor_);
-    if (gap.apart) {
-      const double across = major_ * std::hypot(gap.normal.x(), gap.normal.y());
-      const double share = (gap.offset + minor_) / across;
-      if (share <= -1.0) return s_.arcs.clear(), s_.doubtful.clear();
-      const double middle = turned_near(std::atan2(gap.normal.y(), gap.normal.x()), angle);
-      const double half = share < 1.0 ? std::acos(share) : 0.0;
-      const double low = std::min(middle - half, angle), high = std::max(middle + half, angle);
-      if (low > arc.low) s_.arcs.push_back({arc.low, low});
-      if (high < arc.high) s_.arcs.push_back({high, arc.high});
-      return;
-    }
-    const Vec3& q = gap.place;
-    if (q.x() != 0.0 || q.y() != 0.0) {
-      s_.samples.push_back({turned_near(std::atan2(q.y(), q.x()), start_), 0.0, true});
-    }
-    if (arc.high - arc.low > kShortArc) {
-      s_.arcs.push_back({arc.low, angle});
-      s_.arcs.push_back({angle, arc.high});
-    } else {
-      s_.doubtful.push_back(arc);
-    }
-  }
-
-  // The doubtful arcs joined where they touch, and half-planes all over them.
+  // Half-planes all over the doubtful arcs.
   void add_samples() {
-    std::vector<Arc>& arcs = s_.doubtful;
-    std::sort(arcs.begin(), arcs.end(), [](const Arc& a, const Arc& b) { return a.low < b.low; });
-    std::size_t kept = 0;
-    for (std::size_t i = 1; i < arcs.size(); ++i) {
-      if (arcs[i].low <= arcs[kept].high + kNothing) {
-        arcs[kept].high = std::max(arcs[kept].high, arcs[i].high);
-      } else {
-        arcs[++kept] = arcs[i];
-      }
-    }
-    arcs.resize(kept + 1);
-    for (const Arc& arc : arcs) {
+    for (const Arc& arc : s_.arcs.doubtful) {
       const double width = arc.high - arc.low;
       const int parts = std::max(kLeastSamples, static_cast<int>(std::ceil(width / kSampleStep)));
       for (int i = 0; i <= parts; ++i) {
@@ -117,15 +45,16 @@ class SiteSearch {
       }
     }
     for (Sample& sample : s_.samples) {
-      if (sample.angle < start_ - kPi) sample.angle += 2.0 * kPi;
-      if (sample.angle >= start_ + kPi) sample.angle -= 2.0 * kPi;
+      if (sample.angle < s_.arcs.start - kPi) sample.angle += 2.0 * kPi;
+      if (sample.angle >= s_.arcs.start + kPi) sample.angle -= 2.0 * kPi;
     }
     std::sort(s_.samples.begin(), s_.samples.end(),
               [](const Sample& a, const Sample& b) { return a.angle < b.angle; });
-    s_.samples.erase(
-        std::unique(s_.samples.begin(), s_.samples.end(),
-                    [](const Sample& a, const Sample& b) { return b.angle - a.angle < kNothing; }),
-        s_.samples.end());
+    s_.samples.erase(std::unique(s_.samples.begin(), s_.samples.end(),
+                                 [](const Sample& a, const Sample& b) {
+                                   return b.angle - a.angle < TorusArcs::kNothing;
+                                 }),
+                     s_.samples.end());
     for (std::size_t from = 0; from < s_.samples.size(); from += kLanes) {
       double angle[kLanes], length[kLanes];
       for (std::size_t i = 0; i < kLanes; ++i) {
@@ -207,9 +136,9 @@ class SiteSearch {
   // Whether an arc that a plane parts from the body lies between two angles next to each other.
   bool parted(double from, double to) const {
     const double middle = 0.5 * (from + to);
-    for (const Arc& arc : s_.doubtful) {
-      if (turned_near(middle, 0.5 * (arc.low + arc.high)) >= arc.low - kNothing &&
-          turned_near(middle, 0.5 * (arc.low + arc.high)) <= arc.high + kNothing) {
+    for (const Arc& arc : s_.arcs.doubtful) {
+      if (turned_near(middle, 0.5 * (arc.low + arc.high)) >= arc.low - TorusArcs::kNothing &&
+          turned_near(middle, 0.5 * (arc.low + arc.high)) <= arc.high + TorusArcs::kNothing) {
         return false;
       }
     }
@@ -235,7 +164,8 @@ class SiteSearch {
     }
     if (!any) return;
     if (first == n) {
-      s_.ranges.push_back({start_ - kPi, start_ + kPi, start_ - kPi, start_ + kPi, true});
+      s_.ranges.push_back({s_.arcs.start - kPi, s_.arcs.start + kPi, s_.arcs.start - kPi,
+                           s_.arcs.start + kPi, true});
       return;
     }
     for (std::size_t k = 0; k < n;) {
@@ -302,8 +232,6 @@ class SiteSearch {
   SimdPath path_;
   TorusSection& sections_;
   TorusSites& s_;
-  double major_, minor_;
-  double start_ = 0.0;
 };
 
 }  // namespace

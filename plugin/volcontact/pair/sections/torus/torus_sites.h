@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "volcontact/pair/convex/convex_view.h"
+#include "volcontact/pair/sections/torus/torus_arcs.h"
 #include "volcontact/pair/sections/torus/torus_section.h"
 
 namespace volcontact {
@@ -18,10 +19,7 @@ struct TorusRange {
 /// Memory of the search.
 struct TorusSites {
   std::vector<TorusRange> ranges;  ///< what was found, one for every connected part
-  struct Arc {
-    double low, high;
-  };
-  std::vector<Arc> arcs, doubtful;
+  TorusArcs arcs;
   struct Sample {
     double angle, length;
     bool met = false;  ///< a ball meets the body there
@@ -29,10 +27,9 @@ struct TorusSites {
   std::vector<Sample> samples;
 };
 
-/// Finds where a ring meets a bounded convex body with the pose X in the ring's frame. A ring is a
-/// union of balls: a plane that parts the body from one of them parts it from all on an arc. What
-/// such arcs leave is looked through half-plane by half-plane, with those where a ball meets the
-/// body among them, so that no overlap is too small to be found. docs/theory.md, "Tori".
+/// Finds where a ring meets a bounded convex body with the pose X in the ring's frame. What no
+/// plane parts from it is looked through half-plane by half-plane, with those where a ball meets
+/// the body among them, so that no overlap is too small to be found. docs/theory.md, "Tori".
 void find_torus_sites(const ConvexView& body, const Pose& X, SimdPath path, TorusSection& sections,
                       TorusSites& sites);
 
