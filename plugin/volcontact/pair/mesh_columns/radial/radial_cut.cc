@@ -10,11 +10,13 @@ namespace {
 constexpr double kPlain = 0.25;     // bend of the level along an edge, of its values there
 constexpr double kNoBend = 1e-9;    // of the wall's size
 constexpr int kMostDivisions = 60;  // of a triangle in two
+constexpr double kSmall = 0.2;      // of a tube's radius: so small where it is cut at a slant
 constexpr double kNearTube = 0.7;   // of a tube's radius: a longer edge may pass through it unseen
 constexpr double kNearPole = 0.5;   // of the distance to a pole: a larger triangle is divided
 constexpr double kAtPole = 1e-4;    // of a tube's radius: so small ones are not
 constexpr int kMostSteps = 20;      // to a root
 constexpr double kRootPrecision = 1e-8;  // of the edge; the error of the step after is its square
+constexpr double kNearEnd = 0.1;         // of an edge, as a place to divide it at
 constexpr int kSagSteps = 2;             // of Newton, from the chord to the arc
 
 struct Edges {
@@ -46,15 +48,21 @@ int worst_edge(const Edges& e) {
   return worst;
 }
 
+int longest_edge(const Edges& e) {
+  return static_cast<int>(std::max_element(e.length, e.length + 3) - e.length);
+}
+
 enum class Place {
   kOutside,
   kInside,
   kCut,
-  kLarge,  // too large to tell
-  kBent    // the wall bends too much along some edge
+  kLarge,    // too large to tell
+  kGrazing,  // the same beside a face along the wall of a torus
+  kBent      // the wall bends too much along some edge
 };
 
-// How far the level may be off its tangent plane at x, at most, anywhere nearer than `reach`.
+// How far the level of a torus may be off its tangent plane at x, at most, anywhere nearer than
+// `reach`.
 double off_tangent(const RadialWall& wall, const Vec3& x, double reach) {
   const double r = RadialWall::length(x.x(), x.y()), least_r = r - reach;
   const double least = RadialWall::length(r - wall.major, x.z()) - reach;
@@ -62,6 +70,47 @@ double off_tangent(const RadialWall& wall, const Vec3& x, double reach) {
   // 1 / distance from the circle around the tube, cos / distance from the axis around that.
   const double cosine = std::min(1.0, (std::abs(r - wall.major) + reach) / least);
   return 0.5 * reach * reach * std::max(1.0 / least, cosine / least_r);
+}
+
+// The same in a triangle about x, far less in one along a circle of the torus. The level is the
+// distance d from (major, 0) of (r, z), and r, the distance from the axis, is convex:
+//   (r, z) moves by (dr, dz) at most, of which d is off its tangent by (dr^2 + dz^2) / 2 d,
+//   and r is off its own by (x' - x)^2 / 2 r, of which d has the share (r - major) / d.
+double off_tangent(const RadialWall& wall, const Vec3& x, const Vec3 (&c)[3], double reach) {
+  const double r = RadialWall::length(x.x(), x.y()), least_r = r - reach;
+  if (!(least_r > 0.0)) return kInfinity;
+  double out = 0.0, in = 0.0, up = 0.0, down = 0.0;
+  for (const Vec3& p : c) {
+    out = std::max(out, RadialWall::length(p.x(), p.y()) - r);
+    in = std::max(in, r - (x.x() * p.x() + x.y() * p.y()) / r);
+    up = std::max(up, p.z() - x.z());
+    down = std::max(down, x.z() - p.z());
+  }
+  const double across = std::max({0.0, r - in - wall.major, wall.major - r - out});
+  const double along = std::max({0.0, x.z() - down, -x.z() - up});
+  const double least = RadialWall::length(across, along);
+  if (!(least > 0.0)) return kInfinity;
+  const double dr = std::max(in, out), dz = std::max(up, down);
+  const double share = std::abs(r - wall.major) / RadialWall::length(r - wall.major, x.z());
+  return 0.5 * ((dr * dr + dz * dz) / least + share * reach * reach / least_r);
+}
+
+// The edge along which the level of a torus bends most, as above; those along its circles do so
+// least.
+int most_bent_edge(const RadialWall& wall, const Vec3 (&c)[3], const Edges& e) {
+  int most = 0;
+  double bend[3];
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 &p = c[i], &q = c[i == 2 ? 0 : i + 1], &m = e.middle[i];
+    const double r = RadialWall::length(m.x(), m.y()), off_tube = std::abs(r - wall.major);
+    const double bend_of_r = e.length[i] * e.length[i] / r;
+    const double change_of_r =
+        std::abs(RadialWall::length(p.x(), p.y()) - RadialWall::length(q.x(), q.y()));
+    const double dr = change_of_r + 0.125 * bend_of_r, dz = p.z() - q.z();
+    bend[i] = (dr * dr + dz * dz + off_tube * bend_of_r) / RadialWall::length(off_tube, m.z());
+    if (bend[i] > bend[most]) most = i;
+  }
+  return most;
 }
 
 // Whether the parabola through three values at 0, 1/2 and 1, the outer ones of one sign, has the
@@ -91,11 +140,15 @@ Place place_of(const RadialWall& wall, const Vec3 (&c)[3], const double (&level)
   if (wall.torus) {
     if (in_middle > reach) return Place::kOutside;
     if (in_middle < -reach) return Place::kInside;
-    const double off = off_tangent(wall, middle, reach);
+    const bool grazing = reach < kSmall * wall.radius;
+    const double off =
+        grazing ? off_tangent(wall, middle, c, reach) : off_tangent(wall, middle, reach);
     if (below - off > -kNoBend * size) return Place::kOutside;
     if (over + off < kNoBend * size) return Place::kInside;
-    if (reach > kNearTube * wall.radius || off > most - least) return Place::kLarge;
-    if (most < 0.0 || least >= 0.0) return Place::kLarge;
+    if (reach > kNearTube * wall.radius) return Place::kLarge;
+    if (off > most - least || most < 0.0 || least >= 0.0) {
+      return grazing ? Place::kGrazing : Place::kLarge;
+    }
   } else {
     // The level of a bore is concave: nowhere below its corners, nowhere over its tangent.
     if (least >= 0.0) return Place::kOutside;
@@ -142,6 +195,15 @@ Vec3 root_between(const RadialWall& wall, const Vec3& p, double at_p, const Vec3
     if (within && moved < kRootPrecision) break;
   }
   return p + t * way;
+}
+
+// About where the level is lowest between p and q, or half way where it only rises or is lowest
+// near an end: edges from there to others of the kind run along the wall.
+Vec3 lowest_between(const RadialWall& wall, const Vec3& p, const Vec3& q) {
+  const Vec3 way = q - p;
+  const double at_p = wall.gradient(p).dot(way), at_q = wall.gradient(q).dot(way);
+  const double t = at_p / (at_p - at_q);
+  return p + (at_p < 0.0 && at_q > 0.0 && t > kNearEnd && t < 1.0 - kNearEnd ? t : 0.5) * way;
 }
 
 // A triangle with corners on both sides of the wall.
@@ -193,15 +255,17 @@ bool divide_at_wall(const RadialWall& wall, const Vec3 (&c)[3], int face, int di
       parts.push_back(cut_part(wall, c, level, face));
       return true;
     case Place::kLarge:
+    case Place::kGrazing:
     case Place::kBent:
       break;
   }
   if (divisions >= kMostDivisions || static_cast<int>(parts.size()) > most_parts) return false;
-  const int i = place == Place::kBent
-                    ? worst_edge(e)
-                    : static_cast<int>(std::max_element(e.length, e.length + 3) - e.length);
+  const int i = place == Place::kBent      ? worst_edge(e)
+                : place == Place::kGrazing ? most_bent_edge(wall, c, e)
+                                           : longest_edge(e);
   const int j = (i + 1) % 3, k = (i + 2) % 3;
-  const Vec3 one[3] = {c[i], e.middle[i], c[k]}, two[3] = {e.middle[i], c[j], c[k]};
+  const Vec3 at = place == Place::kGrazing ? lowest_between(wall, c[i], c[j]) : e.middle[i];
+  const Vec3 one[3] = {c[i], at, c[k]}, two[3] = {at, c[j], c[k]};
   return divide_at_wall(wall, one, face, divisions + 1, most_parts, parts) &&
          divide_at_wall(wall, two, face, divisions + 1, most_parts, parts);
 }

@@ -12,6 +12,7 @@
 #include "core/support/meshes.h"
 #include "core/support/overlapping.h"
 #include "core/support/sanitized.h"
+#include "volcontact/pair/mesh_columns/radial/radial_cut.h"
 
 namespace volcontact::torus_columns_test {
 namespace {
@@ -192,6 +193,41 @@ TEST(TorusColumns, TheOtherOrderIsTheMirrorImage) {
   ASSERT_TRUE(one.touching());
   EXPECT_NEAR(one.volume, two.volume, 1e-9 * one.volume);
   EXPECT_LE((X_AB.rotation * two.area_vector + one.area_vector).norm(), 1e-6 * one.area);
+}
+
+// A face along a ring's highest circle, or but for rounding: divided into needles along it. Squares
+// took a million.
+TEST(TorusColumns, AFaceAlongARingIsDividedIntoFew) {
+  for (const double minor : {0.005, 0.02, 0.1, 0.29}) {
+    const RadialWall wall(Torus({.major_radius = kMajor, .minor_radius = minor}));
+    for (const double off : {0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-9, -1e-9, -1e-7}) {
+      const double z = minor + off;
+      const Vec3 face[3] = {{-1.0, -1.0, z}, {1.0, -0.9, z}, {0.1, 1.2, z}};
+      std::vector<RadialPart> parts;
+      EXPECT_TRUE(divide_at_wall(wall, face, 0, 0, 100000, parts)) << minor << ' ' << off;
+    }
+  }
+}
+
+// The segment of the tube that stands out of a box goes all round (Pappus).
+TEST(TorusColumns, ABoxUpToTheHighestCircleOfARing) {
+  for (const double minor : {0.02, 0.05, 0.1}) {
+    const Torus ring({.major_radius = kMajor, .minor_radius = minor});
+    const double whole = ring.own_metrics().volume;
+    for (const double out : {0.0, 1e-15, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3}) {
+      const Mesh box = mesh_of(box_soup(Vec3(0.5, 0.5, 0.2), 2));
+      const double height = minor - out, half = std::sqrt(std::max(0.0, out * (2.0 * minor - out)));
+      const double segment = minor * minor * std::atan2(half, height) - height * half;
+      const Interference found = evaluated(box, ring, shifted(0.0, 0.0, 0.2 - height));
+      const VolumeMetrics& inside = found.total;
+      EXPECT_EQ(found.engine, Engine::kColumns) << minor << ' ' << out;
+      const double left = whole - 2.0 * kPi * kMajor * segment;
+      EXPECT_NEAR(inside.volume, left, inside.volume_error + 1e-9 * left) << minor << ' ' << out;
+      const VolumeMetrics cap = evaluated(box, ring, shifted(0.0, 0.0, height + 0.2)).total;
+      const double expected = whole - left;
+      EXPECT_NEAR(cap.volume, expected, cap.volume_error + 1e-12 * whole) << minor << ' ' << out;
+    }
+  }
 }
 
 }  // namespace
