@@ -31,6 +31,7 @@ constexpr double kChangeError = 0.03;  // of what the last division changes: err
 constexpr double kStarError = 4.0;     // of the doubt of what is seen from a point; as measured
 constexpr double kStarShare = 0.1;     // of the tolerance: most that this adds to the doubt
 constexpr double kFlat = 1e-9;         // of the area of a patch: what its vector lacks
+constexpr double kAlongAxis = 1e-5;    // sine of an angle
 constexpr int kMostRounds = 6;         // of divisions of triangles
 constexpr double kAlmostAxis = 0.97, kAlmostAcross = 0.3;
 
@@ -170,6 +171,10 @@ class RoundColumns {
     Vec3 up = Vec3::UnitZ();
     const double length = surface.area_vector.norm();
     if (length > 1e-12 * surface.area) up = surface.area_vector / length;
+    // Beside a wall that leans by next to nothing columns have all lengths within next to nothing.
+    if (solid_.has_axis && up.cross(solid_.axis_direction).norm() < kAlongAxis) {
+      up = std::copysign(1.0, up.dot(solid_.axis_direction)) * solid_.axis_direction;
+    }
     const auto works = [&](const Vec3& direction) {
       return try_direction(direction.normalized(), slivers, surface, patch);
     };

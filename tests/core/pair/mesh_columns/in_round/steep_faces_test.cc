@@ -5,6 +5,8 @@
 
 #include "core/support/evaluated.h"
 #include "core/support/meshes.h"
+#include "core/support/random.h"
+#include "core/support/sanitized.h"
 #include "volcontact/pair/mesh_columns/in_round/round_columns.h"
 
 namespace volcontact::steep_faces_test {
@@ -85,6 +87,26 @@ TEST(SteepFaces, ACapsuleOverAllOfAFace) {
                               .total;
   EXPECT_NEAR(m.volume, expected, m.volume_error);
   EXPECT_NEAR(m.volume, expected, 1e-4 * expected);
+}
+
+// Upright in a face, or leaning by next to nothing: V goes with the length of the axis.
+TEST(SteepFaces, AlmostUprightWallsAreAsUpright) {
+  test::Random random(31);
+  for (int i = 0; i < test::cases(300, 40); ++i) {
+    const double radius = random.log_uniform(5e-3, 0.05), length = 0.1, deep = 0.12;
+    const Mesh box = mesh_of(box_soup({.3, .4, .2}, 1 + i % 4));
+    const double lean = random.log_uniform(1e-13, 1e-4), to = random.uniform(0.0, 2.0 * kPi);
+    const bool capsule = i % 2 == 0;
+    const Shape peg = capsule ? Shape(Capsule({.radius = radius, .half_length = length}))
+                              : Shape(Cylinder({.radius = radius, .half_length = length}));
+    Pose X;
+    X.rotation = test::turn(Vec3(std::cos(to), std::sin(to), 0), lean);
+    X.translation = Vec3(random.uniform(-.2, .2), random.uniform(-.3, .3), .2 + length - deep);
+    const double section = kPi * radius * radius;
+    const double expected = section * (deep + (capsule ? 2.0 / 3.0 * radius : 0.0));
+    const VolumeMetrics m = evaluated(box, peg, X).total;
+    EXPECT_NEAR(m.volume, expected, 2e-4 * expected) << i << " lean " << lean;
+  }
 }
 
 }  // namespace
