@@ -100,7 +100,8 @@ VolumeMetrics metrics_of(const OctreeTask& task, OctreeScratch& s, LeafRange lea
   if (n.isZero(0.0)) return metrics;
   // First from the surface of the flatter body, whose edges are edges of the leaves' surfaces.
   const double side = t.doubt[0] <= t.doubt[1] ? -1.0 : 1.0;
-  const OctreeScratch::ColumnSum columns = sum_columns(task, s, leaves, n, side, t.volume);
+  const OctreeScratch::ColumnSum columns =
+      sum_columns(task, s, leaves, n, side, t.volume, metrics.volume_error);
   metrics.depth_moment = columns.moment;
   // The ends of an overlap are known better than the columns between them. But one that is neither
   // convex nor on a plane may reach around what it lies on.

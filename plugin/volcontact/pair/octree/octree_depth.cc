@@ -195,10 +195,11 @@ double farthest_in(const OctreeTask& task, OctreeScratch& s, int leaf, const Vec
 }  // namespace
 
 // L may have kinks where no leaf ends; the volume, known better, tells whether the columns saw
-// them. Columns are followed from one side, then from the other, then more densely.
+// them, as far as it is known. Columns are followed from one side, then from the other, then more
+// densely.
 OctreeScratch::ColumnSum sum_columns(const OctreeTask& task, OctreeScratch& scratch,
                                      LeafRange leaves, const Vec3& n, double first_side,
-                                     double volume) {
+                                     double volume, double volume_error) {
   struct Density {
     int levels;
     bool fine;
@@ -206,8 +207,8 @@ OctreeScratch::ColumnSum sum_columns(const OctreeTask& task, OctreeScratch& scra
   constexpr Density kDensities[] = {{0, false}, {0, true}, {1, true}, {2, true}, {3, true}};
   OctreeScratch::ColumnSum best;
   double least_error = kInfinity;
-  const double allowed =
-      kColumnShare * std::max(task.tolerance, kColumnTolerance) * volume + task.rounding;
+  const double asked = kColumnShare * std::max(task.tolerance, kColumnTolerance) * volume;
+  const double allowed = std::max(asked, volume_error) + task.rounding;
   const double count = leaves.last - leaves.first;
   for (const auto [levels, fine] : kDensities) {
     if (levels > 0 && std::ldexp(count, 2 * levels) * task.tolerance > kPatches) break;

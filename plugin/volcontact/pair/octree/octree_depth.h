@@ -13,11 +13,11 @@ struct LeafRange {
 };
 
 /// Columns along the normal n, from the leaves' surfaces: int L^2/2 dA and the longest L. From
-/// which side to try first, in terms of n, `first_side` (1 or -1) tells. `volume` is what they must
-/// add up to.
+/// which side to try first, in terms of n, `first_side` (1 or -1) tells. `volume`, known to
+/// `volume_error`, is what they must add up to.
 OctreeScratch::ColumnSum sum_columns(const OctreeTask& task, OctreeScratch& scratch,
                                      LeafRange leaves, const Vec3& n, double first_side,
-                                     double volume);
+                                     double volume, double volume_error);
 
 /// Largest height e . x of the overlap over the origin of W.
 double farthest(const OctreeTask& task, OctreeScratch& scratch, LeafRange leaves, const Vec3& e);

@@ -144,6 +144,36 @@ TEST(OctreeField, TwistedBarEqualsItsQuadrature) {
   }
 }
 
+// A slab with bumps, and how often it is asked.
+struct Counted {
+  long* calls;
+  Aabb bounds() const { return {Vec3(-.3, -.2, -.1), Vec3(.3, .2, .1)}; }
+  double signed_distance(const Vec3& p) const {
+    ++*calls;
+    const double bump = .02 * std::sin(40 * p.x()) * std::sin(30 * p.y());
+    return .5 *
+           std::max({std::abs(p.x()) - .28, std::abs(p.y()) - .18, std::abs(p.z() + bump) - .05});
+  }
+};
+
+// Where the budget of cells is spent, V is known to tenths: columns that add up to it within a
+// millionth are sought in vain, and took twenty times as long as the cells.
+TEST(OctreeField, ColumnsAddUpToAVolumeAsFarAsItIsKnown) {
+  for (const int cells : {3000, 10000}) {
+    long calls = 0;
+    Interference out;
+    InterferenceWorkspace workspace;
+    interference(SignedDistance(Counted{&calls}), Box({.half_sizes = {.2, .2, .1}}),
+                 {Mat3::Identity(), Vec3(.1, .05, .12)},
+                 {.tolerance = 1e-6, .most_cells = cells}, workspace, out);
+    EXPECT_EQ(out.total.status, Status::kApproximate);
+    EXPECT_LT(calls, 40 * cells);
+    EXPECT_NEAR(out.total.depth, 0.05, 0.002);
+    EXPECT_GT(out.total.depth_moment, 0.2 * out.total.volume * out.total.depth);
+    EXPECT_LT(out.total.depth_moment, 0.5 * out.total.volume * out.total.depth);
+  }
+}
+
 TEST(OctreeField, GivesTheSameBitsForAnyNumberOfThreads) {
   const TwistedBar bar{0.05, 0.02, 0.15, 8.0};
   const Shape shape = SignedDistance(bar, {.lipschitz = bar.lipschitz()});
