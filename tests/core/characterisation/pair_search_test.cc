@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/support/sanitized.h"
+
 namespace volcontact::test::pair_search_test {
 namespace {
 
@@ -78,27 +80,48 @@ TEST(PairSearch, ABoxWithACornerOut) {
   EXPECT_TRUE(search.run(c, 1, kSeed + 1000003 * kIndex).failures.empty());
 }
 
-// A sample of what `./run search` does, of the families that all answers are right in.
+// Cases of the million that failed: a vector of area longer than the area, layers of 1e-11 m that
+// were not found, a capsule that leans by 4e-9, a wire through a plate whose second site was lost.
+TEST(PairSearch, FormerFailures) {
+  struct Number {
+    SearchFamily family;
+    std::uint64_t seed, index;
+  };
+  PairSearch search;
+  for (const auto& [family, seed, index] : {Number{SearchFamily::kSpecial, 147, 1456},
+                                            {SearchFamily::kBored, 40, 155},
+                                            {SearchFamily::kThin, 55, 648},
+                                            {SearchFamily::kThin, 41, 1755},
+                                            {SearchFamily::kSlender, 23, 459}}) {
+    const SearchOutcome outcome =
+        search.run(SearchCases(family, seed)[index], 0, seed + 1000003 * index);
+    EXPECT_TRUE(outcome.overlapping) << to_string(family) << ' ' << seed << ':' << index;
+    EXPECT_TRUE(outcome.failures.empty()) << to_string(family) << ' ' << seed << ':' << index;
+  }
+}
+
+// A sample of what `./run search` does.
 TEST(PairSearch, FindsNothing) {
   PairSearch search;
-  for (const SearchFamily family :
-       {SearchFamily::kRandom, SearchFamily::kMeshes, SearchFamily::kSlender}) {
-    SearchCases cases(family, 1);
-    int overlapping = 0, judged = 0;
-    for (std::uint64_t index = 0; index < 60; ++index) {
-      const SearchCase c = cases[index];
+  for (const SearchFamily family : kSearchFamilies) {
+    SearchCases of_family(family, 1);
+    const std::uint64_t count =
+        family == SearchFamily::kComposed ? test::cases(40, 10) : test::cases(200, 40);
+    std::uint64_t overlapping = 0, judged = 0;
+    for (std::uint64_t index = 0; index < count; ++index) {
+      const SearchCase c = of_family[index];
       const SearchOutcome outcome = search.run(c, 0, index);
-      overlapping += outcome.overlapping;
-      judged += outcome.level >= 0 && !outcome.undecided;
+      overlapping += outcome.overlapping ? 1 : 0;
+      judged += outcome.level >= 0 && !outcome.undecided ? 1 : 0;
       for (const SearchFailure& f : outcome.failures) {
-        if (f.what != "wrong volume" && f.what != "missed" && f.what != "not finite") continue;
+        if (f.what == "slow") continue;  // by the machine's clock
         ADD_FAILURE() << f.what << ", V = " << f.volume << " +- " << f.volume_error << ", expected "
                       << f.expected << " +- " << f.doubt << ": interference(" << f.a << ", " << f.b
                       << ", " << f.X_AB << ")";
       }
     }
-    EXPECT_GT(overlapping, 20) << to_string(family);
-    EXPECT_GT(judged, 50) << to_string(family);
+    EXPECT_GT(overlapping, count / 6) << to_string(family);
+    EXPECT_GT(judged, count * 4 / 5) << to_string(family);
   }
 }
 

@@ -164,8 +164,8 @@ TEST(OctreeField, ColumnsAddUpToAVolumeAsFarAsItIsKnown) {
     Interference out;
     InterferenceWorkspace workspace;
     interference(SignedDistance(Counted{&calls}), Box({.half_sizes = {.2, .2, .1}}),
-                 {Mat3::Identity(), Vec3(.1, .05, .12)},
-                 {.tolerance = 1e-6, .most_cells = cells}, workspace, out);
+                 {Mat3::Identity(), Vec3(.1, .05, .12)}, {.tolerance = 1e-6, .most_cells = cells},
+                 workspace, out);
     EXPECT_EQ(out.total.status, Status::kApproximate);
     EXPECT_LT(calls, 40 * cells);
     EXPECT_NEAR(out.total.depth, 0.05, 0.002);
