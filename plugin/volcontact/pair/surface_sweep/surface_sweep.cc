@@ -22,6 +22,7 @@ constexpr int kRounds = 4;            // of looking at curves that neighbours te
 constexpr double kSpeck = 1e-10;      // of V: a region that is none
 constexpr double kContained = 1e-6;   // of V: all of a solid
 constexpr double kBesideEdge = 1e-5;  // of the box: how far from an edge to look for surface
+constexpr double kNarrowExit = 1.0;   // [rad], about the turn by the first curves of a ring, twice
 constexpr double kDoubt = 5.0;  // error of V by how far the surface is from closed, as measured
 
 class SweepRun {
@@ -48,6 +49,7 @@ class SweepRun {
     const Pose X_WA = window_.X_AW.inverse();
     if (!s_.solids.read(*shapes_[0], X_WA, *shapes_[1], X_WA * X_AB_, half)) return false;
     if (!make_families()) return false;
+    hint_at_exits();
     bool looked = views_[0].convex && views_[1].convex;  // they have one region
     for (const double target : kTargets) {
       if (!sweep(target)) return false;
@@ -264,9 +266,10 @@ class SweepRun {
     return more;
   }
 
-  // A thin ring may go through a thin plate between two of its curves.
-  bool look_along_rings() {
-    bool more = false;
+  // Every ring with every bounded convex piece of the other solid, with the pose of the piece in
+  // the frame of the ring.
+  template <typename Use>
+  void each_ring(Use&& use) {
     for (int ring = 0; ring < 2; ++ring) {
       const auto* torus = std::get_if<Torus>(shapes_[ring]);
       if (!torus) continue;
@@ -281,21 +284,16 @@ class SweepRun {
           *shapes_[1 - ring]);
       const Pose X_TO = ring == 0 ? X_AB_ : X_AB_.inverse();
       for (const LinesPiece& piece : s_.pieces) {
-        if (!piece.body.bounded()) continue;
-        const double R = torus->major_radius(), r = torus->minor_radius();
-        find_torus_arcs(piece.body, X_TO * piece.X_SB, R, r, s_.arcs);
-        for (const double angle : s_.arcs.met) {
-          const Vec3 x(R * std::cos(angle), R * std::sin(angle), 0.0);
-          more |= is_new_on_ring(window_.X_AW.inverse() * (ring == 0 ? x : X_AB_ * x), ring);
-        }
+        if (piece.body.bounded()) use(ring, *torus, piece, X_TO * piece.X_SB);
       }
     }
-    return more;
   }
 
-  // Whether the curve of a ring about a place of its circle has surface that was not known.
-  bool is_new_on_ring(const Vec3& x, int ring) {
-    bool more = false;
+  // Calls use(face, family, u) for the curve about a place of the circle of a ring.
+  template <typename Use>
+  void each_curve_about(int ring, double radius, double angle, Use&& use) {
+    const Vec3 x_T(radius * std::cos(angle), radius * std::sin(angle), 0.0);
+    const Vec3 x = window_.X_AW.inverse() * (ring == 0 ? x_T : X_AB_ * x_T);
     const auto count = static_cast<int>(s_.family_of.size());
     for (int f = 0; f < count; ++f) {
       const SweepFace& face = s_.solids.faces[f];
@@ -304,9 +302,40 @@ class SweepRun {
       const CurveFamily& family = s_.families[s_.family_of[f]];
       double u, t;
       family.locate(x, u, t);
-      find_spans(s_.solids, family.curve(u), f, s_.patch.curve, spans_);
-      more |= spans_.count > 0 && is_new_curve(f, u);
+      use(f, family, u);
     }
+  }
+
+  // A thin ring may stand out of a round wall between two of its curves.
+  void hint_at_exits() {
+    each_ring([&](int ring, const Torus& torus, const LinesPiece& piece, const Pose& X_TB) {
+      const double R = torus.major_radius(), r = torus.minor_radius();
+      s_.faces.clear();
+      FaceWriter writer(s_.faces, X_TB, Owner::kB);
+      piece.body.write_faces(writer);
+      find_torus_exits(s_.faces, R, r, s_.exits);
+      for (const TorusExit& exit : s_.exits) {
+        if (exit.width() > kNarrowExit) continue;
+        each_curve_about(ring, R, exit.middle(), [&](int f, const CurveFamily&, double u) {
+          s_.patches[s_.family_of[f]].hints.push_back(u);
+        });
+      }
+    });
+  }
+
+  // It may go through a thin plate between two of its curves.
+  bool look_along_rings() {
+    bool more = false;
+    each_ring([&](int ring, const Torus& torus, const LinesPiece& piece, const Pose& X_TB) {
+      const double R = torus.major_radius();
+      find_torus_arcs(piece.body, X_TB, R, torus.minor_radius(), s_.arcs);
+      for (const double angle : s_.arcs.met) {
+        each_curve_about(ring, R, angle, [&](int f, const CurveFamily& family, double u) {
+          find_spans(s_.solids, family.curve(u), f, s_.patch.curve, spans_);
+          more |= spans_.count > 0 && is_new_curve(f, u);
+        });
+      }
+    });
     return more;
   }
 

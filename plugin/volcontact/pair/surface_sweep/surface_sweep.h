@@ -7,6 +7,7 @@
 #include "volcontact/pair/overlap.h"
 #include "volcontact/pair/sections/bore/composed_sections.h"
 #include "volcontact/pair/sections/torus/torus_arcs.h"
+#include "volcontact/pair/sections/torus/torus_exits.h"
 #include "volcontact/pair/surface_sweep/sweep_patch.h"
 #include "volcontact/pair/window/overlap_window.h"
 #include "volcontact/shape/shapes.h"
@@ -36,6 +37,8 @@ struct SurfaceSweepScratch {
   std::vector<Region> regions;
   std::vector<LinesPiece> pieces;
   TorusArcs arcs;
+  FaceSet faces;
+  std::vector<TorusExit> exits;
 };
 
 /// Interference of any two solids made of simple ones, from the surface of their overlap: metrics

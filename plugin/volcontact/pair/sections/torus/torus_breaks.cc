@@ -5,7 +5,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <utility>
+
+#include "volcontact/pair/sections/torus/curve_roots.h"
 
 namespace volcontact {
 namespace {
@@ -13,13 +14,8 @@ namespace {
 constexpr double kParallel = 1e-12;  // squared sine below which two planes have no line in common
 constexpr double kSlack = 1e-9;      // of places on faces, per radius of the ring
 constexpr int kMaxPlanes = 12;       // with more, corners are left to the refinement
-constexpr int kEdgeSteps = 12;       // places tried on an edge in search of the ring
-constexpr int kRootSteps = 8;
-constexpr int kWideRootSteps = 16;      // between places that are far apart
-constexpr int kDipSteps = 16;           // of the search for two roots between two places
-constexpr double kDipMargin = 0.2;      // of the bend, that a dip may go lower than it looks
-constexpr double kSmallHole = 0.1;      // R^2 - r^2, per R^2
-constexpr double kSlightLean = 0.1;     // sine of the angle between a plane and the axis
+constexpr double kSmallHole = 0.1;   // R^2 - r^2, per R^2
+constexpr double kSlightLean = 0.1;  // sine of the angle between a plane and the axis
 constexpr double kSlightOffset = 1e-2;  // per R
 constexpr double kSlightTip = 0.1;      // per R: a tip of a cone beside the axis
 constexpr double kSwing = 4.0;          // angle by that sine or offset: half of a section's swing
@@ -49,8 +45,6 @@ class TorusBreaks {
   }
 
  private:
-  enum class Curve { kOpen, kClosed };
-
   void note(const Vec3& x) { angles_.push_back(std::atan2(x.y(), x.x())); }
 
   bool inside(const Vec3& x) const {
@@ -196,7 +190,7 @@ class TorusBreaks {
     for (double end : {from, to}) {
       if (distance(x_at(end)) < -kSlack * minor_) note(x_at(end));
     }
-    pierce(x_at, from, to, Curve::kOpen);
+    pierce(x_at, from, to, CurveEnds::kOpen);
   }
 
   // A round edge: where it pierces the ring, and where a half-plane touches it.
@@ -205,99 +199,23 @@ class TorusBreaks {
     const auto x_at = [&](double t) -> Vec3 {
       return rim.center + rim.radius_u * std::cos(t) + rim.radius_v * std::sin(t);
     };
-    pierce(x_at, -kPi, kPi, Curve::kClosed);
+    pierce(x_at, -kPi, kPi, CurveEnds::kClosed);
     const auto turning = [&](double t) {
       const Vec3 x = x_at(t), v = rim.radius_v * std::cos(t) - rim.radius_u * std::sin(t);
       return x.x() * v.y() - x.y() * v.x();
     };
-    each_root(turning, -kPi, kPi, Curve::kClosed, [&](double t) {
+    each_root(turning, -kPi, kPi, CurveEnds::kClosed, [&](double t) {
       const Vec3 x = x_at(t);
       if (distance(x) < 0.0 && inside(x)) note(x);
     });
   }
 
   template <typename Place>
-  void pierce(Place&& x_at, double from, double to, Curve curve) {
-    each_root([&](double t) { return distance(x_at(t)); }, from, to, curve,
+  void pierce(Place&& x_at, double from, double to, CurveEnds ends) {
+    each_root([&](double t) { return distance(x_at(t)); }, from, to, ends,
               [&](double t) {
                 if (inside(x_at(t))) note(x_at(t));
               });
-  }
-
-  // Between places that are not far apart, by bracketed false position; two close to each other
-  // from the place between them where the function is nearest to zero. A closed curve ends where it
-  // began, at the same value: a root there is then seen, whatever its rounding.
-  template <typename Function, typename Use>
-  static void each_root(Function&& f, double from, double to, Curve curve, Use&& use) {
-    double x[kEdgeSteps + 2], y[kEdgeSteps + 2];
-    for (int i = 0; i <= kEdgeSteps; ++i) {
-      x[i] = from + (to - from) * i / kEdgeSteps;
-      y[i] = i == kEdgeSteps && curve == Curve::kClosed ? y[0] : f(x[i]);
-    }
-    int last = kEdgeSteps;
-    if (curve == Curve::kClosed) {
-      x[++last] = to + (to - from) / kEdgeSteps;
-      y[last] = y[1];
-    }
-    for (int i = 0; i < kEdgeSteps; ++i) {
-      if ((y[i] > 0.0) != (y[i + 1] > 0.0)) use(root_between(f, x[i], y[i], x[i + 1], y[i + 1]));
-    }
-    for (int i = 1; i < last; ++i) {
-      if (!dips(y + i)) continue;
-      const double sign = y[i] > 0.0 ? 1.0 : -1.0;
-      const double at = lowest([&](double t) { return sign * f(t); }, x[i - 1], x[i + 1]);
-      const double value = f(at);
-      if ((value > 0.0) == (y[i] > 0.0)) continue;
-      use(root_between(f, x[i - 1], y[i - 1], at, value, kWideRootSteps));
-      use(root_between(f, at, value, x[i + 1], y[i + 1], kWideRootSteps));
-    }
-  }
-
-  // Whether the middle one of three values of one sign is nearest to zero, and a parabola through
-  // them comes near zero or beyond.
-  static bool dips(const double* y) {
-    const double before = std::abs(y[-1]), here = std::abs(y[0]), after = std::abs(y[1]);
-    if ((y[-1] > 0.0) != (y[0] > 0.0) || (y[0] > 0.0) != (y[1] > 0.0)) return false;
-    if (!(here <= before && here <= after)) return false;
-    const double bend = before - 2.0 * here + after, slope = 0.5 * (after - before);
-    return here * bend < 0.5 * slope * slope + kDipMargin * bend * bend;
-  }
-
-  // By golden section; the first place found below zero will do.
-  template <typename Function>
-  static double lowest(Function&& f, double x0, double x3) {
-    constexpr double kGolden = 0.6180339887498949;
-    double x1 = x3 - kGolden * (x3 - x0), x2 = x0 + kGolden * (x3 - x0), f1 = f(x1), f2 = f(x2);
-    for (int step = 0; step < kDipSteps && f1 >= 0.0 && f2 >= 0.0; ++step) {
-      if (f1 < f2) {
-        x3 = x2;
-        x2 = std::exchange(x1, x2 - kGolden * (x2 - x0));
-        f2 = std::exchange(f1, f(x1));
-      } else {
-        x0 = x1;
-        x1 = std::exchange(x2, x1 + kGolden * (x3 - x1));
-        f1 = std::exchange(f2, f(x2));
-      }
-    }
-    return f1 < f2 ? x1 : x2;
-  }
-
-  template <typename Function>
-  static double root_between(Function&& f, double a, double fa, double b, double fb,
-                             int steps = kRootSteps) {
-    for (int step = 0; step < steps && fb != fa; ++step) {
-      const double x = b - fb * (b - a) / (fb - fa), fx = f(x);
-      if ((fx > 0.0) != (fb > 0.0)) {
-        a = b;
-        fa = fb;
-      } else {
-        fa *= 0.5;
-      }
-      b = x;
-      fb = fx;
-      if (fx == 0.0) break;
-    }
-    return b;
   }
 
   const FaceSet& faces_;

@@ -18,6 +18,7 @@ namespace {
 constexpr double kAxial = 1e-2;       // of directions, and of R: a face that holds the axis
 constexpr double kLostFace = 1e-5;    // of the area: a face that the sums have missed
 constexpr double kWidestAngle = 1.6;  // of an undivided arc [rad]
+constexpr double kNarrow = 0.16;      // share of a range: an exit that few half-planes see
 constexpr double kSameAngle = 1e-11;  // [rad]
 constexpr double kOnAxis = 1e-13;     // of a plane from the axis, per radius; a body may be thin
 constexpr double kInPlane = 1e-9;     // per R, and the sine of a slope: a rim of a face
@@ -46,7 +47,8 @@ class TorusSectionsRun {
   bool run() {
     set_faces();
     set_sections();
-    find_torus_sites(body_, X_, s_.path, s_.sections, s_.sites);
+    find_torus_exits(s_.faces, torus_.major_radius(), torus_.minor_radius(), s_.exits);
+    find_torus_sites(body_, X_, s_.path, s_.exits, s_.sections, s_.sites);
     if (s_.sites.ranges.empty()) return true;
     find_torus_breaks(s_.faces, torus_.major_radius(), torus_.minor_radius(), s_.breaks, &s_.roots);
     for (const TorusRange& range : s_.sites.ranges) {
@@ -98,14 +100,20 @@ class TorusSectionsRun {
 
   // The breaks within a range, in order, with its ends. A whole turn begins at a break. A break
   // beyond the last column found is the end, known better: a plane across the tube ends a section
-  // at once.
+  // at once. An exit that equal steps may miss is bounded by breaks as well.
   void set_corners(TorusRange& range) {
     corners_.clear();
-    if (range.whole && !s_.breaks.empty()) {
-      range.low = s_.breaks[0];
+    s_.angles.assign(s_.breaks.begin(), s_.breaks.end());
+    for (const TorusExit& exit : s_.exits) {
+      if (exit.width() > kNarrow * (range.high - range.low)) continue;
+      s_.angles.push_back(exit.low);
+      s_.angles.push_back(exit.high);
+    }
+    if (range.whole && !s_.angles.empty()) {
+      range.low = s_.angles[0];
       range.high = range.low + 2.0 * kPi;
     }
-    for (double angle : s_.breaks) {
+    for (double angle : s_.angles) {
       const double turned =
           angle - 2.0 * kPi * std::floor((angle - range.low + kSameAngle) / (2.0 * kPi));
       if (turned < range.high + kSameAngle) corners_.push_back(turned);
@@ -168,7 +176,7 @@ class TorusSectionsRun {
     s_.sections.clear();
     error_ = volume_scale_ = even_volume_ = 0.0;
     const bool done =
-        range.whole ? s_.breaks.empty() && !closer_ &&
+        range.whole ? s_.angles.empty() && !closer_ &&
                           integrate_even_turn(s_.sections, s_.path, options_.tolerance, error_)
                     : corners_.size() == 2 && !has_axial_plane() && whole_range(range);
     for (std::size_t i = 0; i + 1 < corners_.size() && !done; ++i) {

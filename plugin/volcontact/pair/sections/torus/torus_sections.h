@@ -14,7 +14,8 @@ struct TorusSectionsScratch {
   FaceSet faces;
   TorusSection sections;
   TorusSites sites;
-  std::vector<double> breaks, roots, corners;
+  std::vector<TorusExit> exits;
+  std::vector<double> breaks, roots, angles, corners;
 };
 
 /// Where area vector and depth are taken from: a body without round faces gives them best by its

@@ -17,9 +17,9 @@ constexpr double kEndWidth = 1e-4;          // to which an end is known, of the 
 
 class SiteSearch {
  public:
-  SiteSearch(const ConvexView& body, const Pose& X, SimdPath path, TorusSection& sections,
-             TorusSites& sites)
-      : body_(body), X_(X), path_(path), sections_(sections), s_(sites) {}
+  SiteSearch(const ConvexView& body, const Pose& X, SimdPath path,
+             const std::vector<TorusExit>& exits, TorusSection& sections, TorusSites& sites)
+      : body_(body), X_(X), path_(path), exits_(exits), sections_(sections), s_(sites) {}
 
   void run() {
     s_.ranges.clear();
@@ -43,6 +43,9 @@ class SiteSearch {
       for (int i = 0; i <= parts; ++i) {
         s_.samples.push_back({arc.low + width * i / parts, 0.0});
       }
+    }
+    for (const TorusExit& exit : exits_) {
+      if (exit.all && exit.width() < 2.0 * kSampleStep) s_.samples.push_back({exit.middle(), 0.0});
     }
     for (Sample& sample : s_.samples) {
       if (sample.angle < s_.arcs.start - kPi) sample.angle += 2.0 * kPi;
@@ -230,15 +233,17 @@ class SiteSearch {
   const ConvexView& body_;
   const Pose& X_;
   SimdPath path_;
+  const std::vector<TorusExit>& exits_;
   TorusSection& sections_;
   TorusSites& s_;
 };
 
 }  // namespace
 
-void find_torus_sites(const ConvexView& body, const Pose& X, SimdPath path, TorusSection& sections,
+void find_torus_sites(const ConvexView& body, const Pose& X, SimdPath path,
+                      const std::vector<TorusExit>& exits, TorusSection& sections,
                       TorusSites& sites) {
-  SiteSearch(body, X, path, sections, sites).run();
+  SiteSearch(body, X, path, exits, sections, sites).run();
 }
 
 }  // namespace volcontact

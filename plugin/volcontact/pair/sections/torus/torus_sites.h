@@ -5,6 +5,7 @@
 
 #include "volcontact/pair/convex/convex_view.h"
 #include "volcontact/pair/sections/torus/torus_arcs.h"
+#include "volcontact/pair/sections/torus/torus_exits.h"
 #include "volcontact/pair/sections/torus/torus_section.h"
 
 namespace volcontact {
@@ -29,8 +30,10 @@ struct TorusSites {
 
 /// Finds where a ring meets a bounded convex body with the pose X in the ring's frame. What no
 /// plane parts from it is looked through half-plane by half-plane, with those where a ball meets
-/// the body among them, so that no overlap is too small to be found. docs/theory.md, "Tori".
-void find_torus_sites(const ConvexView& body, const Pose& X, SimdPath path, TorusSection& sections,
+/// the body among them, so that no overlap is too small to be found, and those of the exits at
+/// which all of the ring is outside, so that no gap is. docs/theory.md, "Tori".
+void find_torus_sites(const ConvexView& body, const Pose& X, SimdPath path,
+                      const std::vector<TorusExit>& exits, TorusSection& sections,
                       TorusSites& sites);
 
 }  // namespace volcontact

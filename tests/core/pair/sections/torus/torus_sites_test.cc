@@ -12,6 +12,7 @@ constexpr double kMajor = 0.3, kMinor = 0.1;
 
 struct Found {
   FaceSet faces;
+  std::vector<TorusExit> exits;
   TorusSection sections;
   TorusSites sites;
 };
@@ -22,7 +23,7 @@ std::vector<TorusRange> ranges(const Body& body, const Pose& X) {
   FaceWriter writer(found.faces, X, Owner::kB);
   writer.write(body);
   found.sections.set(found.faces, kMajor, kMinor);
-  find_torus_sites(ConvexView(body), X, best_simd_path(), found.sections, found.sites);
+  find_torus_sites(ConvexView(body), X, best_simd_path(), found.exits, found.sections, found.sites);
   return found.sites.ranges;
 }
 
