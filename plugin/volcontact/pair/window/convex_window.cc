@@ -73,6 +73,8 @@ constexpr int kMaxInLayer = 32;    // the same in a layer between plane faces
 constexpr double kEven = 1.1;      // mean of squares of axes by the square of their mean, of a ball
 constexpr double kRounding = 1e-12;  // of a common point, per its distance from both frames
 constexpr int kMaxTurns = 5;         // in search of a place behind both planes of an edge
+constexpr double kNearEdge = 1e-3;   // of a start from both faces of an edge, per size
+constexpr double kLeastEdge = 1e-6;  // squared sine between the two
 constexpr int kMaxMoves = 8;         // from a common point on the faces into the overlap
 constexpr double kFlush = 1e-6;      // faces that lean less, and overlap less, make a thin layer
 constexpr double kRound = 3.5;       // longest by shortest way out of a well-rounded overlap
@@ -98,7 +100,9 @@ class WindowSearch {
       window.kind = owner == Owner::kB ? LinesWindow::Kind::kAInB : LinesWindow::Kind::kBInA;
       return window;
     }
-    if (find_start(window.center)) round_off(window);
+    if (!find_start(window.center)) return window;
+    move_along_edge(window.center);
+    round_off(window);
     return window;
   }
 
@@ -274,6 +278,25 @@ class WindowSearch {
       f1 = f;
     }
     return false;
+  }
+
+  // An edge that reaches next to nothing into the other solid, along its wall, overlaps in a thin
+  // prism: from a place at its end chords see that end alone.
+  void move_along_edge(Vec3& start) const {
+    const double near = kNearEdge * size();
+    const std::vector<PlaneFace>& planes = faces_.active.planes;
+    for (std::size_t i = 1; i < planes.size(); ++i) {
+      if (!(planes[i].offset - planes[i].normal.dot(start) < near)) continue;
+      for (std::size_t j = 0; j < i; ++j) {
+        if (planes[j].owner != planes[i].owner) continue;
+        if (!(planes[j].offset - planes[j].normal.dot(start) < near)) continue;
+        const Vec3 along = planes[i].normal.cross(planes[j].normal);
+        Vec3 place = start;
+        if (along.squaredNorm() > kLeastEdge && move_to_middle(along, place) && inside(place)) {
+          start = place;
+        }
+      }
+    }
   }
 
   // Between two faces that look at each other and are nearly in one plane. Along them a common

@@ -13,10 +13,13 @@ constexpr int kMaxRoundings = 24;  // of the frame
 constexpr double kRoundRim =
     3.0;                        // longest by shortest way to the outline; then it is round enough
 constexpr double kSpike = 6.0;  // longest by shortest of all ways: a spike between the first ones
-constexpr double kLeastCosine = 0.5;  // of the half of a turn between directions
-constexpr double kStraight = 1e-6;    // sine of a turn below which the outline has no corner
-constexpr int kNarrowings = 3;        // of a place where the outline comes near the wall
-constexpr int kEndNarrowings = 2;     // of a place where it crosses the wall
+constexpr double kLeastCosine = 0.5;    // of the half of a turn between directions
+constexpr double kStraight = 1e-6;      // sine of a turn below which the outline has no corner
+constexpr int kNarrowings = 3;          // of a place where the outline comes near the wall
+constexpr int kMostNarrowings = 16;     // of one at a corner that may reach through it
+constexpr int kEndNarrowings = 2;       // of a place where it crosses the wall
+constexpr int kMostEndNarrowings = 16;  // of one at the end of a narrow lobe
+constexpr double kEndShare = 0.1;       // of half a lobe: as closely as this its ends are searched
 
 }  // namespace
 
@@ -189,7 +192,7 @@ void BoreOutline::look_behind_corners() {
 BoreOutline::Place BoreOutline::summit(double from, double to, double side) {
   Place places[kLanes];
   Place top;
-  for (int step = 0; step < kNarrowings; ++step) {
+  for (int step = 1; step <= kMostNarrowings; ++step) {
     double angles[kLanes];
     for (int i = 0; i < kLanes; ++i) angles[i] = from + (to - from) * (i + 1) / (kLanes + 1);
     places_at(angles, places);
@@ -200,15 +203,24 @@ BoreOutline::Place BoreOutline::summit(double from, double to, double side) {
                                       places);
     top = places[best];
     const double width = (to - from) / (kLanes + 1);
-    if (step + 1 == kNarrowings && best > 0 && best + 1 < kLanes) {
-      // The summit of the parabola through three places.
-      const double low = places[best - 1].rho, high = places[best + 1].rho;
-      const double bend = low - 2.0 * top.rho + high;
-      if (side * bend < 0.0) {
-        std::fill_n(angles, kLanes, top.angle + 0.5 * width * (low - high) / bend);
-        places_at(angles, places);
-        if (side * places[0].rho > side * top.rho) top = places[0];
+    if (step >= kNarrowings) {
+      // A corner beside the best place rises no more than the outline does up to it, or up to the
+      // place before.
+      const auto rho = [&](int i) { return side * places[std::clamp(i, 0, kLanes - 1)].rho; };
+      const double here = rho(best), before = rho(best - 1), after = rho(best + 1);
+      double highest = 2.0 * here - std::min(before, after);
+      if (best == 0) highest = std::max(highest, 2.0 * rho(1) - rho(2));
+      if (best + 1 == kLanes) highest = std::max(highest, 2.0 * before - rho(best - 2));
+      if (best > 0 && best + 1 < kLanes) {
+        // The summit of the parabola through three places.
+        const double bend = before - 2.0 * here + after;
+        if (bend < 0.0) {
+          std::fill_n(angles, kLanes, top.angle + 0.5 * width * (before - after) / bend);
+          places_at(angles, places);
+          if (side * places[0].rho > here) top = places[0];
+        }
       }
+      if (side * (top.rho - 1.0) > 0.0 || highest < side) break;
     }
     from = top.angle - width;
     to = top.angle + width;
@@ -217,8 +229,9 @@ BoreOutline::Place BoreOutline::summit(double from, double to, double side) {
   return top;
 }
 
-// Where the outline crosses the wall, between two pairs of an inner and an outer place.
-void BoreOutline::crossings(Place (&inner)[2], Place (&outer)[2], Place (&found)[2]) {
+// Where the outline crosses the wall.
+void BoreOutline::crossings(const Place& top, Place (&inner)[2], Place (&outer)[2],
+                            Place (&found)[2]) {
   set_frame();
   constexpr int kShare = kLanes / 2;
   double angles[kLanes];
@@ -226,7 +239,17 @@ void BoreOutline::crossings(Place (&inner)[2], Place (&outer)[2], Place (&found)
   for (int side : {0, 1}) {
     outer[side].angle = inner[side].angle + wrapped(outer[side].angle - inner[side].angle);
   }
-  for (int step = 0; step < kEndNarrowings; ++step) {
+  // Whether the ends are known well enough for chords. The outer places of a lobe that one place
+  // stands for are its top at first.
+  const auto close = [&] {
+    for (int side : {0, 1}) {
+      const double half = std::abs(wrapped(outer[side].angle - top.angle));
+      if (std::abs(outer[side].angle - inner[side].angle) > kEndShare * half) return false;
+    }
+    return true;
+  };
+  for (int step = 0; step < kMostEndNarrowings; ++step) {
+    if (step >= kEndNarrowings && close()) break;
     for (int i = 0; i < kLanes; ++i) {
       const int side = i / kShare;
       const double part = (i % kShare + 1.0) / (kShare + 1.0);

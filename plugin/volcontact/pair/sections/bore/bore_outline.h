@@ -52,8 +52,9 @@ class BoreOutline {
   bool trace();
   const std::vector<Place>& places() const { return places_; }
 
-  /// Where the outline crosses the wall, between two pairs of an inner and an outer place.
-  void crossings(Place (&inner)[2], Place (&outer)[2], Place (&found)[2]);
+  /// Where the outline crosses the wall on both sides of the `top` of a lobe, between two pairs of
+  /// an inner and an outer place.
+  void crossings(const Place& top, Place (&inner)[2], Place (&outer)[2], Place (&found)[2]);
 
   /// Places of the outline on the way from two of them to two others, four each. After crossings().
   void between(const Place (&from)[2], const Place (&to)[2], Place (&places)[kLanes]);

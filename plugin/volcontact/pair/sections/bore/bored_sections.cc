@@ -22,8 +22,10 @@ constexpr double kOnWall = 1e-12;  // of a place from the wall, per the size of 
 constexpr double kEndError =
     5.0;  // error by its estimate where an arc ends in nothing, as measured
 constexpr double kInnerCone = 1e-4;   // error of the rule along a half-plane, from an apex, per V
-constexpr double kLeastLobe = 1e-6;   // of radii: what rounding may leave nothing of
+constexpr double kLeastLobe = 1e-7;   // of radii: what rounding may leave nothing of
 constexpr double kNearWall = 1e-3;    // of a place from the wall, in radii: there may be a film
+constexpr double kNearFlank = 1e-5;   // the same of the flank of a cone with its taper
+constexpr double kSameTaper = 1e-9;   // of slopes and axes
 constexpr double kThroughBore = 0.5;  // of radii: between places outside of the wall nothing is
 
 class BoreRun {
@@ -48,10 +50,11 @@ class BoreRun {
     if (body_.reach() <= 1.0) return true;  // all of it in the bore
     window_ = find_lines_window(a_, b_, X_AB_, s_.path, true, s_.faces);
     if (window_.kind == LinesWindow::Kind::kApart) return true;
-    if (apex_is_on_a_face()) return false;
+    if (apex_is_on_a_face()) return is_film({});
     s_.sections.choose_rule(options_.tolerance);
     move_off_axis();
     if (bore_.is_cone()) look_straight_ahead();
+    if (is_flank_near_wall() && is_film({})) return true;
     if (!outline_.trace()) return false;
     set_rounding();
     const std::vector<Place>& places = outline_.places();
@@ -62,19 +65,53 @@ class BoreRun {
         places.begin(), places.end(), [](const Place& p, const Place& q) { return p.rho < q.rho; });
     const double radius = bore_.radius_at(window_.center);
     // The places are known to what the sections take to be parallel to the wall.
-    if (std::abs(farthest->rho - 1.0) < kNearWall &&
+    const bool near_wall = std::abs(farthest->rho - 1.0) < kNearWall;
+    if (near_wall &&
         is_wall_film(s_.faces.active, bore_, std::max(farthest->rho - 1.0, 0.0) * radius,
                      extent_along()) &&
-        add_wall_film({a_, b_, X_AB_, bore_, owner_}, window_.center, places, options_, regions_)) {
+        add_film(places)) {
       return true;
     }
     if (!is_outer(*farthest)) return true;  // all of it in the bore
-    if (nearest->rho < 1.0 - rounding_) return each_lobe();
-    return outside_all_round();
+    if (!(nearest->rho < 1.0 - rounding_)) return outside_all_round();
+    if (each_lobe()) return true;
+    return near_wall && is_film(places);
   }
 
  private:
   using Place = BoreOutline::Place;
+
+  bool add_film(const std::vector<Place>& places) {
+    return add_wall_film({a_, b_, X_AB_, bore_, owner_, s_.faces.active}, window_.center, places,
+                         options_, regions_);
+  }
+
+  // What is left where sections do not see it, as the flank of a cone that is parallel to the wall:
+  // nothing but a film that is known to the tolerance.
+  bool is_film(const std::vector<Place>& places) {
+    const std::size_t begun = regions_.size();
+    bool good = add_film(places) && regions_.size() > begun;
+    for (std::size_t i = begun; good && i < regions_.size(); ++i) {
+      good = regions_[i].metrics.status == Status::kOk;
+    }
+    if (!good) regions_.cut(begun);
+    return good;
+  }
+
+  // Whether a cone of the same taper, its axis parallel, lies along the wall: from the apex it is
+  // seen edge on.
+  bool is_flank_near_wall() const {
+    if (!bore_.is_cone()) return false;
+    for (const RoundFace& face : s_.faces.active.rounds) {
+      if (!face.cone) continue;
+      const Vec3 axis = face.map.row(2);  // as long as the taper
+      if (!((axis - bore_.slope * bore_.axis).norm() < kSameTaper * bore_.slope)) continue;
+      const double across = bore_.from_axis(face.center).norm();
+      const double depth = across - bore_.slope * bore_.height(face.center);
+      if (std::abs(depth) < kNearFlank * bore_.radius_at(window_.center)) return true;
+    }
+    return false;
+  }
 
   // About how far the overlap reaches along the axis.
   double extent_along() const {
@@ -220,7 +257,7 @@ class BoreRun {
     const Place outer = outline_.places()[(first + from) % n],
                 after = outline_.places()[(first + to) % n];
     Place inner_two[2] = {inner, after}, outer_two[2] = {outer, last_outer}, found[2];
-    outline_.crossings(inner_two, outer_two, found);
+    outline_.crossings(top, inner_two, outer_two, found);
     Place beside[kLanes];
     const Place next_two[2] = {outer, last_outer};
     outline_.between(found, next_two, beside);

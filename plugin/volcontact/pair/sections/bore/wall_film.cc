@@ -124,24 +124,31 @@ class WallFilm {
                                  : within(origin_ + (1.0 - kWithin) * bore_.radius * e, bore_.axis);
     double low = bore_.is_cone() ? std::max(line.enter, 0.0) : line.enter, high = line.leave;
     if (!(low < high) || !std::isfinite(low) || !std::isfinite(high)) return strip;
+    const double from = low, to = high;
+    const double inner = 1e-9 * (to - from);  // the ends themselves are rounding
+    const double at_from = thickness(e, from + inner), at_to = thickness(e, to - inner);
     // Golden section.
     constexpr double kPart = 0.38196601125010515;
-    const double from = low, to = high;
     double x = low + kPart * (high - low), y = high - kPart * (high - low);
-    double at_x = thickness(e, x), at_y = thickness(e, y);
+    double at_low = at_from, at_x = thickness(e, x), at_y = thickness(e, y), at_high = at_to;
     for (int step = 0; step < kGolden; ++step) {
       const double most = std::max(at_x, at_y), slope = std::abs(at_y - at_x) / (y - x);
       if (most > rounding_ && step > 3) break;
-      // Nowhere above the line through two places beyond these.
-      if (most + slope * std::max(x - low, high - y) < 0.0) return strip;
+      // Nowhere above the line through two places beyond these, so neither between two others.
+      const double beyond = most + slope * std::max(x - low, high - y);
+      const double between = std::min(at_x + std::max(at_x - at_low, 0.0) * (y - x) / (x - low),
+                                      at_y + std::max(at_y - at_high, 0.0) * (y - x) / (high - y));
+      if (std::max(beyond, between) < 0.0) return strip;
       if (at_x > at_y) {
         high = y;
+        at_high = at_y;
         y = x;
         at_y = at_x;
         x = low + kPart * (high - low);
         at_x = thickness(e, x);
       } else {
         low = x;
+        at_low = at_x;
         x = y;
         at_x = at_y;
         y = high - kPart * (high - low);
@@ -149,8 +156,6 @@ class WallFilm {
       }
     }
     const double top = at_x > at_y ? x : y, at_top = std::max(at_x, at_y);
-    const double inner = 1e-9 * (to - from);  // the ends themselves are rounding
-    const double at_from = thickness(e, from + inner), at_to = thickness(e, to - inner);
     strip.depth = std::max({at_top, at_from, at_to});
     if (!(strip.depth > rounding_)) return strip;
     const double peak = at_top >= std::max(at_from, at_to) ? top
@@ -181,14 +186,17 @@ class WallFilm {
     return x;
   }
 
-  // Even steps, and the places of the outline.
+  // Even steps, the places of the outline, and where a round face comes nearest to the wall, if its
+  // axis is parallel to that of the bore, or it is a ball.
   void set_angles(const std::vector<BoreOutline::Place>& places) {
     for (int i = 0; i < kTurn; ++i) angles_.push_back(2.0 * kPi * (i + 0.5) / kTurn);
-    for (const BoreOutline::Place& place : places) {
-      const Vec3 d = bore_.from_axis(place.point);
+    const auto add = [&](const Vec3& x) {
+      const Vec3 d = bore_.from_axis(x);
       const double theta = std::atan2(d.dot(v_), d.dot(u_));
       angles_.push_back(theta < 0.0 ? theta + 2.0 * kPi : theta);
-    }
+    };
+    for (const BoreOutline::Place& place : places) add(place.point);
+    for (const RoundFace& face : s_.faces.rounds) add(face.center);
     std::sort(angles_.begin(), angles_.end());
     for (const double theta : angles_) depth_.push_back(strip_at(theta).depth);
   }
@@ -247,36 +255,39 @@ class WallFilm {
     sum.depth = std::max(sum.depth, across);
   }
 
-  FilmSum along(const Vec3& e, double low, double high, double weight) const {
-    FilmSum sum;
-    for (int i = 0; i < kLanes; ++i) {
-      add_column(e, low + (high - low) * Rule::kNodes[i], weight * (high - low) * Rule::kWeights[i],
-                 sum);
-    }
-    return sum;
-  }
-  FilmSum along(const Vec3& e, double low, double high, double weight, const FilmSum& whole,
-                int halvings) const {
-    const double middle = 0.5 * (low + high);
-    FilmSum one = along(e, low, middle, weight), two = along(e, middle, high, weight);
-    const double volume = one.moments.volume + two.moments.volume;
-    if (halvings < kMostAlong && std::abs(volume - whole.moments.volume) > 0.1 * kTarget * volume) {
-      one = along(e, low, middle, weight, one, halvings + 1);
-      two = along(e, middle, high, weight, two, halvings + 1);
-    }
-    one.add(two);
-    return one;
-  }
-
-  // A part of an arc, in x of [0, 1]: the angle is smooth in x where the arc ends in nothing.
+  // From one end of a film to the other, in x of [0, 1], which is close where the film may fall to
+  // nothing: as the root of the way, or over a ball's width at the end of a tube.
   struct Arc {
-    double from, to;
+    double from, to;  // angles, or heights
     double at(double x, double& speed) const {
       const double half = 0.5 * (to - from);
       speed = half * kPi * std::sin(kPi * x);
       return from + half * (1.0 - std::cos(kPi * x));
     }
   };
+  FilmSum along(const Vec3& e, const Arc& wall, double x_from, double x_to, double weight) const {
+    FilmSum sum;
+    for (int i = 0; i < kLanes; ++i) {
+      double speed;
+      const double h = wall.at(x_from + (x_to - x_from) * Rule::kNodes[i], speed);
+      add_column(e, h, weight * speed * (x_to - x_from) * Rule::kWeights[i], sum);
+    }
+    return sum;
+  }
+  FilmSum along(const Vec3& e, const Arc& wall, double x_from, double x_to, double weight,
+                const FilmSum& whole, int halvings) const {
+    const double middle = 0.5 * (x_from + x_to);
+    FilmSum one = along(e, wall, x_from, middle, weight),
+            two = along(e, wall, middle, x_to, weight);
+    const double volume = one.moments.volume + two.moments.volume;
+    if (halvings < kMostAlong && std::abs(volume - whole.moments.volume) > 0.1 * kTarget * volume) {
+      one = along(e, wall, x_from, middle, weight, one, halvings + 1);
+      two = along(e, wall, middle, x_to, weight, two, halvings + 1);
+    }
+    one.add(two);
+    return one;
+  }
+
   FilmSum part_of(const Arc& arc, double x_from, double x_to) {
     FilmSum sum;
     for (int i = 0; i < kLanes; ++i) {
@@ -286,7 +297,8 @@ class WallFilm {
       if (strip.empty()) continue;
       const Vec3 e = out(theta);
       const double weight = speed * (x_to - x_from) * Rule::kWeights[i];
-      sum.add(along(e, strip.low, strip.high, weight, along(e, strip.low, strip.high, weight), 0));
+      const Arc wall{strip.low, strip.high};
+      sum.add(along(e, wall, 0.0, 1.0, weight, along(e, wall, 0.0, 1.0, weight), 0));
       longest_ = std::max(longest_, strip.high - strip.low);
     }
     return sum;

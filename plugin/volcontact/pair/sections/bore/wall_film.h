@@ -15,6 +15,7 @@ struct BoredBodies {
   const Pose& X_AB;
   const Bore& bore;
   Owner owner;
+  const FaceSet& faces;  ///< of both
 };
 
 /// Whether a body fits the bore so closely that an overlap, which reaches `depth` out of its wall
@@ -24,8 +25,8 @@ struct BoredBodies {
 bool is_wall_film(const FaceSet& faces, const Bore& bore, double depth, double length);
 
 /// The regions of an overlap that lies on the wall of a bore like a film, much wider than thick:
-/// its thickness is that of rays across the wall. `places` are of its outline. With theta about the
-/// axis, h along it, r the wall and d the thickness across the axis
+/// its thickness is that of rays across the wall. `places` are of its outline, if any. With theta
+/// about the axis, h along it, r the wall and d the thickness across the axis
 ///
 ///   V = int int (r + d/2) d dh dtheta
 ///
