@@ -21,7 +21,9 @@ constexpr double kSameCorner = 1e-7;  // squared distance of directions that cou
 constexpr int kMaxRecenterings = 24;  // from a far corner of a thin overlap
 constexpr double kRoundRim = 2.0;     // longest by shortest way to the rim; then one step is enough
 constexpr double kMostTurn = 0.5;  // of the columns towards the normal of the rim; more: no normal
-constexpr double kAligned = 0.1;   // a turn after which the next one would be too small to matter
+constexpr double kMostInStrip = 1.3;  // the same where the first direction is known roughly
+constexpr double kAligned = 0.1;     // a turn after which the next one would be too small to matter
+constexpr double kUpright = 1e-4;    // of a face to the columns: the sine of its lean
 constexpr double kLargestCap = 0.1;  // of V, as a cap that stands out unseen
 constexpr int kClimbs = 4;           // to where a solid is farthest out of a face
 constexpr double kWhole = 0.999;     // share of a solid in the overlap, that is all of it
@@ -236,7 +238,7 @@ class LinesRun {
       const bool aligned = !along_normal_ || align(rim);
       const bool round = rim.longest() < kRoundRim * rim.shortest();
       recenter(rim);
-      if (aligned && round) return;
+      if (aligned && round && (step > 0 || !window_.strip)) return;
     }
   }
 
@@ -249,14 +251,31 @@ class LinesRun {
           ends.rho[i] * (ends.u[i] * frame_.u + ends.v[i] * frame_.v) + ends.height[i] * frame_.t;
     }
     for (int i = 0; i < kLanes; ++i) sum += rim[i].cross(rim[(i + 1) % kLanes]);
-    sum.normalize();
+    sum = squared(sum.normalized());
     const double turn = (sum - frame_.t).norm();
-    if (!(turn < kMostTurn)) return true;
+    if (!(turn < (window_.strip ? kMostInStrip : kMostTurn))) return true;
     const Mat3 turned = turn_between(frame_.t, sum);
     frame_.u = turned * frame_.u;
     frame_.v = turned * frame_.v;
     frame_.t = sum;
     return turn < kAligned;
+  }
+
+  // The same direction, normal to what is so but for a little: the ends of what lies along the
+  // other solid. As steep faces they would have an area of rounding, and the height of a long
+  // overlap would be that of its lean.
+  Vec3 squared(Vec3 t) const {
+    const auto square = [&t](const Vec3& d) {
+      const double lean = d.dot(t);
+      if (lean != 0.0 && std::abs(lean) < kUpright) t = (t - lean * d).normalized();
+    };
+    for (const PlaneFace& plane : s_.faces.active.planes) square(plane.normal);
+    for (const RoundFace& face : s_.faces.active.rounds) {
+      if (!face.cone && face.map.row(2).isZero(0.0)) {
+        square(Vec3(face.map.row(0)).cross(Vec3(face.map.row(1))).normalized());
+      }
+    }
+    return t;
   }
 
   void recenter(const RimShape& rim) {

@@ -73,7 +73,8 @@ constexpr int kMaxInLayer = 32;    // the same in a layer between plane faces
 constexpr double kEven = 1.1;      // mean of squares of axes by the square of their mean, of a ball
 constexpr double kRounding = 1e-12;  // of a common point, per its distance from both frames
 constexpr int kMaxTurns = 5;         // in search of a place behind both planes of an edge
-constexpr double kNearEdge = 1e-3;   // of a start from both faces of an edge, per size
+constexpr double kNearFace =
+    1e-3;  // of a start from a wall, or from both faces of an edge, per size
 constexpr double kLeastEdge = 1e-6;  // squared sine between the two
 constexpr int kMaxMoves = 8;         // from a common point on the faces into the overlap
 constexpr double kFlush = 1e-6;      // faces that lean less, and overlap less, make a thin layer
@@ -101,7 +102,7 @@ class WindowSearch {
       return window;
     }
     if (!find_start(window.center)) return window;
-    move_along_edge(window.center);
+    move_along_strip(window.center);
     round_off(window);
     return window;
   }
@@ -280,10 +281,20 @@ class WindowSearch {
     return false;
   }
 
-  // An edge that reaches next to nothing into the other solid, along its wall, overlaps in a thin
-  // prism: from a place at its end chords see that end alone.
-  void move_along_edge(Vec3& start) const {
-    const double near = kNearEdge * size();
+  // An edge or the wall of a cylinder or cone that reaches next to nothing into the other solid,
+  // and lies along it, overlaps in a thin strip: from a place at its end chords see that end alone.
+  // Moves to the middle of the longest.
+  void move_along_strip(Vec3& start) {
+    const double near = kNearFace * size();
+    strip_ = Vec3::Zero();
+    const auto move = [&](const Vec3& along) {
+      Vec3 place = start;
+      if (!move_to_middle(along, place) || !inside(place)) return;
+      start = place;
+      const RayInterval span = common(start, along);
+      const Vec3 half = 0.5 * (span.leave - span.enter) * along;
+      if (half.squaredNorm() > strip_.squaredNorm()) strip_ = half;
+    };
     const std::vector<PlaneFace>& planes = faces_.active.planes;
     for (std::size_t i = 1; i < planes.size(); ++i) {
       if (!(planes[i].offset - planes[i].normal.dot(start) < near)) continue;
@@ -291,11 +302,14 @@ class WindowSearch {
         if (planes[j].owner != planes[i].owner) continue;
         if (!(planes[j].offset - planes[j].normal.dot(start) < near)) continue;
         const Vec3 along = planes[i].normal.cross(planes[j].normal);
-        Vec3 place = start;
-        if (along.squaredNorm() > kLeastEdge && move_to_middle(along, place) && inside(place)) {
-          start = place;
-        }
+        if (along.squaredNorm() > kLeastEdge) move(along);
       }
+    }
+    for (const RoundFace& face : faces_.active.rounds) {
+      const bool tube = !face.cone && face.map.row(2).isZero(0.0);
+      if (!tube && !face.cone) continue;
+      if (!(-face(start) < 2.0 * near * face.half_gradient(start).norm())) continue;
+      move(tube ? Vec3(face.map.row(0)).cross(Vec3(face.map.row(1))) : start - face.center);
     }
   }
 
@@ -351,12 +365,28 @@ class WindowSearch {
 
   // To the middle of the overlap on the line x + t d; false where it has none.
   bool move_to_middle(const Vec3& d, Vec3& x) const {
+    const RayInterval span = common(x, d);
+    if (!(span.enter < span.leave)) return false;
+    x += 0.5 * (span.enter + span.leave) * d;
+    return true;
+  }
+  RayInterval common(const Vec3& x, const Vec3& d) const {
     const RayInterval in_a = solids_[0].view.ray(solids_[0].X, x, d),
                       in_b = solids_[1].view.ray(solids_[1].X, x, d);
-    const double enter = std::max(in_a.enter, in_b.enter), leave = std::min(in_a.leave, in_b.leave);
-    if (!(enter < leave)) return false;
-    x += 0.5 * (enter + leave) * d;
-    return true;
+    return {std::max(in_a.enter, in_b.enter), std::min(in_a.leave, in_b.leave)};
+  }
+
+  // How far a place inside is from the nearest face, about.
+  double depth_of(const Vec3& x) const {
+    double least = size();
+    for (const PlaneFace& plane : faces_.active.planes) {
+      least = std::min(least, plane.offset - plane.normal.dot(x));
+    }
+    for (const RoundFace& face : faces_.active.rounds) {
+      const double slope = 2.0 * face.half_gradient(x).norm();
+      if (slope > 0.0) least = std::min(least, -value_at(face, x) / slope);
+    }
+    return std::max(least, 0.0);
   }
 
   // The direction that leaves every near face, but for two, at the largest angle. The size of the
@@ -408,8 +438,8 @@ class WindowSearch {
   }
 
   // The frame of the first look; true in a layer between two plane faces, which has one as flat as
-  // this. From the unit ball few chords would run along the layer, perhaps one, and what they tell
-  // is far too flat across or along it.
+  // this, and in a strip, which has one as thin. From the unit ball few chords would run along the
+  // layer, perhaps one, and what they tell is far too flat across or along it.
   bool first_frame(const Vec3& c, Mat3& spread) const {
     for (const PlaneFace& one : faces_.active.planes) {
       if (one.owner != Owner::kA) continue;
@@ -421,6 +451,12 @@ class WindowSearch {
         spread.col(2) *= height / size();
         return true;
       }
+    }
+    const double length = strip_.norm(), depth = depth_of(c);
+    if (depth > 0.0 && depth < kNearFace * length) {
+      spread = basis_with_z(strip_ / length);
+      spread.leftCols<2>() *= depth / length;
+      return true;
     }
     spread = Mat3::Identity();
     return false;
@@ -472,6 +508,7 @@ class WindowSearch {
     }
     if (!(window.volume > 0.0) || !inside(c)) return;
     window.kind = LinesWindow::Kind::kOverlap;
+    window.strip = layer && !strip_.isZero(0.0);
     window.center = c;
     window.spread = spread;
   }
@@ -486,6 +523,7 @@ class WindowSearch {
   }
 
   Solid2 solids_[2];
+  Vec3 strip_ = Vec3::Zero();  // half of a strip that the start lies in
   SimdPath path_;
   LinesFaces& faces_;
   ChordFaces view_;

@@ -20,8 +20,9 @@ struct LinesWindow {
   Vec3 center;    ///< a place well inside of the overlap, about its centroid [m]
   Mat3 spread;    ///< maps the unit ball to an ellipsoid about as long and wide as the overlap [m]
   double volume;  ///< a first estimate [m^3]
-  Vec3 area_vector;  ///< a first estimate of S [m^2]
-  double area;       ///< and of A's surface inside B and B's inside A together [m^2]
+  Vec3 area_vector;    ///< a first estimate of S [m^2]
+  double area;         ///< and of A's surface inside B and B's inside A together [m^2]
+  bool strip = false;  ///< far longer than deep, along an edge or the wall of a cylinder or cone
 };
 
 /// normal . (x - c) <= gap, seen from a point c.
