@@ -6,6 +6,7 @@
 
 #include "core/support/evaluated.h"
 #include "core/support/random.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::line_contacts_test {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 // prism, of two right triangles. From a place at its end it seemed as short as deep.
 TEST(LineContacts, OfAnEdgeAreAPrism) {
   test::Random random(3);
-  for (int i = 0; i < 600; ++i) {
+  for (int i = 0; i < test::cases(600, 100); ++i) {
     const double r = random.uniform(0.02, 0.1), p = random.uniform(0.02, 0.06),
                  q = random.uniform(0.02, 0.06);
     const double h = random.uniform(0.02, 0.1), half = random.uniform(0.02, 0.1);
@@ -61,7 +62,7 @@ double common_area(double r1, double r2, double depth) {
 // the surface seemed open: most such pairs were left to engines that take ten times as long.
 TEST(LineContacts, OfCylindersAreAsDeepAsTheyAre) {
   test::Random random(4);
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < test::cases(300, 50); ++i) {
     const double r1 = random.uniform(0.02, 0.1), r2 = random.uniform(0.02, 0.06),
                  h = random.uniform(0.02, 0.06), depth = 0.1 * random.log_uniform(1e-8, 1e-4);
     const double turn = random.uniform(0.0, 6.0), reach = r1 + r2 - depth;

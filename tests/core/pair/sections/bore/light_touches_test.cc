@@ -6,6 +6,7 @@
 
 #include "core/support/evaluated.h"
 #include "core/support/random.h"
+#include "core/support/sanitized.h"
 #include "volcontact/shape/csg/csg.h"
 
 namespace volcontact::light_touches_test {
@@ -75,7 +76,7 @@ Touch touch_of(int kind, double depth, test::Random& random) {
 TEST(LightTouches, OfTheWallOfAWideBoreAreAllThere) {
   test::Random random(7);
   const Shape block(bored_block());
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < test::cases(1000, 100); ++i) {
     const int kind = i % 5;
     const double depth = kBore * random.log_uniform(1e-8, kind == 4 ? 1e-5 : 1e-4);
     const double turn = random.uniform(0.0, 6.0);
@@ -105,7 +106,7 @@ TEST(LightTouches, OfTheWallOfAWideBoreAreAllThere) {
 // edge on, and left it to the octree or found nothing.
 TEST(LightTouches, OfAPlugAlongACupAreAllThere) {
   test::Random random(8);
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < test::cases(200, 20); ++i) {
     const double slope = random.uniform(0.05, 0.4), h = 0.05, r = random.uniform(0.03, 0.09);
     if (r - slope * h < 0.005) continue;
     const double depth = kBore * random.log_uniform(1e-8, 1e-6), turn = random.uniform(0.0, 6.0);

@@ -8,6 +8,7 @@
 
 #include "core/support/evaluated.h"
 #include "core/support/random.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::torus_exits_test {
 namespace {
@@ -43,7 +44,7 @@ Pose across(double turn) {
 TEST(TorusExits, AThinRingInATubeStandsOutOfItsWall) {
   test::Random random(1);
   for (const Engine engine : {Engine::kAuto, Engine::kSurfaceSweep}) {
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < test::cases(100, 10); ++i) {
       const double minor = random.log_uniform(1e-4, 1e-2) * 0.5;
       const double height = minor * random.log_uniform(0.1, 1.8);
       const double wall = kMajor + minor - height;
