@@ -92,7 +92,10 @@ TEST(PairSearch, FormerFailures) {
                                             {SearchFamily::kBored, 40, 155},
                                             {SearchFamily::kThin, 55, 648},
                                             {SearchFamily::kThin, 41, 1755},
-                                            {SearchFamily::kSlender, 23, 459}}) {
+                                            {SearchFamily::kSlender, 23, 459},
+                                            {SearchFamily::kThin, 60001, 46},
+                                            {SearchFamily::kBored, 60006, 1379},
+                                            {SearchFamily::kBored, 35, 616}}) {
     const SearchOutcome outcome =
         search.run(SearchCases(family, seed)[index], 0, seed + 1000003 * index);
     EXPECT_TRUE(outcome.overlapping) << to_string(family) << ' ' << seed << ':' << index;

@@ -17,6 +17,7 @@ constexpr double kTinyLeanFilm = 100.0;  // depth of a film by what the face lea
 constexpr double kSmallLeanFilm = 10.0;  // the same of the larger lean
 constexpr double kFits = 0.9;            // radius of a peg that fits, by that of the bore
 constexpr double kRounding = 8e-16;      // of a thickness, per the size of the numbers
+constexpr double kKnown = 100.0;         // of a thickness, by its rounding
 constexpr double kThick = 1e-2;          // thickness of a film by its width, at most
 constexpr double kWithin = 4e-6;         // of the radius: a line this far within the wall
 constexpr int kTurn = 64;                // places all round
@@ -235,6 +236,9 @@ class WallFilm {
     }
   }
 
+  // Whether a film is not but rounding, of which no halving finds more.
+  bool is_known(double depth) const { return depth > kKnown * rounding_; }
+
   // The film at (theta, h), times a weight of dtheta dh.
   void add_column(const Vec3& e, double h, double weight, FilmSum& sum) const {
     const double d = std::max(0.0, thickness(e, h)), r = radius(h);
@@ -280,7 +284,8 @@ class WallFilm {
     FilmSum one = along(e, wall, x_from, middle, weight),
             two = along(e, wall, middle, x_to, weight);
     const double volume = one.moments.volume + two.moments.volume;
-    if (halvings < kMostAlong && std::abs(volume - whole.moments.volume) > 0.1 * kTarget * volume) {
+    if (halvings < kMostAlong && is_known(std::max(one.depth, two.depth)) &&
+        std::abs(volume - whole.moments.volume) > 0.1 * kTarget * volume) {
       one = along(e, wall, x_from, middle, weight, one, halvings + 1);
       two = along(e, wall, middle, x_to, weight, two, halvings + 1);
     }
@@ -312,7 +317,7 @@ class WallFilm {
     scale_volume_ = std::max(scale_volume_, m.volume);
     scale_area_ = std::max(scale_area_, m.area);
     const double off = std::abs(m.volume - w.volume);
-    if (halvings < kMostParts &&
+    if (halvings < kMostParts && is_known(sum.depth) &&
         (off > kTarget * scale_volume_ || std::abs(m.area - w.area) > kAreaTarget * scale_area_)) {
       sum = integrate(arc, x_from, middle, one, halvings + 1);
       sum.add(integrate(arc, middle, x_to, two, halvings + 1));
