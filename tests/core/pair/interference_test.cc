@@ -247,6 +247,14 @@ TEST(Interference, AWarmEvaluationAllocatesNothing) {
       EXPECT_EQ(allocations - before, 0) << name_of(a) << " and " << name_of(b);
     }
   }
+  // A ball that touches the wall of the bore by a nanometre: a film.
+  const Shape block(bored), ball(Sphere({.radius = 0.2}));
+  const Pose X{Mat3::Identity(), {0.31 - 0.2 + 1e-9, 0.0, 0.0}};
+  interference(block, ball, X, {}, workspace, result);
+  const long before = allocations;
+  interference(block, ball, X, {}, workspace, result);
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_GT(result.total.volume, 0.0);
 }
 
 TEST(Interference, TheValueHasNoHistory) {

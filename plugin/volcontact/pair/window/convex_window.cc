@@ -73,8 +73,7 @@ constexpr int kMaxInLayer = 32;    // the same in a layer between plane faces
 constexpr double kEven = 1.1;      // mean of squares of axes by the square of their mean, of a ball
 constexpr double kRounding = 1e-12;  // of a common point, per its distance from both frames
 constexpr int kMaxTurns = 5;         // in search of a place behind both planes of an edge
-constexpr double kNearFace =
-    1e-3;  // of a start from a wall, or from both faces of an edge, per size
+constexpr double kNearFace = 1e-3;   // of a start from a wall or both faces of an edge, per size
 constexpr double kLeastEdge = 1e-6;  // squared sine between the two
 constexpr int kMaxMoves = 8;         // from a common point on the faces into the overlap
 constexpr double kFlush = 1e-6;      // faces that lean less, and overlap less, make a thin layer

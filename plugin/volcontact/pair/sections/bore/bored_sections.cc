@@ -5,7 +5,6 @@
 
 #include "volcontact/base/interrupt.h"
 #include "volcontact/pair/quadrature/outer_rule.h"
-#include "volcontact/pair/sections/bore/wall_film.h"
 #include "volcontact/pair/sections/even_turn.h"
 #include "volcontact/pair/sections/section_metrics.h"
 
@@ -41,6 +40,7 @@ class BoreRun {
         options_(options),
         s_(lines),
         breaks_(scratch.breaks),
+        film_(scratch.film),
         regions_(regions),
         body_(owner == Owner::kA ? b : a, owner == Owner::kA ? X_AB : Pose{}, other(owner), bore,
               scratch.body),
@@ -83,7 +83,7 @@ class BoreRun {
 
   bool add_film(const std::vector<Place>& places) {
     return add_wall_film({a_, b_, X_AB_, bore_, owner_, s_.faces.active}, window_.center, places,
-                         options_, regions_);
+                         options_, film_, regions_);
   }
 
   // What is left where sections do not see it, as the flank of a cone that is parallel to the wall:
@@ -463,6 +463,7 @@ class BoreRun {
   const InterferenceOptions& options_;
   LinesScratch& s_;
   std::vector<double>& breaks_;
+  WallFilmScratch& film_;
   LinesRegions& regions_;
   LinesWindow window_;
   BodyInBore body_;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "volcontact/pair/sections/bore/bore_outline.h"
+#include "volcontact/pair/sections/bore/wall_film.h"
 
 namespace volcontact {
 
@@ -12,6 +13,7 @@ struct BoreScratch {
   std::vector<BoreOutline::Place> outline;
   std::vector<double> breaks;
   FaceSet body;
+  WallFilmScratch film;
 };
 
 /// Regions of the overlap of two convex bodies outside of a bore, a tube (`bore`, in A's frame) cut

@@ -47,9 +47,20 @@ struct FilmSum {
 };
 
 class WallFilm {
+  using Dip = WallFilmScratch::Dip;
+
  public:
-  WallFilm(const BoredBodies& bodies, const Vec3& middle, double tolerance)
-      : s_(bodies), bore_(bodies.bore), tolerance_(tolerance) {
+  WallFilm(const BoredBodies& bodies, const Vec3& middle, double tolerance,
+           WallFilmScratch& scratch)
+      : s_(bodies),
+        bore_(bodies.bore),
+        tolerance_(tolerance),
+        angles_(scratch.angles),
+        depth_(scratch.depths),
+        dips_(scratch.dips) {
+    angles_.clear();
+    depth_.clear();
+    dips_.clear();
     const Mat3 basis = basis_with_z(bore_.axis);
     u_ = basis.col(0);
     v_ = basis.col(1);
@@ -366,12 +377,8 @@ class WallFilm {
   const double tolerance_;
   Vec3 u_, v_, origin_;
   double rounding_;
-  struct Dip {
-    double angle;
-    bool parts;  // the film in two
-  };
-  std::vector<double> angles_, depth_;
-  std::vector<Dip> dips_;
+  std::vector<double>&angles_, &depth_;
+  std::vector<Dip>& dips_;
   double error_ = 0.0, scale_volume_ = 0.0, scale_area_ = 0.0, longest_ = 0.0;
 };
 
@@ -393,8 +400,9 @@ bool is_wall_film(const FaceSet& faces, const Bore& bore, double depth, double l
 
 bool add_wall_film(const BoredBodies& bodies, const Vec3& middle,
                    const std::vector<BoreOutline::Place>& places,
-                   const InterferenceOptions& options, LinesRegions& regions) {
-  return WallFilm(bodies, middle, options.tolerance).run(places, regions);
+                   const InterferenceOptions& options, WallFilmScratch& scratch,
+                   LinesRegions& regions) {
+  return WallFilm(bodies, middle, options.tolerance, scratch).run(places, regions);
 }
 
 }  // namespace volcontact

@@ -18,6 +18,16 @@ struct BoredBodies {
   const FaceSet& faces;  ///< of both
 };
 
+/// Memory of the search for a film.
+struct WallFilmScratch {
+  std::vector<double> angles, depths;  ///< about the axis, and how thick the film is there
+  struct Dip {
+    double angle;
+    bool parts;  ///< the film in two
+  };
+  std::vector<Dip> dips;
+};
+
 /// Whether a body fits the bore so closely that an overlap, which reaches `depth` out of its wall
 /// [m] over about `length` along it, is to be measured across the wall: next to nothing, or with a
 /// face that leans against the wall by next to nothing. Sections along the bore take such a face to
@@ -34,6 +44,7 @@ bool is_wall_film(const FaceSet& faces, const Bore& bore, double depth, double l
 /// wide. docs/theory.md, "Bores".
 bool add_wall_film(const BoredBodies& bodies, const Vec3& middle,
                    const std::vector<BoreOutline::Place>& places,
-                   const InterferenceOptions& options, LinesRegions& regions);
+                   const InterferenceOptions& options, WallFilmScratch& scratch,
+                   LinesRegions& regions);
 
 }  // namespace volcontact
