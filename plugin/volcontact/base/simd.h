@@ -3,7 +3,9 @@
 
 #include <cmath>
 
-#if defined(__x86_64__)
+/// With VOLCONTACT_SIMD_PORTABLE kernels are compiled once, which takes a third of the time.
+#if defined(__x86_64__) && !defined(VOLCONTACT_SIMD_PORTABLE)
+#define VOLCONTACT_SIMD_X86
 #include <immintrin.h>
 #endif
 
@@ -20,7 +22,7 @@ enum class SimdPath : int { kPortable = 0, kAvx2 = 1, kAvx512 = 2 };
 
 /// Whether this machine can run a path.
 inline bool can_run(SimdPath path) noexcept {
-#if defined(__x86_64__)
+#if defined(VOLCONTACT_SIMD_X86)
   if (path == SimdPath::kAvx2) return __builtin_cpu_supports("avx2");
   if (path == SimdPath::kAvx512) {
     return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
@@ -41,7 +43,7 @@ inline SimdPath best_simd_path() noexcept {
 }  // namespace volcontact
 
 /// Calls the function that "simd_paths.inc" compiled for a path.
-#if defined(__x86_64__)
+#if defined(VOLCONTACT_SIMD_X86)
 #define VOLCONTACT_SIMD_CALL(path, function, ...)                            \
   ((path) == ::volcontact::SimdPath::kAvx512 ? avx512::function(__VA_ARGS__) \
    : (path) == ::volcontact::SimdPath::kAvx2 ? avx2::function(__VA_ARGS__)   \
