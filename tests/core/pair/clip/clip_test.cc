@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/clip/clip.h"
+#include "core/support/sanitized.h"
 
 #include <gtest/gtest.h>
 
@@ -265,7 +266,7 @@ TEST(Clip, TouchingIsNothing) {
 TEST(Clip, NothingIsKnownToTheRounding) {
   Random random(19);
   int none = 0;
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < test::cases(3000, 500); ++i) {
     const Vec3 half(random.uniform(0.05, 0.4), random.uniform(0.05, 0.4),
                     random.log_uniform(1e-6, 1e-2));
     const double thick = random.log_uniform(0.01, 1.0);
@@ -287,7 +288,7 @@ TEST(Clip, NothingIsKnownToTheRounding) {
       none += !m.touching();
     }
   }
-  EXPECT_GT(none, 1000);
+  EXPECT_GT(none, test::cases(1000, 160));
 }
 
 TEST(Clip, ZeroSizesAreNothing) {

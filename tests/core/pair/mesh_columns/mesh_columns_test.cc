@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/mesh_columns/mesh_columns.h"
+#include "core/support/sanitized.h"
 
 #include <gtest/gtest.h>
 
@@ -50,7 +51,7 @@ Touching bumpy_pair(int levels, double depth) {
 TEST(Columns, MeshesOfBoxesMeetAsTheBoxes) {
   Random random(1);
   int touching = 0;
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < test::cases(400, 60); ++i) {
     const Vec3 half_a = Vec3::Constant(0.8) + random.in_box(0.4),
                half_b = Vec3::Constant(0.5) + random.in_box(0.3);
     const Box box_a({.half_sizes = half_a}), box_b({.half_sizes = half_b});
@@ -70,7 +71,7 @@ TEST(Columns, MeshesOfBoxesMeetAsTheBoxes) {
                 found.volume_error + expected.volume_error);
     }
   }
-  EXPECT_GT(touching, 200);
+  EXPECT_GT(touching, test::cases(200, 30));
 }
 
 TEST(Columns, ShallowBoxesHaveTheDepthOfTheBoxes) {
@@ -89,7 +90,7 @@ TEST(Columns, ShallowBoxesHaveTheDepthOfTheBoxes) {
 
 TEST(Columns, HalfSpaceCutsAMeshAsItCutsTheBox) {
   Random random(3);
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < test::cases(300, 50); ++i) {
     const Vec3 half = Vec3::Constant(0.6) + random.in_box(0.4);
     const Box box({.half_sizes = half});
     const Mesh mesh = mesh_of(box_soup(half, 1 + i % 5));
@@ -226,7 +227,7 @@ TEST(Columns, ABlockFlushInAChannelMeetsItAsItsBoxes) {
         .begin()[static_cast<int>(random.uniform(0.0, 0.999) * static_cast<double>(list.size()))];
   };
   int touching = 0;
-  for (int i = 0; i < 1500; ++i) {
+  for (int i = 0; i < test::cases(1500, 250); ++i) {
     Vec3 size, shift;
     for (int k = 0; k < 3; ++k) {
       size[k] = unit * one_of({1.0, 2.0, 3.0, 4.0, 5.0, 6.0});
@@ -257,7 +258,7 @@ TEST(Columns, ABlockFlushInAChannelMeetsItAsItsBoxes) {
       EXPECT_LE(out.total.volume_error, 1e-12) << i;
     }
   }
-  EXPECT_GT(touching, 500);
+  EXPECT_GT(touching, test::cases(500, 80));
 }
 
 // The window on the patch holds the arm of the channel in part, below what it looks at.
@@ -266,7 +267,7 @@ TEST(Columns, AnArmBelowTheWindowIsNoPartOfThePatch) {
   const Mesh channel = mesh_of(test::channel_soup(unit, depth));
   Soup soup = box_soup(Vec3(0.21, 0.21, 0.21));
   Random random(34);
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < test::cases(400, 60); ++i) {
     const double off = std::pow(10.0, random.uniform(-17.0, -1.0));
     const Pose X_AB{
         test::turn(random.direction(), off * random.uniform(-1.0, 1.0)) *
@@ -461,7 +462,7 @@ void expect_cut_as_by_triangles(const ConvexPolytope& solid) {
   Interference out, expected;
   Random random(9);
   int on_one = 0, on_more = 0;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < test::cases(300, 50); ++i) {
     const SurfacePlane& face = (*faces.planes)[static_cast<std::size_t>(i) % faces.planes->size()];
     const Pose turned = random.pose(0.0);
     const double height = reach_of(mesh, -turned.rotation.transpose() * face.normal);
@@ -475,8 +476,8 @@ void expect_cut_as_by_triangles(const ConvexPolytope& solid) {
     (below ? on_one : on_more)++;
     ASSERT_TRUE(test::same(out.total, expected.total, {1e-9, 1.0})) << i;
   }
-  EXPECT_GT(on_one, 80);
-  EXPECT_GT(on_more, 20);
+  EXPECT_GT(on_one, test::cases(80, 12));
+  EXPECT_GT(on_more, test::cases(20, 3));
 }
 
 TEST(Columns, ConvexSolidsCutAsTheirTrianglesDo) {

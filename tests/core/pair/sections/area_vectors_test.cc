@@ -3,6 +3,7 @@
 
 #include "core/support/evaluated.h"
 #include "core/support/random.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::area_vectors_test {
 namespace {
@@ -15,7 +16,7 @@ TEST(AreaVectors, OfCylindersAndFrustaFollowTheTolerance) {
   constexpr double kShare = 5.0;  // of the tolerance, per area; 4 in 100,000 poses
   test::Random random(77);
   int judged = 0;
-  for (int i = 0; i < 800; ++i) {
+  for (int i = 0; i < test::cases(800, 120); ++i) {
     const Cylinder cylinder(
         {.radius = random.uniform(0.05, 0.4), .half_length = random.uniform(0.05, 0.4)});
     const double wide = random.uniform(0.05, 0.4);
@@ -36,7 +37,7 @@ TEST(AreaVectors, OfCylindersAndFrustaFollowTheTolerance) {
           << i << " at " << tolerance;
     }
   }
-  EXPECT_GT(judged, 300);
+  EXPECT_GT(judged, test::cases(300, 40));
 }
 
 }  // namespace

@@ -135,7 +135,7 @@ TEST(Lines, AnUprightCylinderIsADisc) {
   }
 }
 
-constexpr int kPoses = test::cases(20, 2);
+constexpr int kPoses = test::cases(20, 1);
 constexpr int kCoaxial = test::cases(120, 8);
 
 TEST(Lines, StaysWithinTheCertifiedBoundsOfTheOctree) {
@@ -167,6 +167,7 @@ TEST(Lines, OtherOrderOtherSideOfTheSameNumbers) {
   for (std::size_t i = 1; i < all.size(); ++i) {
     for (std::size_t j = 1; j < all.size(); ++j) {
       if (is_flat(i) && is_flat(j)) continue;
+      if (test::kSanitized && (i + j) % 2 == 0) continue;
       const Pose X = pose_of_depth(all[i], all[j], 0.01, random);
       const VolumeMetrics m = lines(all[i], all[j], X);
       const VolumeMetrics mirrored = reversed(transformed(lines(all[j], all[i], X.inverse()), X));

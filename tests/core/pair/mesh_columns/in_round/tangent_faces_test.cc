@@ -8,6 +8,7 @@
 
 #include "core/support/evaluated.h"
 #include "core/support/meshes.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::tangent_faces_test {
 namespace {
@@ -132,7 +133,7 @@ TEST(TangentFaces, FacesAcrossAConeCutIt) {
     const double slope = (top - 0.3) / 0.5;
     for (const double middle : {0.0, 0.07}) {
       for (const double half : {0.05, 0.1}) {
-        for (int i = 0; i < 40; ++i) {
+        for (int i = 0; i < test::cases(40, 8); ++i) {
           const double angle = 0.1 * i;
           const Mat3 turned = test::turn(Vec3::UnitZ(), angle) *
                               test::turn(Vec3::UnitX(), i % 2 == 0 ? 0.5 * kPi : -0.5 * kPi) *

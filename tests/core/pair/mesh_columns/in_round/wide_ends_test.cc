@@ -4,6 +4,7 @@
 #include "core/support/evaluated.h"
 #include "core/support/meshes.h"
 #include "core/support/random.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::wide_ends_test {
 namespace {
@@ -30,7 +31,7 @@ WideEnd wide_end(test::Random& random) {
 TEST(WideEnds, LieOnAFaceAsOnAHalfSpace) {
   const Mesh box = mesh_of(box_soup(kHalf, 2));
   test::Random random(12);
-  for (int i = 0; i < 150; ++i) {
+  for (int i = 0; i < test::cases(150, 30); ++i) {
     const WideEnd end = wide_end(random);
     const double depth = random.log_uniform(1e-13, 1e-3);
     const double lean = i % 2 == 0 ? 0.0 : random.uniform(0.0, 0.2) * depth / end.wide;
@@ -58,7 +59,7 @@ TEST(WideEnds, LieOverAnEdgeAsOnABox) {
   const Mesh mesh = mesh_of(box_soup(kHalf, 2));
   const Box box({.half_sizes = kHalf});
   test::Random random(13);
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < test::cases(100, 20); ++i) {
     const WideEnd end = wide_end(random);
     const double depth = random.log_uniform(1e-8, 1e-3);
     const Pose X{test::turn(Vec3::UnitZ(), random.uniform(0.0, 2.0 * kPi)),
@@ -78,7 +79,7 @@ TEST(WideEnds, OfSlenderCapsulesMeetEdgesAsThoseOfABox) {
   const Mesh mesh = mesh_of(box_soup(kHalf, 1));
   const Box box({.half_sizes = kHalf});
   test::Random random(14);
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < test::cases(400, 60); ++i) {
     const Capsule capsule({.radius = random.log_uniform(2e-3, 2e-2), .half_length = 0.2});
     const Mat3 turned = random.rotation();
     const Vec3 tip = turned * Vec3(0.0, 0.0, capsule.half_length());

@@ -231,7 +231,7 @@ TEST(ComposedColumns, NoSurfaceIsSmallerThanItsAreaVector) {
   const ConvexPolytope gem = test::random_polytope(18, random);
   const Csg block = testing::box(.8, .8, .5) - testing::tube(.3, 1.) -
                     testing::tube(.5, .4, testing::at(0, 0, .6));
-  constexpr int kPoses = test::cases(3000, 150);
+  constexpr int kPoses = test::cases(3000, 50);
   int served = 0;
   for (int k = 0; k < kPoses; ++k) {
     const Pose X_AB = random.pose(1.2);
@@ -302,7 +302,7 @@ TEST(ComposedColumns, BoresThatRunIntoEachOther) {
       const double area = 4.0 * half * half - holes;
       for (const double half_height : {0.005, 0.015, 0.05}) {
         std::vector<Vec3> corners;
-        for (int i = 0; i < 8; ++i) {
+        for (int i = 0; i < test::cases(8, 2); ++i) {
           corners.push_back(Vec3(half, half, half_height).cwiseProduct(corner_signs(i)));
         }
         std::vector<Shape> bodies = {ConvexPolytope(corners)};

@@ -22,6 +22,7 @@ const double kOffsets[] = {0.0, 1e-15, -1e-12, 1e-9, -1e-7, 1e-6, -1e-5, 3e-5, -
 // The top of a box around the lower half: half of the torus, and a slice of the other.
 TEST(GrazingFaces, AFaceThroughTheMiddleOfTheTubeTakesHalf) {
   for (const double r : {0.1, 0.25, 0.3}) {
+    if (test::kSanitized && r != 0.25) continue;
     const Torus torus({.major_radius = 0.3, .minor_radius = r});
     const Shape mesh = mesh_of(box_soup(Vec3(0.8, 0.8, 0.4), 2));
     for (const double off : kOffsets) {
@@ -46,6 +47,7 @@ TEST(GrazingFaces, AFaceThatTouchesTheCircleIsThatOfTheBox) {
     const Vec3 half(0.5, 0.35, 0.25);
     const Shape mesh = mesh_of(box_soup(half, 2)), box = Box({.half_sizes = half});
     for (const double side : {1.0, -1.0}) {
+      if (test::kSanitized && side < 0.0) continue;
       for (const double off : kOffsets) {
         const Pose X = shifted(side * 0.3 + 0.5 + off, 0.05, 0.02);
         const VolumeMetrics m = evaluated(torus, mesh, X).total;
