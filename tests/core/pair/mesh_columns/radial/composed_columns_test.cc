@@ -302,7 +302,7 @@ TEST(ComposedColumns, BoresThatRunIntoEachOther) {
       const double area = 4.0 * half * half - holes;
       for (const double half_height : {0.005, 0.015, 0.05}) {
         std::vector<Vec3> corners;
-        for (int i = 0; i < test::cases(8, 2); ++i) {
+        for (int i = 0; i < 8; ++i) {
           corners.push_back(Vec3(half, half, half_height).cwiseProduct(corner_signs(i)));
         }
         std::vector<Shape> bodies = {ConvexPolytope(corners)};
