@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/clip/clip.h"
-#include "core/support/sanitized.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +9,7 @@
 #include "core/support/gradient.h"
 #include "core/support/matchers.h"
 #include "core/support/random_shapes.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::clip_test {
 namespace {

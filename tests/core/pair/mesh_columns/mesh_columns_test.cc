@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/mesh_columns/mesh_columns.h"
-#include "core/support/sanitized.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +8,7 @@
 #include "core/support/matchers.h"
 #include "core/support/meshes.h"
 #include "core/support/random_shapes.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::mesh_columns_test {
 namespace {

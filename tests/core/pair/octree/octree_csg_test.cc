@@ -3,6 +3,8 @@
 // that knows neither cells nor pieces.
 #include <gtest/gtest.h>
 
+#include <span>
+
 #include "core/support/random.h"
 #include "core/support/sanitized.h"
 #include "volcontact/pair/interference.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/pressure/pressure_ellipsoid.h"
-#include "core/support/sanitized.h"
 
 #include <gtest/gtest.h>
 
 #include "core/support/field_loops.h"
 #include "core/support/meshes.h"
+#include "core/support/sanitized.h"
 #include "volcontact/pair/pressure/pressure_columns.h"
 
 namespace volcontact::pressure_ellipsoid_test {
