@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <exception>
+#include <new>
 #include <sstream>
+#include <stdexcept>
 
 namespace volcontact::c_api {
 namespace {
@@ -18,6 +21,20 @@ int fail(int code, const char* text) noexcept {
   std::memcpy(last_error, text, length);
   last_error[length] = '\0';
   return code;
+}
+
+int fail_by_exception() noexcept {
+  try {
+    throw;
+  } catch (const std::invalid_argument& error) {
+    return fail(VC_ERROR_ARGUMENT, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(VC_ERROR_MEMORY, "out of memory");
+  } catch (const std::exception& error) {
+    return fail(VC_ERROR_INTERNAL, error.what());
+  } catch (...) {
+    return fail(VC_ERROR_INTERNAL, "an exception of unknown type");
+  }
 }
 
 void require_given(const void* pointer, const char* function, const char* argument) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <exception>
-#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -17,19 +15,16 @@ int fail(int code, const char* text) noexcept;
 /// The text of the last failure in this thread.
 const char* message() noexcept;
 
+/// Keeps the text of the exception that is handled; its code.
+int fail_by_exception() noexcept;
+
 /// Runs what may throw: its result, or an error code. No exception leaves the interface.
 template <typename Function>
 int guarded(Function&& function) noexcept {
   try {
     return function();
-  } catch (const std::invalid_argument& error) {
-    return fail(VC_ERROR_ARGUMENT, error.what());
-  } catch (const std::bad_alloc&) {
-    return fail(VC_ERROR_MEMORY, "out of memory");
-  } catch (const std::exception& error) {
-    return fail(VC_ERROR_INTERNAL, error.what());
   } catch (...) {
-    return fail(VC_ERROR_INTERNAL, "an exception of unknown type");
+    return fail_by_exception();
   }
 }
 

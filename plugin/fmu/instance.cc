@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <stdexcept>
+#include <string>
 
 #include "volcontact/base/check.h"
 
@@ -68,16 +70,40 @@ const char* category_of(Status status) {
                               : "logStatusError";
 }
 
-std::string wrong_mode_message(const char* function, Mode mode) {
-  return std::string(function) + " is not allowed in " + mode_name(mode);
-}
-
 Instance::Instance(const std::string& resources, const char* token, bool exchange)
     : owned(make_unit(resources)), unit(*owned), is_exchange(exchange) {
   require(token && unit.file().token == token,
           "the token of the modelDescription.xml is not that of the resources (" +
               unit.file().token + "); export the FMU again");
   require(!is_exchange || unit.offers_exchange(), "this FMU has Co-Simulation only");
+}
+
+void Instance::check_mode(const char* function, unsigned modes) const {
+  if (mode & modes) return;
+  throw std::invalid_argument(std::string(function) + " is not allowed in " + mode_name(mode));
+}
+
+Status Instance::report_warnings(const char* function) {
+  const std::string warnings = unit.take_warnings();
+  if (warnings.empty()) return kOk;
+  log(kWarning, std::string(function) + ": " + warnings);
+  return kWarning;
+}
+
+Status Instance::report_failure(const char* function) noexcept {
+  try {
+    try {
+      throw;
+    } catch (const Discarded& error) {
+      log(kDiscard, std::string(function) + ": " + error.what());
+      return kDiscard;
+    } catch (const std::exception& error) {
+      log(kError, std::string(function) + ": " + error.what());
+      return kError;
+    }
+  } catch (...) {  // no memory for the message
+    return kError;
+  }
 }
 
 const Group& Instance::group(unsigned reference, Type type) const {

@@ -72,6 +72,10 @@ class Instance {
   std::unique_ptr<Saved> deserialize(const void* bytes, std::size_t size) const;
 
  private:
+  void check_mode(const char* function, unsigned modes) const;
+  Status report_warnings(const char* function);
+  /// Of the exception that is handled.
+  Status report_failure(const char* function) noexcept;
   void check_step(double now, double step) const;
   bool is_unchangeable(const Group& group) const;
 };
@@ -79,28 +83,15 @@ class Instance {
 /// The category of the log for a status, as modelDescription.xml names them.
 const char* category_of(Status status);
 
-/// "volcontact: fmi2DoStep is not allowed in the mode ...".
-std::string wrong_mode_message(const char* function, Mode mode);
-
+// What is the same for all functions is compiled once.
 template <typename Function>
 Status Instance::run(const char* name, unsigned modes, Function&& function) noexcept {
   try {
-    try {
-      if (!(mode & modes)) throw std::invalid_argument(wrong_mode_message(name, mode));
-      function();
-      const std::string warnings = unit.take_warnings();
-      if (warnings.empty()) return kOk;
-      log(kWarning, std::string(name) + ": " + warnings);
-      return kWarning;
-    } catch (const Discarded& error) {
-      log(kDiscard, std::string(name) + ": " + error.what());
-      return kDiscard;
-    } catch (const std::exception& error) {
-      log(kError, std::string(name) + ": " + error.what());
-      return kError;
-    }
-  } catch (...) {  // no memory for the message
-    return kError;
+    check_mode(name, modes);
+    function();
+    return report_warnings(name);
+  } catch (...) {
+    return report_failure(name);
   }
 }
 

@@ -12,4 +12,9 @@ inline void require(bool condition, const std::string& message) {
   if (!condition) throw std::invalid_argument(message);
 }
 
+/// The same for a message without numbers in it: no string is made where the condition holds.
+inline void require(bool condition, const char* message) {
+  if (!condition) throw std::invalid_argument(message);
+}
+
 }  // namespace volcontact
