@@ -15,7 +15,7 @@ function(volcontact_target name)
     target_compile_options(${name} PRIVATE -Wno-maybe-uninitialized -Wno-stringop-overflow)
     # Vectors of eight are passed only between functions compiled for one machine, or inlined.
     target_compile_options(${name} PRIVATE -Wno-psabi)
-    # GCC collects its garbage from 128 MB [in kB] on, again and again: a fifteenth of its time.
+    # By default GCC looks for garbage from 128 MB on, which takes a fifteenth of its time; in kB.
     target_compile_options(${name} PRIVATE --param=ggc-min-heapsize=500000)
   endif()
   set_target_properties(${name} PROPERTIES
