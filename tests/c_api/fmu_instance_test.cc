@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "c_api/fmu_functions.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::c_api::testing::fmu_instance_test {
 namespace {
@@ -302,13 +303,14 @@ TEST(FmuInstance, ThirdVersionReturnsEarlyWhereBodiesPart) {
 
 TEST(FmuInstance, ManyInstancesAndThreadsGiveTheSameBits) {
   std::vector<Two> many;
-  for (int i = 0; i < 1000; ++i) many.push_back(started(1));
+  constexpr std::size_t kMany = test::cases(1000, 200);
+  for (std::size_t i = 0; i < kMany; ++i) many.push_back(started(1));
   const Two alone = started(1);
   const std::vector<double> wanted = slide(alone, 0.0, 3);
   std::vector<std::thread> threads;
   std::vector<std::vector<double>> got(8);
   for (std::size_t t = 0; t < 8; ++t) {
-    threads.emplace_back([&, t] { got[t] = slide(many[125 * t], 0.0, 3); });
+    threads.emplace_back([&, t] { got[t] = slide(many[kMany / 8 * t], 0.0, 3); });
   }
   for (std::thread& thread : threads) thread.join();
   for (const auto& one : got) EXPECT_EQ(one, wanted);
@@ -317,7 +319,7 @@ TEST(FmuInstance, ManyInstancesAndThreadsGiveTheSameBits) {
 // FMU_INSTANCES=10000 makes that many. The address sanitizer finds what is not given back.
 TEST(FmuInstance, MadeAndFreedManyTimes) {
   const char* text = std::getenv("FMU_INSTANCES");
-  const int count = text ? std::atoi(text) : 1000;
+  const int count = text ? std::atoi(text) : test::cases(1000, 200);
   for (int i = 0; i < count; i += 2) {
     EXPECT_TRUE(two(i / 2 % 2));
     const Three c(

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/support/sanitized.h"
+
 namespace volcontact::test::characterisation_test {
 namespace {
 
@@ -52,7 +54,11 @@ const Example& find(const std::string& name) {
 TEST_P(Accuracy, EveryEngineKeepsItsPromise) {
   const Example &a = find(GetParam().first), &b = find(GetParam().second);
   int compared = 0;
-  for (const Characterisation& row : characterise(a, b, kEffort)) {
+  Effort effort = kEffort;
+  if (a.name == "torus" || b.name == "torus") {  // whose reference takes a second a pose
+    effort.poses = test::cases(kEffort.poses, 1, 1);
+  }
+  for (const Characterisation& row : characterise(a, b, effort)) {
     const Promise promise = promise_of(row.engine, a, b);
     SCOPED_TRACE(row.a->name + " - " + row.b->name + ", " + to_string(row.engine));
     compared += row.poses;

@@ -5,6 +5,8 @@
 
 #include <limits>
 
+#include "core/support/sanitized.h"
+
 namespace volcontact::test::fuzz_test {
 namespace {
 
@@ -15,7 +17,7 @@ TEST(Fuzz, NoPairFails) {
   for (const char* pair :
        {"half_space-capsule", "sphere-sphere", "box-box", "ellipsoid-box", "cylinder-sphere",
         "box-capsule", "box-cylinder", "frustum-box", "cylinder-frustum"}) {
-    const int poses = 40;
+    const int poses = test::cases(40, 15, 10);
     const FuzzReport report =
         fuzz({.random_poses = poses, .degenerate_poses = poses, .seed = 7, .only = pair});
     int overlapping = 0;

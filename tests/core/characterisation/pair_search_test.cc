@@ -109,7 +109,7 @@ TEST(PairSearch, FindsNothing) {
   for (const SearchFamily family : kSearchFamilies) {
     SearchCases of_family(family, 1);
     const std::uint64_t count =
-        family == SearchFamily::kComposed ? test::cases(40, 10) : test::cases(200, 40);
+        family == SearchFamily::kComposed ? test::cases(40, 15, 10) : test::cases(200, 60, 40);
     std::uint64_t overlapping = 0, judged = 0;
     for (std::uint64_t index = 0; index < count; ++index) {
       const SearchCase c = of_family[index];

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/reference/line_lattice.h"
+#include "core/support/sanitized.h"
 #include "volcontact/pair/interference.h"
 
 namespace volcontact::rounded_box_pairs_test {
@@ -86,7 +87,7 @@ TEST(RoundedBoxPairs, AgreesWithLinesOfOtherCode) {
   test::Random random(19);
   int by_sweep = 0, all = 0;
   for (const Shape& other : others) {
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < test::cases(6, 2, 2); ++i) {
       const Vec3 at = random.in_box(0.15);
       const Pose X_AB{random.rotation(), at};
       const Interference out = overlap(kSolid, other, X_AB, Engine::kSurfaceSweep);

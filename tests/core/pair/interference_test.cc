@@ -15,6 +15,7 @@
 #include "core/support/matchers.h"
 #include "core/support/meshes.h"
 #include "core/support/random_shapes.h"
+#include "core/support/sanitized.h"
 #include "volcontact/pair/geometric_pair.h"
 
 namespace {
@@ -321,6 +322,7 @@ TEST(Interference, DepthIsHowFarATipReachesBelowAFace) {
       const Pose X_AB{R, Vec3(0.02, 0.03, 0.2 + reach - depth)};
       EXPECT_NEAR(evaluated(ground, other, X_AB).total.depth, depth, 1e-12);
       EXPECT_NEAR(evaluated(other, ground, X_AB.inverse()).total.depth, depth, 1e-12);
+      if (test::kSanitized && std::holds_alternative<Mesh>(ground)) continue;
       EXPECT_NEAR(evaluated(ground, other, X_AB, Engine::kOctree).total.depth, depth, 0.1 * depth);
     }
     const Pose X_AB = test::shifted(0.02, 0.03, 0.3 - depth);

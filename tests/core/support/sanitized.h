@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdlib>
+
 namespace volcontact::test {
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -12,5 +14,11 @@ inline constexpr bool kSanitized = false;
 /// How many cases to try. The sanitizers make each many times slower and look for other faults:
 /// there fewer will do.
 constexpr int cases(int all, int sanitized) { return kSanitized ? sanitized : all; }
+
+/// The same of tests that take seconds: all in `./run soak`, which sets VOLCONTACT_SOAK.
+inline int cases(int soak, int usual, int sanitized) {
+  static const bool kSoaking = std::getenv("VOLCONTACT_SOAK") != nullptr;
+  return cases(kSoaking ? soak : usual, sanitized);
+}
 
 }  // namespace volcontact::test

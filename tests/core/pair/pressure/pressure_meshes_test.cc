@@ -6,6 +6,7 @@
 #include "core/support/csg_solids.h"
 #include "core/support/field_loops.h"
 #include "core/support/meshes.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::pressure_meshes_test {
 namespace {
@@ -65,6 +66,7 @@ TEST(PressureMeshes, HollowsAreServed) {
   };
   const double slope = (at(kStep) - at(-kStep)) / (2.0 * kStep);
   EXPECT_NEAR(sum.field.force.dot(way), -slope, 2e-2 * std::abs(slope));
+  if (test::kSanitized) return;  // the same once more, at other poses
   EXPECT_LT(test::loop_work(a, b, X, 24), 1e-3);
 }
 

@@ -135,8 +135,8 @@ TEST(Lines, AnUprightCylinderIsADisc) {
   }
 }
 
-constexpr int kPoses = test::cases(20, 1);
-constexpr int kCoaxial = test::cases(120, 8);
+const int kPoses = test::cases(20, 8, 1);
+const int kCoaxial = test::cases(120, 40, 8);
 
 TEST(Lines, StaysWithinTheCertifiedBoundsOfTheOctree) {
   const std::vector<Shape> all = solids();
@@ -167,7 +167,7 @@ TEST(Lines, OtherOrderOtherSideOfTheSameNumbers) {
   for (std::size_t i = 1; i < all.size(); ++i) {
     for (std::size_t j = 1; j < all.size(); ++j) {
       if (is_flat(i) && is_flat(j)) continue;
-      if (test::kSanitized && (i + j) % 2 == 0) continue;
+      if (test::kSanitized && (i + j) % 4 != 1) continue;
       const Pose X = pose_of_depth(all[i], all[j], 0.01, random);
       const VolumeMetrics m = lines(all[i], all[j], X);
       const VolumeMetrics mirrored = reversed(transformed(lines(all[j], all[i], X.inverse()), X));
@@ -183,7 +183,7 @@ TEST(Lines, AreaVectorAndMomentAreTheGradientOfVolume) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = 1; j < all.size(); ++j) {
       if (is_flat(i) && is_flat(j)) continue;
-      if (test::kSanitized && (i + j) % 2 == 0) continue;  // thirteen times the tests above
+      if (test::kSanitized && (i + j) % 4 != 1) continue;  // thirteen times the tests above
       const Pose X = pose_of_depth(all[i], all[j], 0.02, random);
       const VolumeMetrics m = lines(all[i], all[j], X, 1e-6);
       const auto volume = [&](const Pose& X_AB) {

@@ -6,6 +6,7 @@
 #include "core/support/csg_solids.h"
 #include "core/support/evaluated.h"
 #include "core/support/gradient.h"
+#include "core/support/sanitized.h"
 
 namespace volcontact::surface_sweep_test {
 namespace {
@@ -269,7 +270,9 @@ TEST(Shell, StaysWithinTheCertifiedBoundsOfTheOctree) {
                           Shape(tube(.08, .1) - tube(.05, .2))};
   test::Random random(21);
   int served = 0, tried = 0;
-  for (const NamedSolid& kind : kinds_of_solids()) {
+  const std::vector<NamedSolid> kinds = kinds_of_solids();
+  for (std::size_t i = 0; i < kinds.size(); i += test::cases(1, 4)) {
+    const NamedSolid& kind = kinds[i];
     const Shape& body = bodies[tried % 2];
     const Pose X{random.rotation(), random.in_box(.15)};
     ++tried;

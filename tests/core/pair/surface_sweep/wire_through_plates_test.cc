@@ -60,14 +60,14 @@ void expect_right(const Case& c, Engine engine, int number) {
 
 TEST(WireThroughPlates, IsFoundOnBothSides) {
   test::Random random(61);
-  for (int i = 0; i < test::cases(400, 15); ++i) {
+  for (int i = 0; i < test::cases(400, 100, 15); ++i) {
     expect_right(random_case(random), Engine::kAuto, i);
   }
 }
 
 TEST(WireThroughPlates, BySurfaceSweepToo) {
   test::Random random(62);
-  for (int i = 0; i < test::cases(100, 5); ++i) {
+  for (int i = 0; i < test::cases(100, 30, 5); ++i) {
     expect_right(random_case(random), Engine::kSurfaceSweep, i);
   }
 }

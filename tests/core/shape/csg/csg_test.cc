@@ -145,7 +145,9 @@ TEST(Csg, WhatBoredBlocksHaveInCommonKeepsAllItsPieces) {
 }
 
 TEST(Csg, MostVolumeAndMostPartsAreBounds) {
-  for (const NamedSolid& named : kinds_of_solids()) {
+  const std::vector<NamedSolid> kinds = kinds_of_solids();
+  for (std::size_t i = 0; i < kinds.size(); i += test::cases(1, 4)) {
+    const NamedSolid& named = kinds[i];
     EXPECT_LE(named.solid.own_metrics().volume, (1.0 + 1e-9) * named.solid.most_volume());
     EXPECT_LE(named.solid.most_volume(), 8.0 * named.solid.bounds().half_sizes().prod());
     EXPECT_EQ(named.solid.most_parts(), static_cast<int>(named.solid.members().size()));

@@ -72,7 +72,7 @@ TEST(FittingMeshes, HaveTheVolumeOfTheClosedForm) {
   };
   constexpr int kSides[] = {3, 4, 5, 6, 8, 10, 12, 16, 24, 32};
   constexpr double kOff[] = {0.0, 0.0, 1e-15, 1e-12, 1e-10, 1e-8, 1e-6};
-  for (int i = 0; i < test::cases(6, 1); ++i) {
+  for (int i = 0; i < test::cases(6, 2, 1); ++i) {
     const int n = kSides[random() % std::size(kSides)];
     const double r = uniform(0.05, 0.3), h = uniform(0.02, 0.3);
     for (const Fit& fit : fits(n, r, h, r * uniform(0.2, 0.8), uniform(0.2, 0.9))) {

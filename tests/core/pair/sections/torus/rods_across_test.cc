@@ -56,7 +56,7 @@ double volume_of_columns(double major, double minor, const Cone& cone) {
 // alike. The small end near the axis lies in the hole and is no reason to look at less.
 TEST(RodsAcross, PointedOnesThatEndAtTheAxis) {
   test::Random random(31);
-  for (int i = 0; i < test::cases(60, 4); ++i) {
+  for (int i = 0; i < test::cases(60, 20, 4); ++i) {
     const double major = random.uniform(0.15, 0.4), minor = major * random.uniform(0.2, 0.6);
     const double base = random.uniform(0.02, 0.12);
     const Cone cone{base * random.log_uniform(1e-3, 0.1), base,

@@ -77,7 +77,7 @@ double volume_of_lines(const ImplicitSolid& body, const ImplicitSolid& ring, dou
 TEST(ToriWithoutAHole, AnEndOfAPlateHoldsTheAxis) {
   test::Random random(41);
   int seen = 0;
-  for (int i = 0; i < test::cases(400, 15); ++i) {
+  for (int i = 0; i < test::cases(400, 120, 15); ++i) {
     const double r = random.uniform(0.05, 0.15), R = r * kBy[i % 5];
     const double half = random.log_uniform(1e-4, 0.3), radius = random.uniform(0.3, 2.5) * r;
     const double other = i % 2 == 0 ? radius : radius * random.uniform();
@@ -102,7 +102,7 @@ TEST(ToriWithoutAHole, AnEndOfAPlateHoldsTheAxis) {
           << " " << off;
     }
   }
-  EXPECT_GE(seen, test::cases(350, 10));
+  EXPECT_GE(seen, test::cases(350, 100, 10));
 }
 
 // What a cone that leaves the apex along `axis` and is cut off at `from` has in common with a ring,
@@ -134,7 +134,7 @@ double volume_of_rays(const ImplicitSolid& ring, const Vec3& apex, const Mat3& f
 // like the root of the angle.
 TEST(ToriWithoutAHole, AConeHasItsTipAtTheAxis) {
   test::Random random(43);
-  for (int i = 0; i < test::cases(400, 20); ++i) {
+  for (int i = 0; i < test::cases(400, 120, 20); ++i) {
     const double r = random.uniform(0.05, 0.15), R = r * kBy[i % 5];
     const double slope = random.log_uniform(0.1, 5.0), half = random.uniform(2.0, 3.0) * r;
     const double beside = i % 4 == 0 ? 0.0 : random.log_uniform(1e-8, 0.03) * r;
