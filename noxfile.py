@@ -84,6 +84,12 @@ def test(session: nox.Session) -> None:
 
 
 @command
+def soak(session: nox.Session) -> None:
+    """`test` with every case of the long tests: before a release, or after deep changes."""
+    testing.soak(session.posargs)
+
+
+@command
 def python(session: nox.Session) -> None:
     """Python with volcontact; scripts in tests/ get the libraries of the tests, too."""
     called_in = Path(os.environ.get("VOLCONTACT_CALLED_IN", shell.ROOT))

@@ -20,17 +20,31 @@ from tasks.sites import build_site
 from tasks.stages import Stages
 from tasks.system import need_system, use_compiler_cache, wish_system
 
-# Tests that no MuJoCo release can change: they run once, on the first release that is tested.
+# Files that no MuJoCo release can change, as the tests marked `once`: they run on one release. Of
+# each folder there are others that run on both.
 WITHOUT_MUJOCO = (
-    "tests/python/core",
-    "tests/python/identify/test_bench_noise.py",
-    "tests/python/study/test_study_clusters.py",
+    "tests/python/core/*",
+    "tests/python/fmu/test_fmu_*.py",
+    "tests/python/hosts/test_host_scenes.py",
+    "tests/python/identify/test_[!i]*.py",
+    "tests/python/pages/test_t*.py",
+    "tests/python/report/test_report_browser.py",
+    "tests/python/report/test_step_error.py",
+    "tests/python/scene/test_files.py",
+    "tests/python/study/test_study_[!s]*.py",
     "tests/test_includes.py",
     "tests/test_layering.py",
 )
+_IGNORED = [f"--ignore-glob={path}" for path in WITHOUT_MUJOCO]
 _NO_TESTS = 5  # pytest: none was selected
 # A file to each process, in the order of tests/conftest.py: xdist would begin with many short.
 _SHARED_OUT = ("--dist", "loadfile", "--no-loadscope-reorder")
+
+
+def soak(arguments: list[str]) -> None:
+    """`test` with all cases of the long tests, of which it has few or smaller ones."""
+    os.environ["VOLCONTACT_SOAK"] = "1"  # read by tests/python/support and tests/core/support
+    test(arguments)
 
 
 def test(arguments: list[str]) -> None:
@@ -128,7 +142,8 @@ def _test_release(stages: Stages, release: str, *, everything: bool) -> None:
             f"MuJoCo {made[0].version}: C++ tests",
             lambda: ctest(made[0].tree, f"{name}-cpp"),
         )
-    arguments = [] if everything else [f"--ignore={path}" for path in WITHOUT_MUJOCO]
+    once = not everything and "VOLCONTACT_SOAK" not in os.environ
+    arguments = ["--again", *_IGNORED] if once else []
     stages.run(f"MuJoCo {made[0].version}: Python tests", lambda: pytest(made[0], arguments))
 
 

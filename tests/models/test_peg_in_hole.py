@@ -169,6 +169,7 @@ def test_peg_of_64_chords_jams_where_the_diagram_says_so(scene: str, clearance: 
     check_both_sides(FOLDER / scene, clearance, 0.0)
 
 
+@pytest.mark.once
 def test_peg_of_20000_triangles_jams_where_the_diagram_says_so(fine: Path) -> None:
     """In a direction in which no corners of the polygons meet."""
     check_both_sides(fine / "scene_mesh.xml", WIDE, 0.0, azimuth=0.37)

@@ -7,6 +7,7 @@ import math
 
 import mujoco
 import numpy as np
+import pytest
 from case import Bounds, Case, Curve, Figure, Plot, Run, crossings, load, simulate
 
 BORE, RADIUS = 1.0, 0.1
@@ -124,5 +125,7 @@ def measure() -> Case:
     return case
 
 
+@pytest.mark.soak
 def test_ball_in_cylinder() -> None:
+    """Of `./run test` the whole run in test_sensitivity.py."""
     measure().check()

@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 import mujoco
 import numpy as np
+import pytest
 from case import GRAVITY, Case, Curve, Figure, Plot, Run, load, simulate
 
 MASS, KINETIC, STATIC, DWELL = 1.0, 0.3, 0.4, 0.5
@@ -133,6 +134,14 @@ def stiction(rest: float) -> float:
     return KINETIC + (STATIC - KINETIC) * (1.0 - math.exp(-rest / DWELL))
 
 
+def after_a_rest(rest: float, rate: float) -> float:
+    """Friction over weight at the breakaway, under a ramp of so many weights per second [-]."""
+    grown = KINETIC
+    for _ in range(5):  # it grows on while the ramp rises
+        grown = stiction(rest + grown / rate)
+    return grown
+
+
 def measure() -> Case:
     """Breakaway after long and short rests, and drift."""
     case = Case(
@@ -147,9 +156,7 @@ def measure() -> Case:
     case.figures.append(Figure("slow ramp: friction over weight", "-", STATIC, 5e-3, *slow))
     own = breakaway(0.3, 20.0, case, native=True)  # whatever the rest
     for rest in (0.1, 0.3, 1.0):
-        grown = KINETIC
-        for _ in range(5):  # it grows on while the ramp rises
-            grown = stiction(rest + grown / 20.0)
+        grown = after_a_rest(rest, 20.0)
         name = f"quick ramp after {rest:g} s of rest"
         measured = breakaway(rest, 20.0, case)
         case.figures.append(Figure(name, "-", grown, 1e-2, measured, own))
@@ -187,5 +194,14 @@ def measure() -> Case:
     return case
 
 
+@pytest.mark.soak
 def test_bristle() -> None:
+    """`./run test` has test_breaks_away_after_a_rest."""
     measure().check()
+
+
+@pytest.mark.parametrize("rest", [0.1, 1.0])
+def test_breaks_away_after_a_rest(rest: float) -> None:
+    case = Case("", "")
+    assert breakaway(rest, 20.0, case) == pytest.approx(after_a_rest(rest, 20.0), rel=1e-2)
+    case.check()  # of the balance of energy

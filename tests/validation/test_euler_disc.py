@@ -7,6 +7,7 @@ import math
 
 import mujoco
 import numpy as np
+import pytest
 from case import GRAVITY, Bounds, Case, Curve, Figure, Plot, Run, load, simulate, start
 
 from volcontact._mujoco_views import dense
@@ -67,5 +68,6 @@ def measure() -> Case:
     return case
 
 
+@pytest.mark.once
 def test_euler_disc() -> None:
     measure().check()

@@ -7,6 +7,7 @@ import math
 
 import mujoco
 import numpy as np
+import pytest
 from case import GRAVITY, Case, Curve, Figure, Plot, Run, crossings, load, simulate
 
 import volcontact as vc
@@ -143,5 +144,6 @@ def measure() -> Case:
     return case
 
 
+@pytest.mark.once
 def test_flat_patch() -> None:
     measure().check()

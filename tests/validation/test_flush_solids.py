@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import mujoco
+import pytest
 from case import GRAVITY, Case, Figure, Run, depth_of_ball, load, simulate
 
 RADIUS, TILE = 0.05, 0.1  # [m]
@@ -123,5 +124,6 @@ def measure() -> Case:
     return case
 
 
+@pytest.mark.once
 def test_flush_solids() -> None:
     measure().check()

@@ -233,6 +233,7 @@ def measure(count: int = 4) -> Case:
     return case
 
 
+@pytest.mark.once
 def test_implicit_contact() -> None:
     measure().check()
 

@@ -7,6 +7,7 @@ import math
 
 import mujoco
 import numpy as np
+import pytest
 from case import (
     GRAVITY,
     ONE_FRICTION,
@@ -162,5 +163,6 @@ def slip_ratio(degrees: float) -> float:
     return 1.0 - spun / (math.sin(angle) - KINETIC * math.cos(angle))
 
 
+@pytest.mark.once
 def test_incline() -> None:
     measure().check()

@@ -7,6 +7,7 @@ import math
 
 import mujoco
 import numpy as np
+import pytest
 from case import Bounds, Case, Curve, Figure, Plot, Run, load, simulate
 
 import volcontact as vc
@@ -136,5 +137,6 @@ def measure() -> Case:
     return case
 
 
+@pytest.mark.once
 def test_painleve_rod() -> None:
     measure().check()

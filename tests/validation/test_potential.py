@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 from case import NO_FIELD, RUNGE_KUTTA_IS_FOURTH, Bounds, Case, Curve, Plot, load, simulate
 
 import volcontact as vc
@@ -156,5 +157,6 @@ def measure() -> Case:
     return case
 
 
+@pytest.mark.once
 def test_potential() -> None:
     measure().check()

@@ -8,6 +8,7 @@ from contextlib import nullcontext
 
 import mujoco
 import numpy as np
+import pytest
 from case import Bounds, Case, Figure, load, simulate
 from scenes import over_floor
 
@@ -122,5 +123,6 @@ def measure() -> Case:
     return case
 
 
+@pytest.mark.once
 def test_restitution() -> None:
     measure().check()

@@ -7,6 +7,7 @@ import math
 
 import mujoco
 import numpy as np
+import pytest
 from case import GRAVITY, Bounds, Case, Curve, Figure, Plot, Run, crossings, load, simulate
 
 HALF_WIDTH, HALF_HEIGHT, HALF_LENGTH, FOOT = 0.1, 0.2, 0.1, 0.004
@@ -155,5 +156,6 @@ def test_period_is_that_of_the_equation() -> None:
     assert abs(total - PERIOD) < 1e-8
 
 
+@pytest.mark.once
 def test_rocking_block() -> None:
     measure().check()

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from case import NO_ACCOUNT, Case, Curve, Figure, Plot, Run, load, simulate
 
 RADIUS = 0.05
@@ -103,5 +104,6 @@ def measure() -> Case:
     return case
 
 
+@pytest.mark.once
 def test_spinning_disc() -> None:
     measure().check()

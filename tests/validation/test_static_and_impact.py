@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 from case import GRAVITY, NO_STIFFNESS, Case, Figure, crossings, load, simulate
 from scenes import over_floor
 
@@ -140,5 +141,6 @@ def measure() -> Case:
     return case
 
 
+@pytest.mark.once
 def test_static_and_impact() -> None:
     measure().check()

@@ -150,6 +150,7 @@ def measure() -> Case:
     return case
 
 
+@pytest.mark.once
 def test_sticking() -> None:
     measure().check()
 

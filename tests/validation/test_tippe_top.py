@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
+import pytest
 from case import (
     ONE_FRICTION,
     Bounds,
@@ -154,5 +155,7 @@ def measure() -> Case:
     return case
 
 
+@pytest.mark.soak
 def test_tippe_top() -> None:
+    """Of `./run test` the whole run in test_sensitivity.py."""
     measure().check()

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 from case import RUNGE_KUTTA_IS_FOURTH, Bounds, Case, Curve, Plot, Run, load, simulate
 
 from volcontact._mujoco_views import dense
@@ -62,5 +63,6 @@ def measure() -> Case:
     return case
 
 
+@pytest.mark.once
 def test_tumbling_box() -> None:
     measure().check()

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The adaptor compiled at first use, from the package's own sources."""
 
+import json
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -37,10 +39,9 @@ def surroundings(tmp_path, monkeypatch):
     monkeypatch.setenv("CMAKE_BUILD_TYPE", "None")  # unoptimised: the bits are the same
 
 
-@pytest.mark.skipif(
-    mujoco.__version__ == "2.2.2", reason="two minutes: tested on the newest release"
-)
+@pytest.mark.soak
 def test_compiles_once_what_steps_to_the_same_bits(tmp_path, monkeypatch, capfd):
+    """`./run test` has test_sources_are_whole."""
     if shutil.which("cmake") is None or not (TOOLS / "eigen").exists():
         pytest.skip("needs CMake and Eigen of ./run")
     library = _adaptor_build.build(NAME, SOURCE)
@@ -59,6 +60,28 @@ def test_compiles_once_what_steps_to_the_same_bits(tmp_path, monkeypatch, capfd)
     monkeypatch.setattr(_adaptor_build, "_compile", None)  # from the cache now
     assert _adaptor_build.build(NAME, SOURCE) == library
     assert capfd.readouterr().err == ""
+
+
+@pytest.mark.once
+def test_sources_are_whole(tmp_path, monkeypatch):
+    """They configure, and the compiler reads the first of what it is then told to compile."""
+    if shutil.which("cmake") is None or not (TOOLS / "eigen").exists():
+        pytest.skip("needs CMake and Eigen of ./run")
+    monkeypatch.setenv("CMAKE_EXPORT_COMPILE_COMMANDS", "ON")
+    package = Path(mujoco.__file__).parent
+    subprocess.run(
+        ["cmake", "-G", "Ninja", "-S", SOURCE / "adaptor", "-B", tmp_path,
+         f"-DMUJOCO_DIR={package}"],
+        check=True, capture_output=True,
+    )  # fmt: skip
+    commands = json.loads((tmp_path / "compile_commands.json").read_text())
+    units = [each for each in commands if "/Unity/" in each["file"]]
+    told = {name for each in units for name in Path(each["file"]).read_text().split('"')}
+    sources = SOURCE / "adaptor"
+    assert {path.relative_to(sources).as_posix() for path in sources.rglob("*.cc")} <= told
+    command = [*shlex.split(units[0]["command"]), "-fsyntax-only", "-Wno-error"]
+    done = subprocess.run(command, cwd=units[0]["directory"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[:2000]
 
 
 def test_release_that_is_not_there_is_served_from_the_cache(tmp_path, monkeypatch):

@@ -17,11 +17,13 @@ import fmu_cost  # noqa: E402 - lies there
 MOST = 1.15
 
 
+@pytest.mark.soak
 @pytest.mark.skipif(
     tuple(map(int, mujoco.__version__.split(".")[:2])) < (3, 0),
     reason="has nothing to do with MuJoCo: once is enough",
 )
 def test_a_step_and_the_derivatives_cost_at_most_a_seventh_more_than_the_call(tmp_path):
+    """A time: nothing for `./run test`."""
     program, folder = tmp_path / "fmu_cost", library_folder()
     source = Path(fmu_cost.__file__).with_suffix(".cc")
     libraries = [folder / "libvolcontact.so", f"-Wl,-rpath,{folder}", "-ldl"]

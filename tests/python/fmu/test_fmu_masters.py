@@ -155,7 +155,7 @@ def fmi_sim(path, out, *arguments):
         path=os.pathsep.join([str(built), os.environ["PATH"], f"{Path.home()}/.cargo/bin"]),
     )
     if program is None:
-        pytest.skip("NOT RUN: fmi-sim is missing; VOLCONTACT_FMI_SIM=1 ./run test builds it")
+        pytest.skip("NOT RUN: fmi-sim is missing; ./run soak builds it")
     done = subprocess.run(
         [program, "--model", str(path), "--output-file", str(out), *arguments],
         capture_output=True, text=True, timeout=60, check=False,

@@ -9,7 +9,6 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from xml.etree import ElementTree
 
-import mujoco
 import numpy as np
 import pytest
 
@@ -18,7 +17,6 @@ from volcontact.fmu import packing
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy is missing: pip install fmpy")
 COMPILER = ["ccache", "c++"] if shutil.which("ccache") else ["c++"]
-IS_NEWEST = tuple(map(int, mujoco.__version__.split(".")[:2])) >= (3, 0)
 
 
 def dragged_ball():
@@ -103,16 +101,39 @@ def rows(path):
 # As the options say, the same takes twice as long.
 QUICKLY = ["-O0", "-fpch-preprocess"]
 COMMON = "volcontact/shape/shapes.h"
+ROOT = Path(__file__).parents[3]
+CORE = ROOT / "build" / "core" / "plugin" / "volcontact" / "libvolcontact_core.a"
 
 
-@pytest.mark.skipif(not IS_NEWEST, reason="has nothing to do with MuJoCo: once is enough")
-def test_compiled_by_what_the_unit_says_it_has_the_same_bits(tmp_path):
-    """FMI 3: buildDescription.xml. Every other file of FMI 2 is the same."""
+def core_of_the_checkout(sources):
+    """Its library, if the sources of the unit are its own."""
+    if not CORE.is_file():
+        pytest.skip("./run builds the core of the checkout")
+    files = [file for file in (sources / "volcontact").rglob("*") if file.is_file()]
+    assert len(files) > 200
+    for file in files:
+        own = ROOT / "plugin" / file.relative_to(sources)
+        assert file.read_bytes() == own.read_bytes(), own
+    return CORE
+
+
+@pytest.mark.parametrize(
+    "core", ["of the checkout", pytest.param("of the unit", marks=pytest.mark.soak)]
+)
+def test_compiled_by_what_the_unit_says_it_has_the_same_bits(core, tmp_path):
+    """FMI 3: buildDescription.xml. Every other file of FMI 2 is the same.
+
+    To compile the core takes minutes: `./run test` compiles what is around it.
+    """
     path = vc.export_fmu(dragged_ball(), tmp_path / "ball.fmu", fmi=3, sources=True, arrays=False)
     with zipfile.ZipFile(path) as fmu:
         fmu.extractall(tmp_path / "unpacked")
     files, options, folders, libraries = to_compile(tmp_path / "unpacked")
     sources = tmp_path / "unpacked" / "sources"
+    given = []
+    if core == "of the checkout":
+        files = [name for name in files if not name.startswith("core_")]
+        given = [core_of_the_checkout(sources)]
     words = [*options.split(), *QUICKLY, *(f"-I{one}" for one in folders)]
 
     def compiled(name, *more):
@@ -131,17 +152,18 @@ def test_compiled_by_what_the_unit_says_it_has_the_same_bits(tmp_path):
     (sources / "common.h").write_text(
         "".join(f"#define {name}\n" for name in defined) + f'#include "{COMMON}"\n'
     )
-    subprocess.run(
-        ["c++", *words, "-x", "c++-header", "common.h", "-o", "common.h.gch"],
-        cwd=sources, check=True,
-    )  # fmt: skip
+    if not given:
+        subprocess.run(
+            ["c++", *words, "-x", "c++-header", "common.h", "-o", "common.h.gch"],
+            cwd=sources, check=True,
+        )  # fmt: skip
     with ThreadPoolExecutor(2) as pool:
         objects = list(pool.map(lambda name: compiled(name, *common(name)), files))
     binary = next((tmp_path / "unpacked" / "binaries").glob("*/ball.*"))
     shipped = binary.read_bytes()
     binary.unlink()
     subprocess.run(
-        ["c++", "-shared", "-o", str(binary), *objects, *(f"-l{one}" for one in libraries)],
+        ["c++", "-shared", "-o", str(binary), *objects, *given, *(f"-l{one}" for one in libraries)],
         cwd=sources, check=True,
     )  # fmt: skip
     assert binary.read_bytes() != shipped

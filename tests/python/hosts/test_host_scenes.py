@@ -40,8 +40,16 @@ def test_reference_has_the_events_of_the_validation_page(reference):
     assert events["beyond 150 degrees"] - events["stem touches"] == pytest.approx(0.1134, rel=0.05)
 
 
-@pytest.mark.parametrize("name", SCENES)
-@pytest.mark.parametrize("host", HOSTS)
+# Of the slow ones the other scene is enough in `./run test`.
+SLOW = ("drake", "tippe_top"), ("basilisk", "ball_in_cylinder")
+RUNS = [
+    pytest.param(host, name, marks=[pytest.mark.soak] if (host, name) in SLOW else [])
+    for name in SCENES
+    for host in HOSTS
+]
+
+
+@pytest.mark.parametrize(("host", "name"), RUNS)
 def test_events_are_those_of_mujoco(host, name, reference):
     needed(HOSTS[host])
     run = in_host(host, name)

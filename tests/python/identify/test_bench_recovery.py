@@ -68,14 +68,18 @@ def test_drop_of_constant_restitution(scenes):
     assert found.parameters().keys() == set(names)
 
 
+@pytest.mark.soak
 def test_tilt(scenes):
+    """`./run test` reads the kept sheet: test_bench_noise.py."""
     text = scenes.tilt()
     names = "friction", "static_friction", "dwell_time"
     check("tilt", text, scenes.truth("tilt"), *names)
     check_kept("tilt", text)
 
 
+@pytest.mark.soak
 def test_pull(scenes):
+    """`./run test` reads the kept sheet: test_bench_noise.py."""
     text = scenes.pull()
     names = "friction", "static_friction", "dwell_time", "stribeck_speed", "viscous_friction"
     found = check("pull", text, scenes.truth("pull"), *names)

@@ -5,16 +5,17 @@ import sys
 from pathlib import Path
 
 from scipy import stats
+from soaking import cases
 from synthetic_tosses import scene, tosses
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks" / "field"))
 import identify_coverage as bench
 
-REPETITIONS = 3
+REPETITIONS = cases(1, soak=10)
 
 
 def test_intervals_hold_the_truth(tmp_path):
-    """Of 9 intervals of 95 %, fewer than 6 hold the truth with a chance below 1 in 1000."""
+    """As many as binomial chance leaves them, but for 1 in 1000: of 3 at least 1, of 30 24."""
     rows = tosses(scene(bench.TRUE | bench.HELD))
     # Noise of its own: the page's begins at 0.
     results = [bench.repetition(1000 + n, rows, tmp_path) for n in range(REPETITIONS)]

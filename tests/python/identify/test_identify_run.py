@@ -43,6 +43,7 @@ def test_parameters_are_recovered_without_noise(tmp_path, rows):
     mujoco.mj_step(model, data)
 
 
+@pytest.mark.once
 def test_starts_are_found_beside_the_parameters(tmp_path, rows):
     """Velocities at the start that were measured wrong."""
     wrong = rows[:40].copy()
@@ -61,6 +62,7 @@ def test_same_result_with_processes(tmp_path, rows):
     assert one.values == two.values
 
 
+@pytest.mark.once
 def test_intervals_hold_the_truth(tmp_path, rows):
     """Of 12 repetitions with noise, 95 % intervals of three parameters: 36 in all."""
     held = 0
@@ -147,6 +149,7 @@ def test_optuna_finds_about_the_same(tmp_path, rows):
     assert found.values["stiffness"] == pytest.approx(TRUE["stiffness"], rel=0.3)
 
 
+@pytest.mark.once
 def test_command_writes_everything_and_tells_whether_it_converged(tmp_path, rows, capsys):
     text = STUDY.replace('time = "t"', 'time = "t"\nfit = [0, 1]\njudge = [2]') + ONE
     study = write_study(tmp_path, rows, text)

@@ -121,7 +121,7 @@ starts = 1
 scale = {scale}
 mcmc = 2100
 burn = 100
-walkers = 16
+walkers = 6
 """
 
 
@@ -164,7 +164,7 @@ def test_study_has_the_posterior_of_its_linear_model(tmp_path):
     mean = covariance @ rows.T @ right
     sigma = np.sqrt(covariance[0, 0])
     each = found.summary["parameters"]["gravity"]
-    independent = 16 * chain["steps"] / chain["autocorrelation"]["gravity"]
+    independent = 6 * chain["steps"] / chain["autocorrelation"]["gravity"]
     assert each["deviation"] == pytest.approx(sigma, rel=4.0 / np.sqrt(2.0 * independent))
     # Of a quantile at 2.5 % the standard deviation is sqrt(q (1 - q) / n) over the density there.
     error = 4.0 * np.sqrt(0.025 * 0.975 / independent) / 0.0584 * sigma
@@ -190,7 +190,7 @@ def test_unknown_noise_widens_the_posterior_to_students(tmp_path):
 
     each, chain = found.summary["parameters"]["gravity"], found.summary["chain"]
     assert chain["enough"]
-    independent = 16 * chain["steps"] / chain["autocorrelation"]["gravity"]
+    independent = 6 * chain["steps"] / chain["autocorrelation"]["gravity"]
     error = 4.0 * np.sqrt(0.025 * 0.975 / independent) / 0.0584 * spread
     reach = stats.t.ppf(0.975, free) * spread
     assert each["low"] == pytest.approx(mean - reach, abs=error)

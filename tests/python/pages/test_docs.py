@@ -27,6 +27,9 @@ SOURCES = [
     for suffix in ("h", "cc", "py")
     for path in sorted((ROOT / folder).rglob(f"*.{suffix}"))
 ]
+# Tutorials simulate for seconds.
+LONG = {page: [pytest.mark.once] for page in PAGES if page.parent.name == "tutorials"}
+RUN = [pytest.param(page, marks=LONG.get(page, [])) for page in PAGES]
 STEPS = 20  # enough for MuJoCo to complain about a scene that does not work
 
 SCENE = """
@@ -83,7 +86,7 @@ def generator(name: str) -> ModuleType:
     return module
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+@pytest.mark.parametrize("page", RUN, ids=lambda page: str(page.relative_to(ROOT)))
 def test_python_blocks_run(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Blocks of one page run in order and share their names, as a reader would type them."""
     monkeypatch.chdir(ROOT)
@@ -145,6 +148,7 @@ def test_page_of_the_keys_is_generated_from_what_the_code_accepts() -> None:
     )
 
 
+@pytest.mark.once
 def test_pictures_of_the_concepts_show_what_the_core_computes(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -174,6 +178,7 @@ def test_every_engine_and_law_has_a_page() -> None:
         assert f"]({Path(picture).name}.svg)" in shown, picture
 
 
+@pytest.mark.once
 def test_blocks_of_pages_say_what_the_code_and_the_results_say(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

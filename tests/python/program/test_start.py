@@ -6,6 +6,8 @@ import shlex
 import shutil
 from pathlib import Path
 
+import pytest
+
 from volcontact.cli import main
 
 ROOT = Path(__file__).parents[3]
@@ -24,6 +26,7 @@ def test_fewer_than_ten_commands_lead_to_a_scene_of_ones_own():
     assert commands()[0][:2] == ["git", "clone"]
 
 
+@pytest.mark.once
 def test_every_command_of_the_first_page_ends_well(tmp_path, monkeypatch):
     """All but the clone and the demonstration, which other tests and every run of CI make.
 

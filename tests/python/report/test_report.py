@@ -44,6 +44,7 @@ def test_thinned_curve_keeps_its_peaks():
     assert np.all(np.diff(few_x) > 0)
 
 
+@pytest.mark.once
 def test_curves_take_their_colours_from_the_page_and_repeat_exactly():
     made = drawn()
     names = [curve.name for curve in made]

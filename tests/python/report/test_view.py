@@ -132,6 +132,7 @@ def shows_native(picture):
     return like(picture, PINK) > 300 and like(picture, BLUE) < 300
 
 
+@pytest.mark.once
 @needs_browser
 def test_browser_shows_patches_and_forces_and_obeys(page, stage, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

@@ -143,6 +143,7 @@ def test_a_server_that_cannot_be_guarded_is_not_left_open(monkeypatch):
     assert len(stopped) == 1
 
 
+@pytest.mark.once
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="chromium is not installed")
 @pytest.mark.parametrize("page", ["0.0.0.0"], indirect=True)
 def test_the_browser_keeps_the_token(page):

@@ -98,6 +98,7 @@ def test_a_long_run_is_thinned_and_a_short_one_is_not():
     assert stride(1200, 1e-4) == 2
 
 
+@pytest.mark.once
 def test_the_two_runs_of_a_comparison_are_told_apart(folder):
     assert main(["compare", "slope.xml", "--duration", "0.1", "--no-frames", "--out", "both"]) == 0
     with open_recorded("both") as stage:
@@ -160,6 +161,7 @@ def test_what_makes_no_sense_is_said(arguments, status, said, folder, capsys):
     assert said in " ".join(capsys.readouterr().err.split())
 
 
+@pytest.mark.once
 def test_view_of_a_folder_writes_a_clip(folder, capsys, no_steps):
     command = ["view", "results", "--browser", "--port", "8151", "--seconds", "0.5"]
     assert main([*command, "--speed", "0.5", "--clip", "run.mp4"]) == 0
@@ -168,8 +170,10 @@ def test_view_of_a_folder_writes_a_clip(folder, capsys, no_steps):
     assert frames == 25
 
 
+@pytest.mark.soak
 @needs_browser
 def test_the_browser_shows_a_folder_and_scrubs_it(page, stage, no_steps):
+    """`./run test` has the window that shows it, and another browser in test_view.py."""
     shown, page, faults = page
     stage.show(0.4)
     assert happens(shown, lambda: like(shot(page, "recorded.png"), BLUE) > 3000)
@@ -188,6 +192,7 @@ def test_the_browser_shows_a_folder_and_scrubs_it(page, stage, no_steps):
     assert faults == []
 
 
+@pytest.mark.once
 @pytest.mark.skipif(not has_window, reason="MuJoCo has no viewer to draw into, or Xvfb is missing")
 def test_the_window_shows_a_folder(folder, tmp_path):
     picture = picture_of_window(

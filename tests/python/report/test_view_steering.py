@@ -211,8 +211,10 @@ def test_view_starts_where_it_is_told_and_writes_a_clip(tmp_path, monkeypatch, c
 # ---- With a mouse --------------------------------------------------------------------------------
 
 
+@pytest.mark.soak
 @needs_browser
 def test_the_mouse_pulls_at_a_body_in_the_browser(page, stage, tmp_path, monkeypatch):
+    """`./run test` has the hand without a mouse, above, and another browser in test_view.py."""
     monkeypatch.chdir(tmp_path)
     shown, page, faults = page
     height = stage.data.qpos[2]
@@ -234,6 +236,7 @@ def test_the_mouse_pulls_at_a_body_in_the_browser(page, stage, tmp_path, monkeyp
     assert faults == []
 
 
+@pytest.mark.once
 @needs_browser
 def test_the_slider_goes_back_in_time_and_a_clip_is_sent(page, stage, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -320,8 +323,10 @@ with Stage(sys.argv[1]) as stage:
 """
 
 
+@pytest.mark.soak
 @pytest.mark.skipif(not has_window, reason="no viewer to draw into, or Xvfb or libxtst6 is missing")
 def test_the_mouse_pulls_at_a_body_in_mujocos_window(tmp_path):
+    """`./run test` has the hand without a mouse, above."""
     (tmp_path / "scene.xml").write_text(SCENE)
     environment = {k: v for k, v in os.environ.items() if k not in ("MUJOCO_GL", "DISPLAY")}
     display = ["xvfb-run", "-a", "-s", "-screen 0 1200x900x24"]

@@ -212,8 +212,15 @@ def test_a_stopped_run_leaves_the_folder_as_it_was(scene, tmp_path, command, num
     assert content(out) == before
 
 
-@pytest.mark.parametrize("most", [100, 30000])
-@pytest.mark.parametrize("command", ["run", "compare"])
+@pytest.mark.parametrize(
+    ("command", "most"),
+    [
+        ("run", 100),
+        ("compare", 30000),
+        pytest.param("run", 30000, marks=pytest.mark.soak),
+        pytest.param("compare", 100, marks=pytest.mark.soak),
+    ],
+)
 def test_a_full_disk_leaves_the_folder_as_it_was(scene, tmp_path, command, most):
     """As a full disk: no file may become longer than so many bytes."""
     out = tmp_path / "out"

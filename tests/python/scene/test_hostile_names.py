@@ -78,6 +78,7 @@ def test_errors_do_not_steer_the_terminal_either(tmp_path, capsys, monkeypatch):
     assert harmless(error) and r"m\x1b]0;owned" in error
 
 
+@pytest.mark.once
 def test_the_report_shows_names_and_runs_none(scene, tmp_path):
     out = tmp_path / "out"
     arguments = ["compare", scene, "--duration", "0.02", "--frame-interval", "0.01"]

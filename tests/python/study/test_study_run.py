@@ -235,8 +235,12 @@ cp -r "$1/out" "$4"
 """
 
 
+@pytest.mark.soak
 def test_really_full_disk(tmp_path):
-    """A file system of 64 KB: some parts fit, the rest once there is room, each trial once."""
+    """A file system of 64 KB: some parts fit, the rest once there is room, each trial once.
+
+    `./run test` has test_full_disk_ends_the_study_in_one_line.
+    """
     if shutil.which("unshare") is None:
         pytest.skip("needs unshare, of util-linux")
     path = function_study(tmp_path, FUNCTION_STUDY.replace("trials = 40", "trials = 400"))
