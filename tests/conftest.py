@@ -34,11 +34,12 @@ def pytest_collection_modifyitems(config, items):
     if SOAKING:
         return
     left_out = {"soak", "once"} if config.getoption("again") else {"soak"}
-    config.stash[LEFT_OUT] = deselected = [
-        item for item in items if left_out & {mark.name for mark in item.iter_markers()}
-    ]
-    config.hook.pytest_deselected(items=deselected)
-    items[:] = [item for item in items if item not in set(deselected)]
+    kept, config.stash[LEFT_OUT] = [], []
+    for item in items:
+        marks = {mark.name for mark in item.iter_markers()}
+        (config.stash[LEFT_OUT] if marks & left_out else kept).append(item)
+    config.hook.pytest_deselected(items=config.stash[LEFT_OUT])
+    items[:] = kept
 
 
 def pytest_terminal_summary(terminalreporter, config):
