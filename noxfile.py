@@ -79,7 +79,7 @@ def demo(session: nox.Session) -> None:
 
 @command
 def test(session: nox.Session) -> None:
-    """All C++ and Python tests, on both MuJoCo releases; ARGS of pytest select."""
+    """C++ and Python tests, on both MuJoCo releases; ARGS of pytest select."""
     testing.test(session.posargs)
 
 

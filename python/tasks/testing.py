@@ -21,7 +21,7 @@ from tasks.stages import Stages
 from tasks.system import need_system, use_compiler_cache, wish_system
 
 # Files that no MuJoCo release can change, as the tests marked `once`: they run on one release. Of
-# each folder there are others that run on both.
+# each folder but the first there are others that run on both.
 WITHOUT_MUJOCO = (
     "tests/python/core/*",
     "tests/python/fmu/test_fmu_*.py",
@@ -48,7 +48,7 @@ def soak(arguments: list[str]) -> None:
 
 
 def test(arguments: list[str]) -> None:
-    """All tests, or with arguments of pytest those that they select, on one release."""
+    """The tests, or with arguments of pytest those that they select, on one release."""
     _need_packages(arguments)
     shutil.rmtree(RESULTS, ignore_errors=True)
     RESULTS.mkdir(parents=True)

@@ -222,7 +222,10 @@ def test_a_stopped_run_leaves_the_folder_as_it_was(scene, tmp_path, command, num
     ],
 )
 def test_a_full_disk_leaves_the_folder_as_it_was(scene, tmp_path, command, most):
-    """As a full disk: no file may become longer than so many bytes."""
+    """As a full disk: no file may become longer than so many bytes.
+
+    `./run test` has each command and each length once.
+    """
     out = tmp_path / "out"
     old_report(out)
     before = content(out)
