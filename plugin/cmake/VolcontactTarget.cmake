@@ -76,6 +76,23 @@ function(volcontact_precompile name)
   endif()
 endfunction()
 
+# For what calls the core: compiled in three quarters of the time with few optimisations.
+function(volcontact_compile_quickly name)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_BUILD_TYPE STREQUAL "Release")
+    target_compile_options(${name} PRIVATE -O1)
+  endif()
+endfunction()
+
+# Where the core and a target of other flags instantiate the same template, the linker takes the first
+# that it sees: that of the core.
+function(volcontact_link_core_first name)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU"
+      AND (CMAKE_BUILD_TYPE STREQUAL "Release" OR VOLCONTACT_TEST_OBJECTS))
+    target_link_options(${name} PRIVATE
+      "LINKER:--whole-archive,$<TARGET_FILE:volcontact::core>,--no-whole-archive")
+  endif()
+endfunction()
+
 # What a user of the core must have as well. Scope: PUBLIC for the core, INTERFACE for one that was
 # compiled before.
 function(volcontact_core_usage name scope)

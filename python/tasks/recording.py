@@ -10,7 +10,7 @@ import shutil
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
-from tasks.building import build, configure
+from tasks.building import CORE, build, build_core, configure
 from tasks.cgal import NoCgal, build_cgal, link_cgal
 from tasks.environments import BASELINE, Environment, NoPython, located, prepared
 from tasks.interpreters import VERSIONS, all_interpreters, from_newer_debian
@@ -219,7 +219,9 @@ def _matrix_row(version: str, report: Path, venv: Path) -> dict[str, str | int]:
 def sanitize() -> None:
     """The C++ tests of the core and of `c_api` under the sanitizers of memory and arithmetic."""
     need_system("libgtest-dev")
-    run("cmake", "--preset", "asan")
+    # The sanitizers are to watch the core; the tests are compiled once.
+    build_core("volcontact_core_tests", VOLCONTACT_TESTS="ON")
+    run("cmake", "--preset", "asan", f"-DVOLCONTACT_TEST_OBJECTS={CORE}")
     run("cmake", "--build", "--preset", "asan", "--target", "volcontact_core_tests",
         "volcontact_c_api_tests")  # fmt: skip
     jobs = os.environ["CMAKE_BUILD_PARALLEL_LEVEL"]

@@ -189,7 +189,8 @@ def pytest(environment: Environment, arguments: list[str]) -> None:
     run(
         environment.python, "-m", "pytest", "-n", JOBS, *_SHARED_OUT,
         f"--junit-xml={RESULTS / name}-python.xml", *arguments,
-        env={"VOLCONTACT_SCREENSHOTS": pictures},
+        # One thread of NumPy's own a process: the processes share the processors.
+        env={"VOLCONTACT_SCREENSHOTS": pictures, "OPENBLAS_NUM_THREADS": "1"},
     )  # fmt: skip
 
 

@@ -303,7 +303,7 @@ TEST(FmuInstance, ThirdVersionReturnsEarlyWhereBodiesPart) {
 
 TEST(FmuInstance, ManyInstancesAndThreadsGiveTheSameBits) {
   std::vector<Two> many;
-  constexpr std::size_t kMany = test::cases(1000, 200);
+  const std::size_t kMany = test::cases(1000, 200);
   for (std::size_t i = 0; i < kMany; ++i) many.push_back(started(1));
   const Two alone = started(1);
   const std::vector<double> wanted = slide(alone, 0.0, 3);

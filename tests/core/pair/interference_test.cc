@@ -4,9 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <new>
 #include <tuple>
 #include <vector>
 
@@ -17,22 +15,6 @@
 #include "core/support/random_shapes.h"
 #include "core/support/sanitized.h"
 #include "volcontact/pair/geometric_pair.h"
-
-namespace {
-thread_local long allocations = 0;
-}
-
-#if !defined(__SANITIZE_ADDRESS__)  // which has its own heap
-// Counts what the code under test asks of the heap. Not inlined: the compiler would take the free()
-// here for a mismatch with the new there.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size)) return p;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-#endif
 
 namespace volcontact::interference_test {
 namespace {
@@ -222,40 +204,6 @@ TEST(Interference, TwoHalfSpacesAreUnbounded) {
     EXPECT_FALSE(result.total.touching());
     EXPECT_TRUE(result.sites.empty());
   }
-}
-
-TEST(Interference, AWarmEvaluationAllocatesNothing) {
-#if defined(__SANITIZE_ADDRESS__)
-  GTEST_SKIP() << "the sanitizer's heap cannot be counted here";
-#endif
-  Random random(11);
-  InterferenceWorkspace workspace;
-  Interference result;
-  std::vector<Served> pairs(std::begin(kServed), std::end(kServed));
-  const Csg bored(Csg::Operation::kDifference, Csg(Box({.half_sizes = Vec3(0.5, 0.5, 0.4)})),
-                  Csg(Cylinder({.radius = 0.31, .half_length = 1.0})));
-  pairs.push_back({kBox, kCan, Engine::kLines});
-  pairs.push_back({bored, kCan, Engine::kLines});
-  pairs.push_back({kRing, kCan, Engine::kLines});
-  pairs.push_back({kRing, kBox, Engine::kLines});
-  for (const Served& pair : pairs) {
-    for (const auto& [a, b] : {std::pair{pair.a, pair.b}, std::pair{pair.b, pair.a}}) {
-      std::vector<Pose> poses;
-      for (int i = 0; i < 50; ++i) poses.push_back({random.rotation(), random.in_box(0.9)});
-      for (const Pose& X : poses) interference(a, b, X, {}, workspace, result);
-      const long before = allocations;
-      for (const Pose& X : poses) interference(a, b, X, {}, workspace, result);
-      EXPECT_EQ(allocations - before, 0) << name_of(a) << " and " << name_of(b);
-    }
-  }
-  // A ball that touches the wall of the bore by a nanometre: a film.
-  const Shape block(bored), ball(Sphere({.radius = 0.2}));
-  const Pose X{Mat3::Identity(), {0.31 - 0.2 + 1e-9, 0.0, 0.0}};
-  interference(block, ball, X, {}, workspace, result);
-  const long before = allocations;
-  interference(block, ball, X, {}, workspace, result);
-  EXPECT_EQ(allocations - before, 0);
-  EXPECT_GT(result.total.volume, 0.0);
 }
 
 TEST(Interference, TheValueHasNoHistory) {

@@ -57,7 +57,7 @@ ContactLaws random_laws(test::Random& random) {
 class NoEnergyInParts : public ::testing::TestWithParam<ImplicitParts> {};
 
 TEST_P(NoEnergyInParts, HoldsInEveryStep) {
-  constexpr int kRuns = test::cases(3000, 400);
+  const int kRuns = test::cases(3000, 400);
   test::Random random(11);
   int touching = 0, limited = 0;
   double worst = 0.0;

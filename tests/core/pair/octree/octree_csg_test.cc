@@ -26,7 +26,7 @@ Interference octree(const Csg& a, const Csg& b, double tolerance = 1e-2) {
 }
 
 // Lines for the exact numbers: as many as they take, but under the sanitizers.
-constexpr double kWork = test::kSanitized ? 1e5 : kInfinity;
+const double kWork = test::kSanitized ? 1e5 : kInfinity;
 
 TEST(OctreeCsg, BoundsHoldTheVolumeOfEveryKindOfSolid) {
   const Csg rod = tube(.06, .15, turned({1, .4, .2}, .8, {.1, .05, .08}));
@@ -204,7 +204,7 @@ TEST(OctreeCsg, NoRoughNumberIsImpossible) {
                           Frustum({.bottom_radius = .2, .top_radius = .05, .half_length = .1}),
                           Box({.half_sizes = {.2, .05, .1}})};
   test::Random random(1);
-  constexpr int kPoses = test::cases(10, 1);
+  const int kPoses = test::cases(10, 1);
   InterferenceWorkspace workspace;
   Interference out;
   const std::vector<NamedSolid> kinds = kinds_of_solids();

@@ -98,7 +98,7 @@ Interference octree(const Shape& a, const Shape& b, const Pose& X_AB, double tol
   return out;
 }
 
-constexpr int kPosesPerPair = test::cases(29, 2);
+const int kPosesPerPair = test::cases(29, 2);
 
 TEST(Octree, MeetsTheToleranceAndItsBoundsHoldTheTruthOn1000Poses) {
   constexpr double kTolerance = 1e-2;

@@ -97,7 +97,7 @@ const Cylinder kDrum({.radius = kRadius, .half_length = kEnd});
 
 TEST(ThinLayer, FacesNearlyInOnePlaneAreRightToTheirClaims) {
   test::Random random(11);
-  constexpr int kPoses = test::cases(600, 60);
+  const int kPoses = test::cases(600, 60);
   int touching = 0;
   for (int i = 0; i < kPoses; ++i) {
     const double lean = random.log_uniform(1e-11, 1e-8);

@@ -71,7 +71,7 @@ int wrong_points(const Csg& solid, const PieceList& list, int points, Random& ra
 }
 
 TEST(CsgPieces, AreTheSolidWhateverItIsComposedOf) {
-  constexpr int kSolids = test::cases(1500, 100);
+  const int kSolids = test::cases(1500, 100);
   int written = 0;
   for (int seed = 0; seed < kSolids; ++seed) {
     Random random(seed);

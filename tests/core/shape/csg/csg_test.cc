@@ -204,7 +204,7 @@ TEST(Csg, OwnMetricsOfBoredAndHollowSolidsAreClosedForms) {
 }
 
 TEST(Csg, OwnMetricsAndTheQuadratureAgree) {
-  constexpr std::size_t kEvery = test::cases(1, 4);
+  const std::size_t kEvery = test::cases(1, 4);
   const std::vector<NamedSolid> kinds = kinds_of_solids();
   for (std::size_t i = 0; i < kinds.size(); i += kEvery) {
     const NamedSolid& named = kinds[i];
@@ -242,7 +242,7 @@ TEST(Csg, VolumesOfUnionAndIntersectionAddUp) {
 TEST(Csg, OwnMetricsWithinABudgetAreAnEstimateThatSaysSo) {
   int approximate = 0;
   const std::vector<NamedSolid> kinds = kinds_of_solids();
-  constexpr int kEvery = test::cases(1, 8);
+  const int kEvery = test::cases(1, 8);
   for (std::size_t i = 0; i < kinds.size(); i += kEvery) {
     const NamedSolid& named = kinds[i];
     const VolumeMetrics exact = named.solid.own_metrics();

@@ -18,11 +18,7 @@ using test::mesh_of;
 using test::shifted;
 
 // Of the processor; without an end it were 10 to hundreds, and under the sanitizers ten times that.
-#ifdef __SANITIZE_ADDRESS__
-constexpr double kMostSeconds = 10.0;
-#else
-constexpr double kMostSeconds = 0.5;
-#endif
+const double kMostSeconds = test::kSanitized ? 10.0 : 0.5;
 
 Interference in_time(const Shape& mesh, const Shape& round, const Pose& X) {
   const std::clock_t begin = std::clock();

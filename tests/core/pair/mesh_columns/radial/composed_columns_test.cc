@@ -259,7 +259,7 @@ TEST(ComposedColumns, RimsMakeNoSteps) {
       -0.19299459742893238, -0.96961990640229434, -0.15030077335679348, -0.17590076910990796,
       -0.11650899551182019, 0.97748891215776457;
   std::vector<double> volumes;
-  constexpr int kSteps = test::cases(12, 3);
+  const int kSteps = test::cases(12, 3);
   for (int k = -kSteps; k <= kSteps; ++k) {
     X_AB.translation = Vec3(-0.0922 + 2e-5 * k, -0.1117, -0.4262);
     const Interference out = evaluated(gem, block, X_AB);

@@ -204,7 +204,7 @@ TEST(BoredLines, ACapsuleThatStandsInABlockBesideTheBore) {
                         {bored, .1, {.2, .1, -.1}},
                         {counterbored, .2, {.1, 0, .2}},
                         {counterbored, .15, {0, .05, 0}}};
-  constexpr int kEvery = test::cases(1, 8);
+  const int kEvery = test::cases(1, 8);
   for (std::size_t i = 0; i < std::size(cases); i += kEvery) {
     const auto& [block, radius, place] = cases[i];
     const Capsule pill({.radius = radius, .half_length = .2});

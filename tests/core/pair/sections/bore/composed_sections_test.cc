@@ -101,7 +101,7 @@ TEST(ComposedLines, StaysWithinTheCertifiedBoundsOfTheOctree) {
       Box({.half_sizes = {0.2, 0.05, 0.1}}), Capsule({.radius = 0.08, .half_length = 0.2})};
   test::Random random(51);
   int by_lines = 0, touching = 0;
-  constexpr int kPoses = test::cases(6, 1);
+  const int kPoses = test::cases(6, 1);
   for (const Csg& solid : solids) {
     ASSERT_TRUE(solid.is_carved());
     for (const Shape& other : others) {
