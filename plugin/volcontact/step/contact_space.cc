@@ -102,12 +102,15 @@ void ContactSpace::respond() {
   }
 }
 
-// J Mh^-1 J' of one place and those before it, or all.
+// J Mh^-1 J' of one place and those before it, or all. That of the place itself is its mobility.
 void ContactSpace::make_free_row(int place, int end) {
+  free_block(place, place) = free_mobility_[size(place)];
+  if (place == 0 && end == 1) return;
   for (const Carried& one : carried(place)) {
     std::copy_n(one.moved.data(), kRows, &dense_[size(kRows * one.dof)]);
   }
   for (int other = 0; other < end; ++other) {
+    if (other == place) continue;
     Square& out = free_block(place, other);
     out.setZero();
     for (const Carried& one : carried(other)) {
@@ -223,6 +226,7 @@ void ContactSpace::build_delassus() {
       for (int k = 0; k < i; ++k) free_block(k, i) = free_block(i, k).transpose();
     }
   }
+  if (matrix_.columns().empty()) return;
   delassus_.resize(free_delassus_.size());
   for (int i = 0; i < count; ++i) {
     for (int k = 0; k < (is_symmetric ? i + 1 : count); ++k) {

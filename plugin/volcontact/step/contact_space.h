@@ -53,7 +53,9 @@ class ContactSpace {
   void build_mobility();
   void build_delassus();
   /// The block of Lambda of two places, after build_delassus(); of a symmetric H with k <= i.
-  const Square& delassus(int i, int k) const { return delassus_[index(i, k)]; }
+  const Square& delassus(int i, int k) const {
+    return (matrix_.columns().empty() ? free_delassus_ : delassus_)[index(i, k)];
+  }
   /// The block of Lambda of one place.
   const Square& mobility(std::size_t place) const { return mobility_[place]; }
   Eigen::Map<const Eigen::VectorXd> known() const { return {known_.data(), dofs()}; }

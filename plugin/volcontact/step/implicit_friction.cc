@@ -89,38 +89,48 @@ ImplicitStep::Slide ImplicitStep::slide_under(std::size_t i, double strength, do
 }
 
 // Friction under the normal forces of the last solution and at its slip: a spring and a damper
-// while it holds, Coulomb's where it would have to hold more.
-void ImplicitStep::set_friction(double step) {
+// while it holds, Coulomb's where it would have to hold more. Returns whether a site has another.
+bool ImplicitStep::set_friction(double step) {
+  bool changed = false;
   for (std::size_t i = 0; i < island_.size(); ++i) {
     Site& site = this->site(i);
     if (!site.laws.has_friction()) continue;
-    const double normal_force = this->normal_force(i);
-    const Vec3 slip = slip_of(site, velocity_, i);
-    const Mat3& axes = site.tangent.axes;
-    const Vec3 along = axes.leftCols<2>() * slip.head<2>();
-    const double spin = velocity_[i * size(kRows) + 5];
-    if (!site.laws.friction_keeps()) {
-      set_damper(site, normal_force, along, spin, slip.norm());
-      continue;
-    }
-    const FrictionOutput still = site.laws.friction(normal_force, Vec3::Zero(), 0.0);
-    const FrictionSlope slope = site.laws.friction_slope(normal_force, along, spin);
-    site.tangent.friction = slope;
-    const double lever = slope.lever;
-    const Vec3 held(axes.col(0).dot(still.force), axes.col(1).dot(still.force),
-                    lever > 0.0 ? still.torque / lever : 0.0);
-    const double holds = slope.damping + step * slope.stiffness;
-    const Vec3 at_rest = held - holds * site.drift;
-    const Vec3 wanted = at_rest - holds * slip;
-    const bool gives_way = (wanted + slope.viscous * slip).norm() > slope.strength;
-    const Slide slide = gives_way ? slide_under(i, slope.strength, slope.viscous, step) : Slide{};
-    if (slide.speed > 0.0) {
-      site.held.setZero();
-      site.rub = slide.force / slide.speed;
-    } else {
-      site.held = {at_rest[0], at_rest[1], lever * at_rest[2]};
-      site.rub = holds;
-    }
+    const Vec3 held = site.held;
+    const double rub = site.rub, lever = site.tangent.friction.lever;
+    set_friction(site, i, step);
+    changed =
+        changed || site.held != held || site.rub != rub || site.tangent.friction.lever != lever;
+  }
+  return changed;
+}
+
+void ImplicitStep::set_friction(Site& site, std::size_t i, double step) {
+  const double normal_force = this->normal_force(i);
+  const Vec3 slip = slip_of(site, velocity_, i);
+  const Mat3& axes = site.tangent.axes;
+  const Vec3 along = axes.leftCols<2>() * slip.head<2>();
+  const double spin = velocity_[i * size(kRows) + 5];
+  if (!site.laws.friction_keeps()) {
+    set_damper(site, normal_force, along, spin, slip.norm());
+    return;
+  }
+  const FrictionOutput still = site.laws.friction(normal_force, Vec3::Zero(), 0.0);
+  const FrictionSlope slope = site.laws.friction_slope(normal_force, along, spin);
+  site.tangent.friction = slope;
+  const double lever = slope.lever;
+  const Vec3 held(axes.col(0).dot(still.force), axes.col(1).dot(still.force),
+                  lever > 0.0 ? still.torque / lever : 0.0);
+  const double holds = slope.damping + step * slope.stiffness;
+  const Vec3 at_rest = held - holds * site.drift;
+  const Vec3 wanted = at_rest - holds * slip;
+  const bool gives_way = (wanted + slope.viscous * slip).norm() > slope.strength;
+  const Slide slide = gives_way ? slide_under(i, slope.strength, slope.viscous, step) : Slide{};
+  if (slide.speed > 0.0) {
+    site.held.setZero();
+    site.rub = slide.force / slide.speed;
+  } else {
+    site.held = {at_rest[0], at_rest[1], lever * at_rest[2]};
+    site.rub = holds;
   }
 }
 
@@ -156,17 +166,21 @@ ImplicitStep::Load ImplicitStep::load(std::size_t i) const {
           std::hypot(f[3], f[4], slope.lever > 0.0 ? f[5] / slope.lever : 0.0)};
 }
 
-// Shortens what friction was solved to hold to what it can hold.
-void ImplicitStep::bound_friction() {
+// Shortens what friction was solved to hold to what it can hold. Returns whether it held more.
+bool ImplicitStep::bound_friction() {
+  bool changed = false;
   for (std::size_t i = 0; i < island_.size(); ++i) {
-    const double share = load(i).share();
+    const double share = site(i).held_share;
     if (share == 1.0) continue;
+    changed = true;
     double* f = &force_[i * size(kRows)];
     for (int k = 3; k < kRows; ++k) f[k] *= share;
   }
+  return changed;
 }
 
-// Makes dampers of what friction cannot hold, so weak that it can, and solves again.
+// Makes dampers of what friction cannot hold, so weak that it can, and solves again. Leaves the
+// share that it can hold of what it was solved to.
 void ImplicitStep::damp_friction(double step) {
   constexpr int kPasses = 3;
   constexpr double kSlight = 0.99;
@@ -174,8 +188,9 @@ void ImplicitStep::damp_friction(double step) {
     bool changed = false;
     for (std::size_t i = 0; i < island_.size(); ++i) {
       const Load load = this->load(i);
-      if (load.share() > kSlight) continue;
       Site& site = this->site(i);
+      site.held_share = load.share();
+      if (site.held_share > kSlight) continue;
       const Slide slide = slide_under(i, load.strength, load.viscous, step);
       site.held.setZero();
       site.rub = slide.speed > 0.0 ? slide.force / slide.speed : 0.0;
@@ -184,6 +199,7 @@ void ImplicitStep::damp_friction(double step) {
     if (!changed) return;
     solve_active(true, step);
   }
+  for (std::size_t i = 0; i < island_.size(); ++i) site(i).held_share = load(i).share();
 }
 
 }  // namespace volcontact

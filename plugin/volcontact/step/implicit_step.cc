@@ -182,13 +182,15 @@ void ImplicitStep::solve_contacts(FrictionBound bound, double step) {
                                 [this](int i) { return sites_[size(i)].laws.has_friction(); });
   for (int pass = 0; rubs && pass < kFrictionPasses; ++pass) {
     before_ = force_;
-    set_friction(step);
+    const bool changed = set_friction(step);
+    if (pass > 0 && !changed) break;
     solve_active(true, step);
     if (is_settled()) break;
   }
   if (rubs) damp_friction(step);
-  if (rubs && bound == FrictionBound::kCut) bound_friction();
-  space_.move(force_, velocity_);
+  const bool cut = rubs && bound == FrictionBound::kCut && bound_friction();
+  // By the forces the last solution has their motion, by the velocities the forces of its motion.
+  if (cut || space_.prefers_dofs()) space_.move(force_, velocity_);
 }
 
 void ImplicitStep::solve_island(ImplicitParts parts, double step, double resting) {

@@ -99,6 +99,7 @@ class ImplicitStep {
     // Friction: force = held - rub * slip, or `rub` alone where it slides; as (t_1, t_2, about n).
     Vec3 held = Vec3::Zero();
     double rub = 0.0;
+    double held_share = 1.0;  // what it can hold of what it was solved to
     double free_speed = 0.0;  // slip at the end of the step without friction, and what presses then
     double free_normal = 0.0;
     // What the way over the step has, per step, beyond the slip at its end: bodies go on along
@@ -141,10 +142,11 @@ class ImplicitStep {
   bool improve_active(bool with_friction, bool takes_back, double step);
   void solve_once(bool with_friction, double step);
   void set_drift(const Mechanism& mechanism, double time);
-  void set_friction(double step);
+  bool set_friction(double step);
+  void set_friction(Site& site, std::size_t i, double step);
   void set_damper(Site& site, double normal_force, const Vec3& along, double spin,
                   double speed) const;
-  void bound_friction();
+  bool bound_friction();
   void damp_friction(double step);
   struct Load {
     double strength = 0.0, viscous = 0.0;  // of the friction law

@@ -231,11 +231,16 @@ void StepMatrix::constrain(const LinearConstraints& constraints) {
   for (const LinearConstraints::Entry& entry : constraints.load()) {
     load_[index(number(entry.dof))] += entry.value;
   }
-  if (constraints.columns() > 0) factor_mass();
+  has_matrix_ = false;
+  column_count_ = index(constraints.columns());
+  if (column_count_ == 0) {
+    envelope_ = free_envelope_;
+    return;
+  }
+  factor_mass();
   take_columns(constraints);
   widen_envelope();
   couple();
-  has_matrix_ = false;
 }
 
 const EnvelopeMatrix& StepMatrix::matrix() {

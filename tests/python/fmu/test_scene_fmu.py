@@ -280,7 +280,7 @@ def test_third_version_returns_early_where_bodies_touch(tmp_path):
     instance.close()
 
 
-@pytest.mark.parametrize("name", ["battery_box", "tippe_top"])
+@pytest.mark.parametrize("name", [pytest.param("battery_box", marks=pytest.mark.once), "tippe_top"])
 def test_scenes_run_in_fmpy(tmp_path, name):
     scene = MODELS / name / "scene.xml"
     path = vc.export_scene_fmu(scene, tmp_path / f"{name}.fmu")
