@@ -28,7 +28,7 @@ def build_cgal() -> None:
     with locked("cgal.lock"):
         need_system()
         prefix = _headers()
-        say("building volcontact-cgal, which takes two minutes")
+        say("building volcontact-cgal, which takes a minute")
         with (tree / "configure.log").open("w") as log:
             run(
                 "cmake", "-S", ROOT / "plugin" / "cgal", "-B", tree, "-G", "Ninja",
