@@ -88,8 +88,7 @@ ImplicitStep::Slide ImplicitStep::slide_under(std::size_t i, double strength, do
   return with_viscous(strength, speed - slowed * (strength + acting.dot(direction)), slowed);
 }
 
-// Friction under the normal forces of the last solution and at its slip: a spring and a damper
-// while it holds, Coulomb's where it would have to hold more. Returns whether a site has another.
+// Friction under the normal forces of the last solution. Returns whether it is another at a site.
 bool ImplicitStep::set_friction(double step) {
   bool changed = false;
   for (std::size_t i = 0; i < island_.size(); ++i) {
@@ -97,14 +96,16 @@ bool ImplicitStep::set_friction(double step) {
     if (!site.laws.has_friction()) continue;
     const Vec3 held = site.held;
     const double rub = site.rub, lever = site.tangent.friction.lever;
-    set_friction(site, i, step);
+    set_friction_of(site, i, step);
     changed =
         changed || site.held != held || site.rub != rub || site.tangent.friction.lever != lever;
   }
   return changed;
 }
 
-void ImplicitStep::set_friction(Site& site, std::size_t i, double step) {
+// At the slip of the last solution: a spring and a damper while it holds, Coulomb's where it would
+// have to hold more.
+void ImplicitStep::set_friction_of(Site& site, std::size_t i, double step) {
   const double normal_force = this->normal_force(i);
   const Vec3 slip = slip_of(site, velocity_, i);
   const Mat3& axes = site.tangent.axes;

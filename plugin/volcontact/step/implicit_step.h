@@ -143,7 +143,7 @@ class ImplicitStep {
   void solve_once(bool with_friction, double step);
   void set_drift(const Mechanism& mechanism, double time);
   bool set_friction(double step);
-  void set_friction(Site& site, std::size_t i, double step);
+  void set_friction_of(Site& site, std::size_t i, double step);
   void set_damper(Site& site, double normal_force, const Vec3& along, double spin,
                   double speed) const;
   bool bound_friction();

@@ -2,6 +2,7 @@
 // An evaluation whose workspace has seen the pair asks the heap for nothing.
 #include <gtest/gtest.h>
 
+#include <new>
 #include <vector>
 
 #include "adaptor/support/fail_allocations.h"
@@ -19,6 +20,11 @@ struct Pair {
   Shape a, b;
 };
 
+Shape bored_block() {
+  return Csg(Csg::Operation::kDifference, Csg(Box({.half_sizes = Vec3(0.5, 0.5, 0.4)})),
+             Csg(Cylinder({.radius = 0.31, .half_length = 1.0})));
+}
+
 std::vector<Pair> pairs() {
   Random random(1);
   const Shape ground = HalfSpace();
@@ -27,9 +33,6 @@ std::vector<Pair> pairs() {
   const Shape gem = test::random_polytope(12, random);
   const Shape can = Cylinder({.radius = 0.3, .half_length = 0.4});
   const Shape ring = Torus({.major_radius = 0.3, .minor_radius = 0.1});
-  const Shape bored =
-      Csg(Csg::Operation::kDifference, Csg(Box({.half_sizes = Vec3(0.5, 0.5, 0.4)})),
-          Csg(Cylinder({.radius = 0.31, .half_length = 1.0})));
   return {{"ground and ball", ground, ball},
           {"ground and egg", ground, Ellipsoid({.semi_axes = Vec3(0.5, 0.4, 0.3)})},
           {"ground and can", ground, can},
@@ -44,7 +47,7 @@ std::vector<Pair> pairs() {
           {"box and gem", box, gem},
           {"two gems", gem, gem},
           {"box and can", box, can},
-          {"bored block and can", bored, can},
+          {"bored block and can", bored_block(), can},
           {"ring and can", ring, can},
           {"ring and box", ring, box}};
 }
@@ -56,10 +59,11 @@ void expect_no_request(const char* name, const Shape& a, const Shape& b,
   Interference result;
   for (const Pose& X : poses) interference(a, b, X, {}, workspace, result);
   bool asked = false;
-  {
+  try {
     const AllocationLimit none(0);
     for (const Pose& X : poses) interference(a, b, X, {}, workspace, result);
-    asked = none.was_reached();
+  } catch (const std::bad_alloc&) {
+    asked = true;
   }
   EXPECT_FALSE(asked) << name;
 }
@@ -76,9 +80,7 @@ TEST(WarmEvaluation, AllocatesNothing) {
 
 // A ball that touches the wall of the bore by a nanometre.
 TEST(WarmEvaluation, OfAFilmAllocatesNothing) {
-  const Shape block =
-      Csg(Csg::Operation::kDifference, Csg(Box({.half_sizes = Vec3(0.5, 0.5, 0.4)})),
-          Csg(Cylinder({.radius = 0.31, .half_length = 1.0})));
+  const Shape block = bored_block();
   const Shape ball = Sphere({.radius = 0.2});
   const Pose X{Mat3::Identity(), {0.31 - 0.2 + 1e-9, 0.0, 0.0}};
   InterferenceWorkspace workspace;
