@@ -2,13 +2,13 @@
 // What MuJoCo makes of the forces of an implicit step, against the same step solved as a whole.
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <utility>
 
 #include "adaptor/passive_callback.h"
 #include "adaptor/support/models.h"
 #include "adaptor/support/servo_scene.h"
+#include "core/support/dense.h"
 #include "volcontact/step/implicit_step.h"
 
 namespace volcontact::adaptor::dense_step_test {
@@ -22,6 +22,8 @@ using testing::DataPointer;
 using testing::keys;
 using testing::ModelPointer;
 using testing::scatter;
+using volcontact::test::product;
+using volcontact::test::solution;
 
 // J of the sites by MuJoCo's own function; rows as in ContactPlace.
 MatrixXd jacobian(const ModelPointer& m, const DataPointer& d,
@@ -34,7 +36,8 @@ MatrixXd jacobian(const ModelPointer& m, const DataPointer& d,
       const int geom = sign > 0.0 ? sites[i].geom_a : sites[i].geom_b;
       RowMajor way(3, m->nv), turn(3, m->nv);
       mj_jac(m.get(), d.get(), way.data(), turn.data(), sites[i].centroid, m->geom_bodyid[geom]);
-      const MatrixXd w = sign * axes.transpose() * way, t = sign * axes.transpose() * turn;
+      const MatrixXd to_site = sign * axes.transpose();
+      const MatrixXd w = product(to_site, way), t = product(to_site, turn);
       const Eigen::Index row = 6 * static_cast<Eigen::Index>(i);
       out.row(row) += w.row(2);
       out.middleRows(row + 1, 2) += t.topRows(2);
@@ -166,7 +169,7 @@ TEST_P(DenseStep, IsWhatMuJoCoDoes) {
     if (is_discrete(m)) {
       const MatrixXd springs = slope(plain, free, By::kPositions, [](int) { return false; });
       left += h * h * springs;
-      right -= h * springs * before;
+      right -= h * product(springs, before);
     }
     if (std::any_of(d->efc_force, d->efc_force + d->nefc, [](double f) { return f != 0.0; })) {
       ++constrained;
@@ -176,26 +179,27 @@ TEST_P(DenseStep, IsWhatMuJoCoDoes) {
     sites.resize(static_cast<std::size_t>(volcontact_sites(m.get(), d.get(), sites.data(), 100)));
     most = std::max(most, static_cast<int>(sites.size()));
     const MatrixXd j = jacobian(plain, free, sites);
-    const VectorXd u = j * before;
+    const VectorXd u = product(j, before);
     const ImplicitStep& step = thread_scratch().implicit;
     for (std::size_t i = 0; i < sites.size(); ++i) {
       const Eigen::Index row = 6 * static_cast<Eigen::Index>(i);
-      const auto block = j.middleRows(row, 6);
-      left += h * block.transpose() * step.slope(i) * block;
-      right += block.transpose() * (step.constant(i) - step.slope(i) * u.segment(row, 6));
+      const MatrixXd block = j.middleRows(row, 6), slope = step.slope(i);
+      const VectorXd borne = step.constant(i) - product(slope, u.segment(row, 6));
+      left += h * product(block.transpose(), product(slope, block));
+      right += product(block.transpose(), borne);
     }
     // What friction could not hold was cut off after the solution: not linear.
-    const VectorXd after = j * Eigen::Map<VectorXd>(d->qvel, nv);
+    const VectorXd after = product(j, Eigen::Map<VectorXd>(d->qvel, nv));
     bool cut = false;
     for (std::size_t i = 0; i < sites.size(); ++i) {
       const auto& f = step.force(i);
-      const VectorXd linear =
-          step.constant(i) - step.slope(i) * after.segment(6 * static_cast<Eigen::Index>(i), 6);
+      const Eigen::Index row = 6 * static_cast<Eigen::Index>(i);
+      const VectorXd linear = step.constant(i) - product(step.slope(i), after.segment(row, 6));
       cut = cut || (f - linear).tail(3).norm() > 1e-9 * f.norm();
     }
     if (cut) continue;
     ++compared;
-    const VectorXd truth = left.partialPivLu().solve(h * right);
+    const VectorXd truth = solution(left, h * right);
     EXPECT_LT((change - truth).norm(), kTolerance * truth.norm()) << seed;
   }
   const bool is_native = scene.more.find("pairs/listed") != std::string::npos;

@@ -103,8 +103,8 @@ TEST(Acceptance, CornersOfA32Hedron) {
     std::sort(others.begin(), others.end(), [&](const Vec3& a, const Vec3& b) {
       return (a - point).norm() < (b - point).norm();
     });
-    const Mat3 r = turn(random.direction(), 0.1) *
-                   Eigen::Quaterniond::FromTwoVectors(point, -Vec3::UnitZ()).toRotationMatrix();
+    const Mat3 point_down = basis_with_z(-point.normalized()).transpose();
+    const Mat3 r = turn(random.direction(), 0.1) * point_down;
     const Vec3 tip(0.01, 0.005, -random.log_uniform(1e-3, 1e-2));
     Vec3 edges[3];
     for (int k = 0; k < 3; ++k) {

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
+
 #include "core/reference/common_point.h"
 #include "core/search/contact_poses.h"
 #include "core/support/csg_solids.h"
@@ -38,9 +41,8 @@ TEST(ReferenceIntegral, CapOfABall) {
 // its centroid 3/4 d below the corner's distance.
 TEST(ReferenceIntegral, CornerOfACube) {
   constexpr double kDepth = 0.1;
-  const Mat3 on_corner =
-      basis_with_z(Vec3::UnitZ()) *
-      Eigen::Quaterniond::FromTwoVectors(Vec3::Ones(), -Vec3::UnitZ()).toRotationMatrix();
+  const Eigen::AngleAxisd turn(std::acos(-1.0 / std::sqrt(3.0)), Vec3(-1.0, 1.0, 0.0).normalized());
+  const Mat3 on_corner = basis_with_z(Vec3::UnitZ()) * turn.toRotationMatrix();
   const Pose X_AB{on_corner, Vec3(0.0, 0.0, 0.3 * std::sqrt(3.0) - kDepth)};
   const Reference r = integral(HalfSpace(), Box({.half_sizes = Vec3::Constant(0.3)}), X_AB,
                                Vec3(0.0, 0.0, -0.5 * kDepth), 0.6);

@@ -3,10 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <vector>
 
+#include "core/support/dense.h"
 #include "core/support/random.h"
 
 namespace volcontact::envelope_matrix_test {
@@ -38,7 +37,7 @@ TEST(EnvelopeMatrix, SolvesAsTheWholeMatrix) {
     const int n = matrix.size();
     MatrixXd right(6, n);
     for (int i = 0; i < 6 * n; ++i) right.data()[i] = random.uniform(-1.0, 1.0);
-    const MatrixXd truth = dense.llt().solve(right.transpose()).transpose();
+    const MatrixXd truth = test::solution(dense, right.transpose()).transpose();
     matrix.factor();
     Eigen::VectorXd one = right.row(2);
     matrix.solve(one.data(), 0, n);
@@ -66,7 +65,7 @@ TEST(EnvelopeMatrix, SolvesWhereItIsNotSymmetric) {
     }
   }
   Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(n, -1.0, 2.0);
-  const Eigen::VectorXd truth = dense.partialPivLu().solve(x);
+  const Eigen::VectorXd truth = test::solution(dense, x);
   matrix.factor();
   matrix.solve(x.data(), 0, n);
   EXPECT_LT((x - truth).norm(), 1e-13 * truth.norm());
@@ -77,7 +76,7 @@ TEST(EnvelopeMatrix, SolvesForUnknownsThatStandAlone) {
   EnvelopeMatrix matrix;
   const MatrixXd dense = fill({0, 0, 2, 2, 3, 5, 5}, random, matrix);
   Eigen::Vector3d x(1.0, -2.0, 0.5);
-  const Eigen::Vector3d truth = dense.block<3, 3>(2, 2).llt().solve(x);
+  const Eigen::Vector3d truth = test::solution(dense.block<3, 3>(2, 2), x);
   matrix.factor();
   matrix.solve(x.data(), 2, 5);
   EXPECT_LT((x - truth).norm(), 1e-14 * truth.norm());
@@ -101,7 +100,7 @@ TEST(EnvelopeMatrix, StaysFiniteWhereRoundingHasMadeItSingular) {
     for (int run = 0; run < 200; ++run) {
       MatrixXd root(kCount, 2);
       for (double& x : root.reshaped()) x = 1e15 * random.uniform(0.9, 1.1);
-      const MatrixXd dense = MatrixXd::Identity(kCount, kCount) + root * root.transpose();
+      const MatrixXd dense = MatrixXd::Identity(kCount, kCount) + test::square(root);
       EnvelopeMatrix matrix;
       matrix.reset(std::vector<int>(kCount, 0), is_symmetric);
       for (int i = 0; i < kCount; ++i) {

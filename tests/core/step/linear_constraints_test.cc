@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <limits>
 
+#include "core/support/dense.h"
 #include "core/support/free_bodies.h"
 #include "core/support/random.h"
 
@@ -34,7 +34,7 @@ class Rows final : public LinearConstraints {
 
   VectorXd forces(const VectorXd& x) const {
     VectorXd f = (-d_ * x).cwiseMax(0.0);
-    f.tail<3>() = -h_ * x.tail<3>();
+    f.tail<3>() = -h_ * Vec3(x.tail<3>());
     return f;
   }
 
@@ -93,9 +93,10 @@ struct Problem {
     std::vector<DofEntry> entries;
     const int all[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
     bodies.mass(all, entries);
-    MatrixXd lower = MatrixXd::Zero(kDofs, kDofs);
-    for (const DofEntry& entry : entries) lower(entry.row, entry.column) = entry.value;
-    m = MatrixXd(lower.selfadjointView<Eigen::Lower>());
+    m = MatrixXd::Zero(kDofs, kDofs);
+    for (const DofEntry& entry : entries) {
+      m(entry.row, entry.column) = m(entry.column, entry.row) = entry.value;
+    }
   }
 
   Rows rows() const { return {jacobian, reference, 20.0, h}; }
@@ -112,9 +113,9 @@ struct Problem {
       for (int c = 0; c < constraints.columns(); ++c) {
         VectorXd column = VectorXd::Zero(kDofs);
         for (const auto& entry : constraints.column(c)) column[entry.dof] += entry.value;
-        left += column * column.transpose();
+        left += test::square(column);
       }
-      a = left.ldlt().solve(right);
+      a = test::solution(left, right);
       if (constraints.improve({a.data(), kDofs})) return round;
     }
     return 0;
@@ -135,8 +136,10 @@ TEST(LinearConstraints, RoundsEndAtTheForcesOfTheRows) {
     VectorXd a;
     EXPECT_GT(problem.settle(constraints, a), 0) << run;
     EXPECT_FALSE(constraints.empty());
-    const VectorXd force = constraints.forces(problem.jacobian * a - problem.reference);
-    const VectorXd missing = problem.t + problem.jacobian.transpose() * force - problem.m * a;
+    const VectorXd force =
+        constraints.forces(test::product(problem.jacobian, a) - problem.reference);
+    const VectorXd missing = problem.t + test::product(problem.jacobian.transpose(), force) -
+                             test::product(problem.m, a);
     EXPECT_LT(missing.norm(), 1e-8 * problem.t.norm()) << run;
   }
 }
@@ -172,7 +175,7 @@ TEST(LinearConstraints, DryFrictionComesToHold) {
     // Bodies that hang together, so that friction of one holds the other.
     MatrixXd coupled(Problem::kDofs, Problem::kDofs);
     for (double& x : coupled.reshaped()) x = random.uniform(-1.0, 1.0);
-    problem.m += coupled * coupled.transpose();
+    problem.m += test::square(coupled);
     constexpr double kMost = 4.0;
     DryRows constraints(Problem::kDofs, 1e6, kMost);
     VectorXd a = VectorXd::Zero(Problem::kDofs);
@@ -181,7 +184,8 @@ TEST(LinearConstraints, DryFrictionComesToHold) {
     constraints.guess({start.data(), Problem::kDofs});
     EXPECT_GT(problem.settle(constraints, a), 0) << run;
     const VectorXd force = constraints.forces(a);
-    EXPECT_LT((problem.t + force - problem.m * a).norm(), 1e-6 * problem.t.norm()) << run;
+    EXPECT_LT((problem.t + force - test::product(problem.m, a)).norm(), 1e-6 * problem.t.norm())
+        << run;
     for (const double f : force) ++(std::abs(f) < kMost ? holds : slides);
   }
   EXPECT_GT(holds, 100);

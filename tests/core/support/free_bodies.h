@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/support/dense.h"
 #include "volcontact/step/mechanism.h"
 
 namespace volcontact::test {
@@ -64,7 +65,7 @@ class FreeBodies final : public Mechanism {
   }
   /// M^-1 of a body.
   Eigen::Matrix<double, 6, 6> mobility(int body) const {
-    return masses_[size(body - 1)].ldlt().solve(Eigen::Matrix<double, 6, 6>::Identity());
+    return solution(masses_[size(body - 1)], Eigen::MatrixXd::Identity(6, 6));
   }
 
   void mass(std::span<const int> dofs, std::vector<DofEntry>& out) const override {
