@@ -9,16 +9,16 @@
 namespace volcontact {
 namespace {
 
-// How much a patch sticks at a slip, and the rest.
-struct Sticking {
-  double share;
-  double sliding;
-};
-
 // (1 - exp(-x)) / x
 double mean_decay(double x) { return x > 1e-8 ? -std::expm1(-x) / x : 1.0 - 0.5 * x; }
 
 }  // namespace
+
+// How much a patch sticks at a slip, and the rest.
+struct Bristle::Sticking {
+  double share;
+  double sliding;
+};
 
 Bristle::Bristle(const Params& params) : p_(validated<Bristle>(params)) {
   require(p_.static_friction >= p_.friction,
@@ -26,9 +26,35 @@ Bristle::Bristle(const Params& params) : p_(validated<Bristle>(params)) {
               " [-] is below friction = " + std::to_string(p_.friction) + " [-]");
 }
 
+// What the bristles did since the last step hangs on the way since then, not on the speed of now: a
+// body at rest on a turntable has no way, and a speed that is old by a step.
+struct Bristle::Past {
+  Generalized way, mean;  // its mean speed
+  Sticking sticking;
+  double dwell;  // at its end
+};
+
+Bristle::Sticking Bristle::sticking_at(double speed) const noexcept {
+  const double ratio = speed / p_.stribeck_speed;
+  return {std::exp(-ratio * ratio), -std::expm1(-ratio * ratio)};
+}
+
+Bristle::Past Bristle::past(const FrictionInput& in, const LawState& state) const noexcept {
+  const double r = p_.coupling == Coupling::kNone ? 0.0 : in.patch.gyration_radius;
+  const Generalized way{in.travel, r * in.turn};
+  const Generalized mean =
+      state.elapsed > 0.0 ? 1.0 / state.elapsed * way : Generalized{in.slip, r * in.spin};
+  const Sticking sticking = sticking_at(mean.norm());
+  const double before = state.committed[4];
+  const double relaxing = p_.bristle_stiffness / p_.bristle_damping;  // [1/s]
+  const double dwell_time = sticking.share >= before ? p_.dwell_time : 1.0 / relaxing;
+  const double dwell =
+      sticking.share + (before - sticking.share) * std::exp(-state.elapsed / dwell_time);
+  return {way, mean, sticking, dwell};
+}
+
 FrictionSlope Bristle::slope(const FrictionInput& in, const LawState& state) const noexcept {
-  evaluate(in, state);
-  const double dwell = state.pending[4];
+  const double dwell = past(in, state).dwell;
   return {p_.bristle_stiffness, p_.bristle_damping + p_.viscous_friction,
           in.normal_force * (p_.friction + (p_.static_friction - p_.friction) * dwell),
           p_.coupling == Coupling::kNone ? 0.0 : in.patch.gyration_radius, p_.viscous_friction};
@@ -37,22 +63,11 @@ FrictionSlope Bristle::slope(const FrictionInput& in, const LawState& state) con
 FrictionOutput Bristle::evaluate(const FrictionInput& in, const LawState& state) const noexcept {
   const double r = p_.coupling == Coupling::kNone ? 0.0 : in.patch.gyration_radius;
   const double* before = state.committed;
-  const Generalized slip{in.slip, r * in.spin}, way{in.travel, r * in.turn};
+  const Generalized slip{in.slip, r * in.spin};
   const Generalized old{Vec3(before[0], before[1], before[2]), r > 0.0 ? before[3] : 0.0};
-
-  const auto sticking_at = [&](double speed) {
-    const double ratio = speed / p_.stribeck_speed;
-    return Sticking{std::exp(-ratio * ratio), -std::expm1(-ratio * ratio)};
-  };
-  // What the bristles did since then hangs on the way since then, not on the speed of now: a body
-  // at rest on a turntable has no way, and a speed that is old by a step.
-  const Generalized mean = state.elapsed > 0.0 ? 1.0 / state.elapsed * way : slip;
-  const Sticking so_far = sticking_at(mean.norm()), now = sticking_at(slip.norm());
+  const auto [way, mean, so_far, dwell] = past(in, state);
+  const Sticking now = sticking_at(slip.norm());
   const double relaxing = p_.bristle_stiffness / p_.bristle_damping;  // [1/s]
-
-  const double dwell_time = so_far.share >= before[4] ? p_.dwell_time : 1.0 / relaxing;
-  const double dwell =
-      so_far.share + (before[4] - so_far.share) * std::exp(-state.elapsed / dwell_time);
   const double kinetic = p_.friction * in.normal_force;
   const double most = kinetic + (p_.static_friction - p_.friction) * in.normal_force * dwell;
 

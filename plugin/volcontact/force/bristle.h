@@ -60,6 +60,11 @@ class Bristle final : public Friction {
   FrictionSlope slope(const FrictionInput& in, const LawState& state) const noexcept override;
 
  private:
+  struct Sticking;
+  struct Past;
+  Sticking sticking_at(double speed) const noexcept;
+  Past past(const FrictionInput& in, const LawState& state) const noexcept;
+
   Params p_;
 };
 

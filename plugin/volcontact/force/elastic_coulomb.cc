@@ -25,20 +25,19 @@ double ElasticCoulomb::damping(const FrictionInput& in, double stiffness) const 
   return p_.tangential_damping * critical;
 }
 
-FrictionSlope ElasticCoulomb::slope(const FrictionInput& in, const LawState& state) const noexcept {
-  evaluate(in, state);
-  const double stiffness = state.pending[4];
-  return {stiffness, damping(in, stiffness), p_.friction * in.normal_force,
-          p_.coupling == Coupling::kNone ? 0.0 : in.patch.gyration_radius};
-}
+// After the way since the last step.
+struct ElasticCoulomb::Spring {
+  Generalized z;  // its deflection
+  double stiffness;
+  bool is_at_bound;
+};
 
-FrictionOutput ElasticCoulomb::evaluate(const FrictionInput& in,
-                                        const LawState& state) const noexcept {
+ElasticCoulomb::Spring ElasticCoulomb::spring(const FrictionInput& in, const LawState& state,
+                                              double now) const noexcept {
   const double r = p_.coupling == Coupling::kNone ? 0.0 : in.patch.gyration_radius;
-  const double most = p_.friction * in.normal_force, now = this->stiffness(in);
   const double* before = state.committed;
   const double held = before[4];
-  const Generalized slip{in.slip, r * in.spin}, way{in.travel, r * in.turn};
+  const Generalized way{in.travel, r * in.turn};
   Generalized old{Vec3(before[0], before[1], before[2]), r > 0.0 ? before[3] : 0.0};
 
   // The spring of a patch that grows keeps its energy, that of one that shrinks its stiffness until
@@ -46,7 +45,7 @@ FrictionOutput ElasticCoulomb::evaluate(const FrictionInput& in,
   double stiffness = std::max(now, held);
   if (held > 0.0 && held < now) old = std::sqrt(held / now) * old;
   // The way was made against the strength of before: no spring holds more than was put in.
-  const double bound = std::min(most, before[5]);
+  const double bound = std::min(p_.friction * in.normal_force, before[5]);
   Generalized z = old + way;
   bool bounded = limit(p_.coupling, bound / stiffness, in, z);
   if (bounded && now < stiffness) {
@@ -54,6 +53,22 @@ FrictionOutput ElasticCoulomb::evaluate(const FrictionInput& in,
     z = old + way;
     bounded = limit(p_.coupling, bound / stiffness, in, z);
   }
+  return {z, stiffness, bounded};
+}
+
+FrictionSlope ElasticCoulomb::slope(const FrictionInput& in, const LawState& state) const noexcept {
+  const double now = this->stiffness(in), held = state.committed[4];
+  const double stiffness = now < held ? spring(in, state, now).stiffness : now;
+  return {stiffness, damping(in, stiffness), p_.friction * in.normal_force,
+          p_.coupling == Coupling::kNone ? 0.0 : in.patch.gyration_radius};
+}
+
+FrictionOutput ElasticCoulomb::evaluate(const FrictionInput& in,
+                                        const LawState& state) const noexcept {
+  const double r = p_.coupling == Coupling::kNone ? 0.0 : in.patch.gyration_radius;
+  const double most = p_.friction * in.normal_force;
+  const Generalized slip{in.slip, r * in.spin};
+  const auto [z, stiffness, is_at_bound] = spring(in, state, this->stiffness(in));
   Generalized force = stiffness * z + damping(in, stiffness) * slip;
   limit(p_.coupling, most, in, force);
 
@@ -61,7 +76,7 @@ FrictionOutput ElasticCoulomb::evaluate(const FrictionInput& in,
   state.pending[3] = z.twist;
   state.pending[4] = stiffness;
   state.pending[5] = most;
-  return held_by(z, stiffness, bounded, force, slip, r, slip);
+  return held_by(z, stiffness, is_at_bound, force, slip, r, slip);
 }
 
 }  // namespace volcontact

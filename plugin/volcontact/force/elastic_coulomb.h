@@ -53,6 +53,8 @@ class ElasticCoulomb final : public Friction {
  private:
   double stiffness(const FrictionInput& in) const noexcept;                  // k_t [N/m]
   double damping(const FrictionInput& in, double stiffness) const noexcept;  // [N s/m]
+  struct Spring;
+  Spring spring(const FrictionInput& in, const LawState& state, double now) const noexcept;
 
   Params p_;
 };

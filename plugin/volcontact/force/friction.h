@@ -53,7 +53,7 @@ class Friction {
   /// What a step needs that is implicit in the contact. By default from differences of `evaluate`:
   /// stiffness where the law keeps something; damping as force over slip; strength as the force
   /// at the present slip, or at 1 m/s where that is more, with a memory after 1 m of it.
-  /// `state.pending` is left as `evaluate` at `in` leaves it.
+  /// `state.pending` stays, or is left as `evaluate` at `in` leaves it.
   virtual FrictionSlope slope(const FrictionInput& in, const LawState& state) const noexcept;
 
   int state_size() const noexcept { return size_of(states()); }

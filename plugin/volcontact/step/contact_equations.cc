@@ -34,15 +34,6 @@ void ContactEquations::solve(ContactSpace& space, double step, std::vector<doubl
   }
 }
 
-void ContactEquations::make_slopes(int places) {
-  slopes_.assign(size(places), ContactSpace::Square::Zero());
-  for (const Column& column : columns) {
-    const int at = column.first % kRows;
-    slopes_[size(column.first / kRows)].block<3, 3>(at, at).noalias() +=
-        column.numbers * column.numbers.transpose();
-  }
-}
-
 void ContactEquations::forget() {
   for (Factored* factored :
        {static_cast<Factored*>(&normal_by_dofs_), static_cast<Factored*>(&by_dofs_),
@@ -52,42 +43,49 @@ void ContactEquations::forget() {
 }
 
 bool ContactEquations::has_friction() const {
-  return std::any_of(slopes_.begin(), slopes_.end(), [](const ContactSpace::Square& slope) {
-    return !slope.bottomRightCorner<3, 3>().isZero(0.0);
-  });
+  return std::any_of(slopes.begin(), slopes.end(),
+                     [](const Slope& slope) { return !slope.friction.isZero(0.0); });
 }
 
 bool ContactEquations::is_of_slopes(const Factored& factored) const {
-  return factored.is_valid && factored.slopes == slopes_;
+  return factored.is_valid && factored.slopes == slopes;
 }
 
 template <int K>
 void ContactEquations::factor(const ContactSpace& space, double step, ByForces<K>& out) const {
-  using Block = typename BlockMatrix<K>::Block;
   out.is_valid = false;
-  out.slopes = slopes_;
-  out.factors.resize(slopes_.size());
+  out.slopes = slopes;
+  out.roots.resize(slopes.size());
   out.active.clear();
   for (int place = 0; place < space.places(); ++place) {
-    const ContactSpace::Square& slope = slopes_[size(place)];
-    if (slope.isZero(0.0)) continue;
+    const Slope& slope = slopes[size(place)];
+    if (slope.is_zero()) continue;
     out.active.push_back(place);
-    ContactSpace::Square& factor = out.factors[size(place)];
-    factor.setZero();
-    factor.topLeftCorner<3, 3>() = root_of(slope.topLeftCorner<3, 3>());
-    if (K > 3) factor.bottomRightCorner<3, 3>() = root_of(slope.bottomRightCorner<3, 3>());
+    out.roots[size(place)] = {root_of(slope.normal), slope.friction.cwiseSqrt()};
   }
   const bool is_symmetric = space.is_symmetric();
   const int count = static_cast<int>(out.active.size());
   out.matrix.reset(count, is_symmetric);
   for (int i = 0; i < count; ++i) {
     const int place = out.active[size(i)];
-    const Block left = step * out.factors[size(place)].template topLeftCorner<K, K>();
+    const Root& root = out.roots[size(place)];
+    const Root left{step * root.normal, step * root.friction};
     for (int k = 0; k < (is_symmetric ? i + 1 : count); ++k) {
       const int other = out.active[size(k)];
-      const Block moved = space.delassus(place, other).template topLeftCorner<K, K>() *
-                          out.factors[size(other)].template topLeftCorner<K, K>();
-      out.matrix(i, k).noalias() = left.transpose() * moved;
+      const ContactSpace::Square& lambda = space.delassus(place, other);
+      const Root& right = out.roots[size(other)];
+      auto& block = out.matrix(i, k);
+      const Mat3 moved = lambda.topLeftCorner<3, 3>() * right.normal;
+      block.template topLeftCorner<3, 3>().noalias() = left.normal.transpose() * moved;
+      if constexpr (K > 3) {
+        const Mat3 rubbed = lambda.topRightCorner<3, 3>() * right.friction.asDiagonal();
+        const Mat3 slid = lambda.bottomLeftCorner<3, 3>() * right.normal;
+        block.template topRightCorner<3, 3>().noalias() = left.normal.transpose() * rubbed;
+        block.template bottomLeftCorner<3, 3>() = left.friction.asDiagonal() * slid;
+        block.template bottomRightCorner<3, 3>() = left.friction.asDiagonal() *
+                                                   lambda.bottomRightCorner<3, 3>() *
+                                                   right.friction.asDiagonal();
+      }
     }
     out.matrix(i, i).diagonal().array() += 1.0;
   }
@@ -98,30 +96,31 @@ void ContactEquations::factor(const ContactSpace& space, double step, ByForces<K
 template <int K>
 void ContactEquations::solve_blocks(const ContactSpace& space, double step, ByForces<K>& by,
                                     std::vector<double>& force) {
-  using Part = typename BlockMatrix<K>::Vector;
   if (!is_of_slopes(by)) factor(space, step, by);
-  const auto factor_of = [&](int place) {
-    return by.factors[size(place)].template topLeftCorner<K, K>();
-  };
   const int count = static_cast<int>(by.active.size());
   right_.resize(size(K * count));
   for (int i = 0; i < count; ++i) {
     const int place = by.active[size(i)];
-    const Eigen::Map<const Part> motion(&response_[size(kRows * place)]);
-    Eigen::Map<Part>(&right_[size(K * i)]).noalias() = factor_of(place).transpose() * motion;
+    const Root& root = by.roots[size(place)];
+    const double* const motion = &response_[size(kRows * place)];
+    double* const right = &right_[size(K * i)];
+    Eigen::Map<Vec3>(right).noalias() = root.normal.transpose() * Eigen::Map<const Vec3>(motion);
+    for (int r = 3; r < K; ++r) right[r] = root.friction[r - 3] * motion[r];
   }
   by.matrix.solve(right_.data());
   for (int i = 0; i < count; ++i) {
     const int place = by.active[size(i)];
-    Eigen::Map<Part>(&force[size(kRows * place)]).noalias() -=
-        factor_of(place) * Eigen::Map<const Part>(&right_[size(K * i)]);
+    const Root& root = by.roots[size(place)];
+    const double* const solved = &right_[size(K * i)];
+    double* const f = &force[size(kRows * place)];
+    Eigen::Map<Vec3>(f).noalias() -= root.normal * Eigen::Map<const Vec3>(solved);
+    for (int r = 3; r < K; ++r) f[r] -= root.friction[r - 3] * solved[r];
   }
 }
 
 void ContactEquations::solve_for_forces(const ContactSpace& space, double step,
                                         std::vector<double>& force, std::vector<double>& velocity) {
   const int rows = space.rows();
-  make_slopes(space.places());
   force.assign(constant.begin(), constant.end());
   velocity.resize(size(rows));
   response_.resize(size(rows));
@@ -137,9 +136,9 @@ void ContactEquations::solve_for_forces(const ContactSpace& space, double step,
 // Adds h J' C J of one place to the matrix.
 void ContactEquations::add_slope(const ContactSpace& space, int place, double step,
                                  EnvelopeMatrix& matrix) const {
-  const ContactSpace::Square slope = step * slopes_[size(place)];
+  const Slope& slope = slopes[size(place)];
   for (const ContactSpace::Move& from : space.moves(place)) {
-    const ContactSpace::Block response = slope * from.column;
+    const ContactSpace::Block response = step * (slope * from.column);
     for (const ContactSpace::Move& to : space.moves(place)) {
       if (to.dof >= from.dof) matrix.add_both(to.dof, from.dof, to.column.dot(response));
     }
@@ -148,11 +147,11 @@ void ContactEquations::add_slope(const ContactSpace& space, int place, double st
 
 void ContactEquations::factor(ContactSpace& space, double step, ByDofs& out) const {
   out.is_valid = false;
-  out.slopes = slopes_;
+  out.slopes = slopes;
   out.matrix.reset(space.envelope(), space.is_symmetric());
   out.matrix.add(space.matrix().matrix());
   for (int place = 0; place < space.places(); ++place) {
-    if (!slopes_[size(place)].isZero(0.0)) add_slope(space, place, step, out.matrix);
+    if (!slopes[size(place)].is_zero()) add_slope(space, place, step, out.matrix);
   }
   out.matrix.factor();
   out.is_valid = true;
@@ -161,7 +160,6 @@ void ContactEquations::factor(ContactSpace& space, double step, ByDofs& out) con
 void ContactEquations::solve_for_dofs(ContactSpace& space, double step, std::vector<double>& force,
                                       std::vector<double>& velocity) {
   const int rows = space.rows(), n = space.dofs();
-  make_slopes(space.places());
   ByDofs& by = has_friction() ? by_dofs_ : normal_by_dofs_;
   if (!is_of_slopes(by)) factor(space, step, by);
   // What the contacts would bear at the velocities of now.
@@ -170,11 +168,11 @@ void ContactEquations::solve_for_dofs(ContactSpace& space, double step, std::vec
   Vector u(velocity.data(), rows);
   u = space.velocity();
   const auto bear = [&](int place) {
-    Eigen::Map<ContactSpace::Block>(&force[size(place * kRows)]).noalias() -=
-        slopes_[size(place)] * u.segment<kRows>(place * kRows);
+    Eigen::Map<ContactSpace::Block>(&force[size(place * kRows)]) -=
+        slopes[size(place)] * u.segment<kRows>(place * kRows);
   };
   for (int place = 0; place < rows / kRows; ++place) {
-    if (!slopes_[size(place)].isZero(0.0)) bear(place);
+    if (!slopes[size(place)].is_zero()) bear(place);
   }
   right_.resize(size(n));
   Vector right(right_.data(), n);

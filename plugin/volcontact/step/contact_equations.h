@@ -9,15 +9,25 @@
 namespace volcontact {
 
 /// The equations of a linearly implicit step: f = e - C u' at contact places, u' = u_free + h
-/// Lambda f, with C = L L' positive semidefinite, of blocks of three coordinates of a place.
-/// docs/theory.md, "Implicit step". Memory is reused from solution to solution.
+/// Lambda f, with C = L L' positive semidefinite. docs/theory.md, "Implicit step". Memory is reused
+/// from solution to solution.
 struct ContactEquations {
-  /// A part c c' of C: the numbers of c and the first of the three coordinates they are for.
-  struct Column {
-    Vec3 numbers;
-    int first;
+  /// C of one place. Friction knows nothing of the other three coordinates, nor its own of each
+  /// other.
+  struct Slope {
+    Mat3 normal = Mat3::Zero();    ///< of the first three coordinates
+    Vec3 friction = Vec3::Zero();  ///< its diagonal, of the last three
+
+    bool operator==(const Slope&) const = default;
+    bool is_zero() const { return friction.isZero(0.0) && normal.isZero(0.0); }
+    ContactSpace::Block operator*(const ContactSpace::Block& u) const {
+      ContactSpace::Block out;
+      out.head<3>().noalias() = normal * u.head<3>();
+      out.tail<3>() = friction.cwiseProduct(u.tail<3>());
+      return out;
+    }
   };
-  std::vector<Column> columns;
+  std::vector<Slope> slopes;     ///< C, by places
   std::vector<double> constant;  ///< e
 
   /// To be called when the space, or the step, is another one: until then a matrix of the same C is
@@ -37,11 +47,15 @@ struct ContactEquations {
                       std::vector<double>& velocity);
 
  private:
-  using Squares = std::vector<ContactSpace::Square>;
-  // A matrix that was factored, of these C by places.
+  // A matrix that was factored, of this C.
   struct Factored {
-    Squares slopes;
+    std::vector<Slope> slopes;
     bool is_valid = false;
+  };
+  // L of one place: lower triangular, and its diagonal.
+  struct Root {
+    Mat3 normal;
+    Vec3 friction;
   };
   struct ByDofs : Factored {
     EnvelopeMatrix matrix;
@@ -49,11 +63,10 @@ struct ContactEquations {
   template <int K>
   struct ByForces : Factored {
     BlockMatrix<K> matrix;
-    Squares factors;          // L of C = L L'
-    std::vector<int> active;  // the places with columns
+    std::vector<Root> roots;  // by places
+    std::vector<int> active;  // the places where C is not zero
   };
 
-  void make_slopes(int places);
   bool has_friction() const;
   bool is_of_slopes(const Factored& factored) const;
   void add_slope(const ContactSpace& space, int place, double step, EnvelopeMatrix& matrix) const;
@@ -64,7 +77,6 @@ struct ContactEquations {
   void solve_blocks(const ContactSpace& space, double step, ByForces<K>& by,
                     std::vector<double>& force);
 
-  Squares slopes_;  // C by places
   // Without and with friction: one of the two comes back as it was, under other constants.
   ByDofs normal_by_dofs_, by_dofs_;
   ByForces<3> normal_by_forces_;  // by the first three coordinates of each place alone

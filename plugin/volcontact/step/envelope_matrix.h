@@ -100,7 +100,7 @@ class EnvelopeMatrix {
   }
 
  private:
-  // Column by column, whose entries do not wait for each other.
+  // Both column by column, whose entries do not wait for each other.
   void factor_symmetric() {
     for (int k = 0; k < size(); ++k) {
       const double* const pivot = at(k, first(k));
@@ -116,18 +116,19 @@ class EnvelopeMatrix {
   }
 
   void factor_other() {
-    for (int i = 0; i < size(); ++i) {
-      const double* const left = at(i, first(i));
-      const double* const above = &upper_[index(i, first(i))];
-      for (int k = first(i); k < i; ++k) {
+    for (int k = 0; k < size(); ++k) {
+      const double* const left = at(k, first(k));
+      const double* const above = &upper_[index(k, first(k))];
+      double& diagonal = (*this)(k, k);
+      diagonal = 1.0 / pivot_left(diagonal, dot(left, above, k - first(k)));
+      for (int i = k + 1; i <= last_[static_cast<std::size_t>(k)]; ++i) {
+        if (first(i) > k) continue;
         const int from = std::max(first(i), first(k));
-        const std::ptrdiff_t count = k - from, skipped = from - first(i);
+        const std::ptrdiff_t count = k - from, skipped = from - first(k);
         double& entry = (*this)(i, k);
-        entry = (entry - dot(left + skipped, &upper_[index(k, from)], count)) * (*this)(k, k);
-        mirrored(i, k) -= dot(at(k, from), above + skipped, count);
+        entry = (entry - dot(at(i, from), above + skipped, count)) * diagonal;
+        mirrored(i, k) -= dot(left + skipped, &upper_[index(i, from)], count);
       }
-      double& diagonal = (*this)(i, i);
-      diagonal = 1.0 / pivot_left(diagonal, dot(left, above, i - first(i)));
     }
   }
 

@@ -117,8 +117,8 @@ void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& fa
     if (split[i]) continue;
     const Vec2 axis = principal.vectors.col(i);
     const Vec3 turn(0.0, axis[1], -axis[0]);
-    const double about = turn.dot(tangent.damping * turn);
-    site.rolls.col(1 + i) = std::sqrt(std::max(0.0, about)) * turn;
+    const double about = std::max(0.0, turn.dot(tangent.damping * turn));
+    site.rolls.noalias() += (about * turn) * turn.transpose();
   }
 }
 

@@ -32,9 +32,9 @@ void ImplicitStep::add(const ContactModel& model, ContactReport& report, std::si
 // The linear model of the sites as they are now: whether points push, how friction acts.
 void ImplicitStep::solve_once(bool with_friction, double step) {
   std::vector<double>& constants = equations_.constant;
-  std::vector<ContactEquations::Column>& columns = equations_.columns;
+  std::vector<ContactEquations::Slope>& slopes = equations_.slopes;
   constants.assign(size(space_.rows()), 0.0);
-  columns.clear();
+  slopes.assign(island_.size(), {});
   for (std::size_t i = 0; i < island_.size(); ++i) {
     const Site& site = this->site(i);
     if (!site.pushes()) continue;
@@ -44,19 +44,11 @@ void ImplicitStep::solve_once(bool with_friction, double step) {
       const Point& point = site.points[size(k)];
       if (!point.pushes) continue;
       constant += point.constant * point.motion;
-      columns.push_back({std::sqrt(point.slope) * point.motion, first});
     }
-    for (int k = 1; k < 3; ++k) {
-      if (!site.rolls.col(k).isZero(0.0)) columns.push_back({site.rolls.col(k), first});
-    }
+    slopes[i].normal = site.normal_slope();
     if (!with_friction) continue;
     std::copy_n(site.held.data(), 3, &constants[size(first + 3)]);
-    if (!(site.rub > 0.0)) continue;
-    const double root = std::sqrt(site.rub);
-    columns.push_back({Vec3(root, 0.0, 0.0), first + 3});
-    columns.push_back({Vec3(0.0, root, 0.0), first + 3});
-    const double lever = site.tangent.friction.lever;
-    if (lever > 0.0) columns.push_back({Vec3(0.0, 0.0, root * lever), first + 3});
+    slopes[i].friction = site.friction_slope();
   }
   equations_.solve(space_, step, force_, velocity_);
 }
@@ -294,14 +286,8 @@ Eigen::Matrix<double, 6, 6> ImplicitStep::slope(std::size_t i) const {
   Eigen::Matrix<double, 6, 6> out = Eigen::Matrix<double, 6, 6>::Zero();
   const Site& site = sites_[i];
   if (!site.pushes()) return out;
-  for (int k = 0; k < site.point_count; ++k) {
-    const Point& point = site.points[size(k)];
-    if (!point.pushes) continue;
-    out.topLeftCorner<3, 3>() += point.slope * point.motion * point.motion.transpose();
-  }
-  out.topLeftCorner<3, 3>() += site.rolls * site.rolls.transpose();
-  const double lever = site.tangent.friction.lever;
-  out.diagonal().tail<3>() = site.rub * Vec3(1.0, 1.0, lever * lever);
+  out.topLeftCorner<3, 3>() = site.normal_slope();
+  out.diagonal().tail<3>() = site.friction_slope();
   return out;
 }
 

@@ -86,7 +86,7 @@ class ImplicitStep {
     SiteTangent tangent;
     std::array<Point, 4> points{};
     int point_count = 0;
-    Mat3 rolls = Mat3::Zero();  // L of L L', the damping of turns where the points have none
+    Mat3 rolls = Mat3::Zero();  // the damping of turns about axes along which there is one point
     std::size_t pair = 0;
     bool is_stiff = false;
     bool is_solved = false;
@@ -95,6 +95,19 @@ class ImplicitStep {
     bool pushes() const {
       return std::any_of(points.begin(), points.begin() + point_count,
                          [](const Point& point) { return point.pushes; });
+    }
+    // C of the points that push, and of friction.
+    Mat3 normal_slope() const {
+      Mat3 out = rolls;
+      for (int k = 0; k < point_count; ++k) {
+        const Point& point = points[size(k)];
+        if (point.pushes) out.noalias() += (point.slope * point.motion) * point.motion.transpose();
+      }
+      return out;
+    }
+    Vec3 friction_slope() const {
+      const double lever = tangent.friction.lever;
+      return std::max(0.0, rub) * Vec3(1.0, 1.0, lever * lever);
     }
     // Friction: force = held - rub * slip, or `rub` alone where it slides; as (t_1, t_2, about n).
     Vec3 held = Vec3::Zero();

@@ -69,11 +69,11 @@ TEST_P(BothForms, ForForcesAndForVelocitiesAgree) {
   space.constrain(NoConstraints());
   ContactEquations equations;
   test::Random random(3);
-  for (int first = 0; first < 18; first += 3) {
-    for (int i = 0; i < 3; ++i) {
-      equations.constant.push_back(random.uniform(-50.0, 50.0));
-      equations.columns.push_back({1e3 * random.in_box(1.0), first});
-    }
+  for (int place = 0; place < 3; ++place) {
+    for (int i = 0; i < 6; ++i) equations.constant.push_back(random.uniform(-50.0, 50.0));
+    Mat3 root;
+    for (double& x : root.reshaped()) x = random.uniform(-1e3, 1e3);
+    equations.slopes.push_back({root * root.transpose(), 1e6 * random.in_box(1.0).cwiseAbs2()});
   }
   std::vector<double> force, velocity, other_force, other_velocity;
   equations.solve_for_dofs(space, 2e-3, force, velocity);

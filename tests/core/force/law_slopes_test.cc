@@ -172,14 +172,16 @@ TEST(FrictionSlope, OfALawThatDoesNotKnowItComesFromDifferences) {
   }
   const Bristle bristle({.friction = 0.3, .static_friction = 0.4});
   const std::array<double, 5> committed{1e-6, 0.0, 0.0, 0.0, 1.0};
-  std::array<double, 5> pending{}, own_pending{};
+  std::array<double, 5> pending{}, own_pending{}, kept{};
   const FrictionSlope own =
       bristle.slope(sliding(0.0), {committed.data(), own_pending.data(), 1e-3});
   const FrictionSlope found =
       Hidden(bristle).slope(sliding(0.0), {committed.data(), pending.data(), 1e-3});
   EXPECT_NEAR(found.stiffness / own.stiffness, 1.0, 1e-3);
   EXPECT_NEAR(found.damping / own.damping, 1.0, 1e-3);
-  EXPECT_EQ(pending, own_pending);
+  bristle.evaluate(sliding(0.0), {committed.data(), kept.data(), 1e-3});
+  EXPECT_EQ(pending, kept);
+  EXPECT_EQ(own_pending, (std::array<double, 5>{}));
 }
 
 // What a spring holds at most shows only once it has been drawn out.
