@@ -40,6 +40,13 @@ inline bool are_apart(const Bounds& a, const Bounds& b) noexcept {
   return (apart[0] | apart[1]) != 0;
 }
 
+/// Not where a number is NaN.
+inline bool are_within(const Bounds& inner, const Bounds& outer) noexcept {
+  const auto within = (inner.ends[0] >= outer.ends[0]) & (inner.ends[1] >= outer.ends[1]) &
+                      (inner.ends[2] >= outer.ends[2]);
+  return (within[0] & within[1]) != 0;
+}
+
 /// Of a solid at a pose, in the world.
 inline Bounds world_bounds(const Shape& solid, const Pose& X_WG) {
   return std::visit(

@@ -176,7 +176,7 @@ void Cull::meet_fixed(const mjData* d, Scratch& scratch) const {
   if (fixed_.geoms().empty()) return;
   for (std::size_t i = 0; i < moving_.size(); ++i) {
     const int a = moving_[i];
-    fixed_.meet(d, scratch.boxes[i], scratch.fixed, [&](int b, const Bounds& bounds) {
+    fixed_.meet(d, i, scratch.boxes[i], scratch.fixed, [&](int b, const Bounds& bounds) {
       if (are_apart(exact_box(d, static_cast<int>(i), scratch), bounds)) return;
       if (rules_->admits(a, b)) scratch.near.push_back(rules_->id(a, b));
     });

@@ -85,6 +85,7 @@ void FixedSolids::build(const mjData* d, Kept& kept) const {
     kept.boxes.push_back(box_of(d, i));
   }
   kept.tree.build(kept.boxes);
+  for (Kept::Near& near : kept.near) near.is_known = false;
   kept.may_turn = false;
   kept.compared.assign(geoms_.size(), 0);
   if (geoms_.size() < kFew) return;
@@ -113,6 +114,26 @@ void FixedSolids::follow(const mjData* d, Kept& kept) const {
   const bool have_stayed = kept.owner == number_ && all_same(d->geom_xpos, kept.positions, 3);
   if (have_stayed && (kept.may_turn || all_same(d->geom_xmat, kept.rotations, 9))) return;
   build(d, kept);
+}
+
+// The places that may meet these bounds.
+const std::vector<int>& FixedSolids::near_to(std::size_t asker, const Bounds& with,
+                                             Kept& kept) const {
+  constexpr double kMargin = 1.0 / 16.0;  // on each side, of the largest extent
+  if (asker >= kept.near.size()) kept.near.resize(asker + 1);
+  Kept::Near& near = kept.near[asker];
+  if (near.is_known && are_within(with, near.around)) return near.places;
+  near.is_known = true;
+  near.around = with;
+  const double margin = kMargin * std::max({with.high(0) - with.low(0), with.high(1) - with.low(1),
+                                            with.high(2) - with.low(2)});
+  for (int i = 0; i < 3; ++i) near.around.set(i, with.low(i) - margin, -with.high(i) - margin);
+  near.places.clear();
+  near.places.reserve(std::min(kFew, geoms_.size()));  // once: later steps shall not allocate
+  kept.tree.find(near.around, [&](int place) {
+    if (!are_apart(near.around, kept.boxes[size(place)])) near.places.push_back(place);
+  });
+  return near.places;
 }
 
 void FixedSolids::follow_turn(const mjData* d, std::size_t place, Kept& kept) const {

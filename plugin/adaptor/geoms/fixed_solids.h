@@ -25,6 +25,14 @@ class FixedSolids {
     std::vector<Bounds> boxes;            ///< of the solids, at the rotations that are kept
     bool may_turn = false;                ///< whether the tree is one of balls
     BoundsTree tree;
+    /// By who asks: which of the solids meet bounds somewhat wider than those asked with once, so
+    /// that the tree is not asked again while they stay within.
+    struct Near {
+      Bounds around;
+      std::vector<int> places;
+      bool is_known = false;
+    };
+    std::vector<Near> near;
   };
 
   FixedSolids() = default;
@@ -37,17 +45,28 @@ class FixedSolids {
   /// To be called before `meet`, once for the poses of `d`.
   void follow(const mjData* d, Kept& kept) const;
 
-  /// Calls `visit(geom, bounds)` for each whose bounds are not apart from the given ones.
+  /// Calls `visit(geom, bounds)` for each whose bounds are not apart from the given ones, which are
+  /// those of number `asker`.
   template <typename Visit>
-  void meet(const mjData* d, const Bounds& with, Kept& kept, Visit&& visit) const {
+  void meet(const mjData* d, std::size_t asker, const Bounds& with, Kept& kept,
+            Visit&& visit) const {
+    const auto look_at = [&](int place) {
+      const auto i = static_cast<std::size_t>(place);
+      if (!are_apart(with, kept.boxes[i])) visit(geoms_[i], kept.boxes[i]);
+    };
+    if (!kept.may_turn) {
+      for (const int place : near_to(asker, with, kept)) look_at(place);
+      return;
+    }
     kept.tree.find(with, [&](int place) {
       const auto i = static_cast<std::size_t>(place);
-      if (kept.may_turn && kept.compared[i] != kept.call) follow_turn(d, i, kept);
-      if (!are_apart(with, kept.boxes[i])) visit(geoms_[i], kept.boxes[i]);
+      if (kept.compared[i] != kept.call) follow_turn(d, i, kept);
+      look_at(place);
     });
   }
 
  private:
+  const std::vector<int>& near_to(std::size_t asker, const Bounds& with, Kept& kept) const;
   void build(const mjData* d, Kept& kept) const;
   void follow_turn(const mjData* d, std::size_t place, Kept& kept) const;
   Bounds box_of(const mjData* d, std::size_t place) const;

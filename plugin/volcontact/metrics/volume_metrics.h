@@ -32,6 +32,7 @@ struct VolumeMetrics {
   Status status = Status::kOk;
 
   bool touching() const { return volume > 0.0; }
+  bool operator==(const VolumeMetrics&) const = default;
 
   /// Contact normal on A, from B to A: -S/|S|; zero when S vanishes.
   Vec3 normal() const {

@@ -5,6 +5,7 @@
 
 #include <numeric>
 #include <random>
+#include <utility>
 
 #include "adaptor/geoms/solids_of_geoms.h"
 #include "adaptor/mujoco/mjgeoms.h"
@@ -37,9 +38,9 @@ class FixedSolidsTest : public ::testing::TestWithParam<const char*> {
   Bounds box_of(int geom) const {
     return world_bounds(solids[static_cast<std::size_t>(geom)], pose_of_geom(d.get(), geom));
   }
-  std::vector<int> met(const FixedSolids& fixed, const Bounds& with) {
+  std::vector<int> met(const FixedSolids& fixed, const Bounds& with, std::size_t asker = 0) {
     std::vector<int> found;
-    fixed.meet(d.get(), with, kept, [&](int geom, const Bounds&) { found.push_back(geom); });
+    fixed.meet(d.get(), asker, with, kept, [&](int geom, const Bounds&) { found.push_back(geom); });
     std::sort(found.begin(), found.end());
     return found;
   }
@@ -87,6 +88,31 @@ TEST_P(FixedSolidsTest, MeetsThoseWhosePresentBoundsMeet) {
     }
   }
   EXPECT_GT(found, 600u);
+}
+
+// What was found for wider bounds serves while these hold, and no longer than nothing has moved.
+TEST_P(FixedSolidsTest, WhoMovesLittleMeetsWhatItComesTo) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> uniform;
+  const FixedSolids fixed(solids, geoms);
+  Vec3 at[2] = {Vec3(1.0, 1.0, 0.0), Vec3(4.0, 3.0, 0.1)};
+  int changes = 0, kept_around = 0;
+  std::vector<int> last;
+  for (int call = 0; call < 400; ++call) {
+    if (call % 100 == 99) d->geom_xpos[3 * (call / 2) + 1] += 0.5;
+    fixed.follow(d.get(), kept);
+    for (std::size_t asker = 0; asker < 2; ++asker) {
+      at[asker] += 0.004 * Vec3(uniform(random), uniform(random), uniform(random) - 0.5);
+      const Bounds with = world_bounds(Sphere({.radius = 0.1}), {Mat3::Identity(), at[asker]});
+      const double before = kept.near.size() > asker ? kept.near[asker].around.low(0) : 0.0;
+      const std::vector<int> found = met(fixed, with, asker);
+      ASSERT_EQ(found, expected(with)) << call;
+      kept_around += kept.near.size() > asker && kept.near[asker].around.low(0) == before;
+      if (asker == 0) changes += std::exchange(last, found) != found;
+    }
+  }
+  EXPECT_GT(changes, 3);
+  EXPECT_TRUE(kept.may_turn || kept_around > 400) << kept_around;
 }
 
 // Long ones reach so far when they turn that their tree is that of their present bounds.
