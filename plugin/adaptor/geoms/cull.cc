@@ -69,6 +69,9 @@ void Cull::tell_fixed_apart() {
   const auto stays = [&](int geom) { return rules_->is_static(geom); };
   std::copy_if(moving_.begin(), moving_.end(), std::back_inserter(fixed), stays);
   std::erase_if(moving_, stays);
+  is_one_body_ = std::all_of(moving_.begin(), moving_.end(), [&](int geom) {
+    return rules_->weld_of(geom) == rules_->weld_of(moving_.front()) && !rules_->is_named(geom);
+  });
   fixed_ = FixedSolids(*solids_, std::move(fixed));
 }
 
@@ -156,6 +159,7 @@ void Cull::sort_moving(Scratch& scratch) const {
 
 // Each with those that begin before it ends.
 void Cull::sweep(const mjData* d, Scratch& scratch) const {
+  if (is_one_body_) return;
   sort_moving(scratch);
   const std::size_t count = moving_.size();
   for (std::size_t i = 0; i < count; ++i) {

@@ -50,8 +50,9 @@ class Cull {
   const PairRules* rules_;
   const std::vector<Shape>* solids_;
   bool is_swept_ = false;
-  std::vector<int> planes_, moving_;          // geoms that can touch others, ascending
-  FixedSolids fixed_;                         // the rest of them, where there are many
+  bool is_one_body_ = false;          // all that moves, so that none of it can touch another
+  std::vector<int> planes_, moving_;  // geoms that can touch others, ascending
+  FixedSolids fixed_;                 // the rest of them, where there are many
   std::vector<Listed> with_plane_, between_;  // where there are few
 };
 

@@ -119,7 +119,7 @@ void FixedSolids::follow(const mjData* d, Kept& kept) const {
 // The places that may meet these bounds.
 const std::vector<int>& FixedSolids::near_to(std::size_t asker, const Bounds& with,
                                              Kept& kept) const {
-  constexpr double kMargin = 1.0 / 16.0;  // on each side, of the largest extent
+  constexpr double kMargin = 1.0 / 64.0;  // on each side, of the largest extent
   if (asker >= kept.near.size()) kept.near.resize(asker + 1);
   Kept::Near& near = kept.near[asker];
   if (near.is_known && are_within(with, near.around)) return near.places;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <random>
@@ -177,6 +178,41 @@ TEST(Cull, SweptPairsAreThoseOfAComparisonOfAll) {
     if (trial % 50 == 49) d->geom_xpos[3 * 17 + 1] = std::numeric_limits<double>::quiet_NaN();
     swept.run(d.get(), scratch);
     ASSERT_EQ(scratch.near, compared(rules, solids, d.get())) << trial;
+    found += scratch.near.size();
+  }
+  EXPECT_GT(found, 1000u);
+}
+
+// One body of many geoms, of which none can touch another, slides and turns in steps through a
+// world of solids.
+TEST(Cull, OneBodyMeetsItsWorld) {
+  std::string world, body = "<body><freejoint/>";
+  for (int i = 0; i < 60; ++i) {
+    world += "<geom type=\"box\" size=\".1 .2 .05\" pos=\"" + std::to_string(.15 * (i % 12)) + " " +
+             std::to_string(.3 * (i / 12)) + " 0\"/>";
+  }
+  for (int i = 0; i < 8; ++i) {
+    body += "<geom type=\"box\" size=\".1 .1 .1\" pos=\"" + std::to_string(.15 * i) + " 0 0\"/>";
+  }
+  const testing::ModelPointer m =
+      testing::compile("<mujoco><worldbody>" + world + body + "</body></worldbody></mujoco>");
+  const testing::DataPointer d = testing::make_data(m);
+  const PairRules rules(m.get(), read_scene_keys(m.get()));
+  ASSERT_EQ(rules.count(), 480u);
+  std::vector<Shape> solids;
+  for (int geom = 0; geom < m->ngeom; ++geom) solids.push_back(solid_of_geom(m.get(), geom));
+  const Cull cull(rules, solids);
+  Cull::Scratch scratch;
+  std::size_t found = 0;
+  for (int step = 0; step < 300; ++step) {
+    d->qpos[0] = 0.005 * step;
+    d->qpos[1] = 0.6 + 0.4 * std::sin(0.02 * step);
+    d->qpos[2] = 0.3 * std::cos(0.03 * step);
+    d->qpos[3] = std::cos(0.01 * step);
+    d->qpos[5] = std::sin(0.01 * step);
+    mj_kinematics(m.get(), d.get());
+    cull.run(d.get(), scratch);
+    ASSERT_EQ(scratch.near, compared(rules, solids, d.get())) << step;
     found += scratch.near.size();
   }
   EXPECT_GT(found, 1000u);
