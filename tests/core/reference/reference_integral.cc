@@ -104,6 +104,7 @@ class Stretches {
     std::sort(scan.begin(), scan.end());
     points_.push_back({scan[0], f_(scan[0], false).signature});
     last_ = scan[0];
+    if (points_.back().signature == 0) empty_.push_back(last_);
     for (std::size_t i = 1; i < scan.size(); ++i) advance(scan[i]);
   }
 
@@ -155,19 +156,39 @@ class Stretches {
 
   // Appends the changes between the last point looked at and x.
   void advance(double x) {
-    const std::uint64_t signature = f_(x, false).signature;
+    std::uint64_t signature = f_(x, false).signature;
     if (creeping_ && points_.back().signature == 0 && signature != 0) {
-      const Start first = creep(x, last_, signature);
+      // Back over all places that looked empty before the like had been seen nearby.
+      Start first = creep(x, last_, signature);
+      while (has_reached(last_, first) && empty_.size() > 1) {
+        empty_.pop_back();
+        last_ = empty_.back();
+        first = creep(first.x, last_, first.signature);
+      }
       points_.push_back({0.5 * (first.x + std::max(last_, first.x - end_)), first.signature});
       last_ = first.x;
     }
     if (creeping_ && points_.back().signature != 0 && signature == 0) {
-      const Start end = creep(last_, x, points_.back().signature);
-      chain(end.x, end.signature);
-      last_ = std::min(x, end.x + end_);
-      points_.push_back({0.5 * (end.x + last_), 0});
+      Start end = creep(last_, x, points_.back().signature);
+      if (has_reached(x, end)) {
+        signature = end.signature;
+      } else {
+        chain(end.x, end.signature);
+        last_ = std::min(x, end.x + end_);
+        points_.push_back({0.5 * (end.x + last_), 0});
+        empty_.assign(1, last_);
+      }
     }
     chain(x, signature);
+    if (signature == 0) empty_.push_back(x);
+  }
+
+  // Whether a creep came as far as it went, to a place that is not empty after all.
+  bool has_reached(double to, Start& here) {
+    if (std::abs(to - here.x) > 4.0 * end_ || left_ <= 0) return false;
+    const std::uint64_t signature = f_(to, false).signature;
+    if (signature != 0) here = {to, signature};
+    return signature != 0;
   }
 
   // The farthest place on the way to `to` that is not empty, in steps that grow where they succeed.
@@ -262,7 +283,8 @@ class Stretches {
   bool creeping_;
   std::vector<Piece> pieces_;
   std::vector<Start> points_;
-  double last_;  // the last point looked at
+  std::vector<double> empty_;  // places that looked so since the last that did not
+  double last_;                // the last point looked at
 };
 
 // Faces that touch without overlap bound intervals of rounding errors.
