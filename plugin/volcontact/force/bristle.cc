@@ -46,8 +46,7 @@ Bristle::Past Bristle::past(const FrictionInput& in, const LawState& state) cons
       state.elapsed > 0.0 ? 1.0 / state.elapsed * way : Generalized{in.slip, r * in.spin};
   const Sticking sticking = sticking_at(mean.norm());
   const double before = state.committed[4];
-  const double relaxing = p_.bristle_stiffness / p_.bristle_damping;  // [1/s]
-  const double dwell_time = sticking.share >= before ? p_.dwell_time : 1.0 / relaxing;
+  const double dwell_time = sticking.share >= before ? p_.dwell_time : 1.0 / relaxing();
   const double dwell =
       sticking.share + (before - sticking.share) * std::exp(-state.elapsed / dwell_time);
   return {way, mean, sticking, dwell};
@@ -67,7 +66,6 @@ FrictionOutput Bristle::evaluate(const FrictionInput& in, const LawState& state)
   const Generalized old{Vec3(before[0], before[1], before[2]), r > 0.0 ? before[3] : 0.0};
   const auto [way, mean, so_far, dwell] = past(in, state);
   const Sticking now = sticking_at(slip.norm());
-  const double relaxing = p_.bristle_stiffness / p_.bristle_damping;  // [1/s]
   const double kinetic = p_.friction * in.normal_force;
   const double most = kinetic + (p_.static_friction - p_.friction) * in.normal_force * dwell;
 
@@ -76,13 +74,13 @@ FrictionOutput Bristle::evaluate(const FrictionInput& in, const LawState& state)
   const auto pulled = [&](const Generalized& u) {
     return kinetic / p_.bristle_damping * resisted(p_.coupling, u, in);
   };
-  const double decays = so_far.sliding * relaxing * state.elapsed;
+  const double decays = so_far.sliding * relaxing() * state.elapsed;
   Generalized z =
       std::exp(-decays) * old +
       mean_decay(decays) * (so_far.share * way + so_far.sliding * state.elapsed * pulled(mean));
   const bool bounded = limit(p_.coupling, most / p_.bristle_stiffness, in, z);
 
-  const Generalized rate = now.share * slip + now.sliding * (pulled(slip) - relaxing * z);
+  const Generalized rate = now.share * slip + now.sliding * (pulled(slip) - relaxing() * z);
   Generalized force = p_.bristle_stiffness * z + p_.bristle_damping * rate;
   limit(p_.coupling, most, in, force);
   if (in.normal_force > 0.0) force = force + p_.viscous_friction * slip;

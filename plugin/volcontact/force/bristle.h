@@ -63,6 +63,7 @@ class Bristle final : public Friction {
   struct Sticking;
   struct Past;
   Sticking sticking_at(double speed) const noexcept;
+  double relaxing() const noexcept { return p_.bristle_stiffness / p_.bristle_damping; }  // [1/s]
   Past past(const FrictionInput& in, const LawState& state) const noexcept;
 
   Params p_;

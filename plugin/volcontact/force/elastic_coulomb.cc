@@ -57,6 +57,7 @@ ElasticCoulomb::Spring ElasticCoulomb::spring(const FrictionInput& in, const Law
 }
 
 FrictionSlope ElasticCoulomb::slope(const FrictionInput& in, const LawState& state) const noexcept {
+  // Only a spring that was stiffer may have lost that by sliding.
   const double now = this->stiffness(in), held = state.committed[4];
   const double stiffness = now < held ? spring(in, state, now).stiffness : now;
   return {stiffness, damping(in, stiffness), p_.friction * in.normal_force,

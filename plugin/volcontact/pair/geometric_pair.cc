@@ -10,6 +10,7 @@ void interference_W(const GeometricPair& pair, const Pose& X_WA, const Pose& X_W
   const Pose X_Wb = X_WB * pair.X_Bb;
   interference(pair.a, pair.b, X_Wa.inverse() * X_Wb, options, workspace, out);
   if (!out.total.touching()) return;
+  // As a rule the only site is the whole.
   const bool is_one = out.sites.size() == 1 && out.sites[0] == out.total;
   out.total = transformed(out.total, X_Wa);
   if (is_one) {

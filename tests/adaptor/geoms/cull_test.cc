@@ -17,6 +17,12 @@ namespace {
 
 using Pairs = std::set<std::pair<int, int>>;
 
+std::vector<Shape> solids_of(const mjModel* m) {
+  std::vector<Shape> solids;
+  for (int geom = 0; geom < m->ngeom; ++geom) solids.push_back(solid_of_geom(m, geom));
+  return solids;
+}
+
 // Random poses of all shapes: whatever MuJoCo finds in contact must pass the cull.
 
 constexpr const char* kShapes = R"(
@@ -35,9 +41,8 @@ class CullTest : public ::testing::Test {
   CullTest()
       : m(testing::compile(kShapes)),
         d(testing::make_data(m)),
-        rules(m.get(), read_scene_keys(m.get())) {
-    for (int geom = 0; geom < m->ngeom; ++geom) solids.push_back(solid_of_geom(m.get(), geom));
-  }
+        rules(m.get(), read_scene_keys(m.get())),
+        solids(solids_of(m.get())) {}
   void random_poses(std::mt19937& random) {
     std::normal_distribution<double> normal;
     for (int i = 0; i < m->nq; ++i) d->qpos[i] = (i % 7 < 3 ? 0.3 : 1.0) * normal(random);
@@ -161,8 +166,7 @@ TEST(Cull, SweptPairsAreThoseOfAComparisonOfAll) {
   const testing::DataPointer d = testing::make_data(m);
   const PairRules rules(m.get(), read_scene_keys(m.get()));
   ASSERT_GT(rules.count(), 4000u);
-  std::vector<Shape> solids;
-  for (int geom = 0; geom < m->ngeom; ++geom) solids.push_back(solid_of_geom(m.get(), geom));
+  const std::vector<Shape> solids = solids_of(m.get());
   const Cull swept(rules, solids);
   Cull::Scratch scratch;
   std::size_t found = 0;
@@ -199,8 +203,7 @@ TEST(Cull, OneBodyMeetsItsWorld) {
   const testing::DataPointer d = testing::make_data(m);
   const PairRules rules(m.get(), read_scene_keys(m.get()));
   ASSERT_EQ(rules.count(), 480u);
-  std::vector<Shape> solids;
-  for (int geom = 0; geom < m->ngeom; ++geom) solids.push_back(solid_of_geom(m.get(), geom));
+  const std::vector<Shape> solids = solids_of(m.get());
   const Cull cull(rules, solids);
   Cull::Scratch scratch;
   std::size_t found = 0;
@@ -228,8 +231,7 @@ TEST(Cull, ScratchServesScenesInTurn) {
     const std::unique_ptr<mjData, void (*)(mjData*)> d(mj_makeData(m), mj_deleteData);
     mj_forward(m, d.get());
     const PairRules rules(m, read_scene_keys(m));
-    std::vector<Shape> solids;
-    for (int geom = 0; geom < m->ngeom; ++geom) solids.push_back(solid_of_geom(m, geom));
+    const std::vector<Shape> solids = solids_of(m);
     Cull(rules, solids).run(d.get(), scratch);
     EXPECT_EQ(scratch.near, compared(rules, solids, d.get()));
     near.push_back(scratch.near);

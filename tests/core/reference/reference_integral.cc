@@ -183,7 +183,7 @@ class Stretches {
     if (signature == 0) empty_.push_back(x);
   }
 
-  // Whether a creep came as far as it went, to a place that is not empty after all.
+  // Whether a creep came to the end of its way, and that place is not empty after all.
   bool has_reached(double to, Start& here) {
     if (std::abs(to - here.x) > 4.0 * end_ || left_ <= 0) return false;
     const std::uint64_t signature = f_(to, false).signature;
