@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which tests run in `./run test` and in `./run soak`, and which begin first."""
 
+import gc
+
 import pytest
 from soaking import SOAKING
 
@@ -40,6 +42,11 @@ def pytest_collection_modifyitems(config, items):
         (config.stash[LEFT_OUT] if marks & left_out else kept).append(item)
     config.hook.pytest_deselected(items=config.stash[LEFT_OUT])
     items[:] = kept
+
+
+def pytest_collection_finish():
+    """What is imported and collected stays to the end: no search for garbage goes through it."""
+    gc.freeze()
 
 
 def pytest_terminal_summary(terminalreporter, config):
