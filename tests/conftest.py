@@ -49,6 +49,11 @@ def pytest_collection_finish():
     gc.freeze()
 
 
+def pytest_unconfigure():
+    """At its end Python looks through everything, and nanobind for what is left."""
+    gc.unfreeze()
+
+
 def pytest_terminal_summary(terminalreporter, config):
     if count := len(config.stash.get(LEFT_OUT, [])):
         terminalreporter.write_line(f"{count} long tests left out: ./run soak runs them, too")

@@ -76,6 +76,13 @@ inline Mat3 skew(const Vec3& a) {
   return s;
 }
 
+/// Outer product: outer(a, b) c = a (b . c).
+inline Mat3 outer(const Vec3& a, const Vec3& b) {
+  Mat3 m;
+  for (int k = 0; k < 3; ++k) m.col(k) = Vec3(a.x() * b[k], a.y() * b[k], a.z() * b[k]);
+  return m;
+}
+
 /// Orthonormal basis whose third column is the unit vector `n`; continuous except at n.z = 0.
 /// Duff et al., "Building an orthonormal basis, revisited", JCGT 6(1), 2017.
 inline Mat3 basis_with_z(const Vec3& n) {

@@ -10,10 +10,11 @@ namespace volcontact {
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
-// Sums and multiples of vectors of three, evaluated at each step. Eigen makes a type of every
-// expression and compiles a hundred functions of it; these are better matches than its operators,
-// and leave few types. They round as Eigen does: the same bits. So products with matrices stay
-// Eigen's, which adds in another order in a longer product and turns s (M v) into (s M) v.
+// Sums and multiples of vectors of three, and sums of matrices, evaluated at each step. Eigen makes
+// a type of every expression and compiles a hundred functions of it; these are better matches than
+// its operators, and leave few types. They round as Eigen does: the same bits. So products with
+// matrices stay Eigen's, which adds in another order in a longer product and makes (s M) v of
+// s (M v).
 namespace vector_operators {
 
 template <typename T>
@@ -78,6 +79,19 @@ VOLCONTACT_VECTOR_INLINE Vec3 operator*(const A& a, S s) {
 template <vector_operators::Column A, vector_operators::Number S>
 VOLCONTACT_VECTOR_INLINE Vec3 operator/(const A& a, S s) {
   return vector_operators::quotient(vector_operators::plain(a), static_cast<double>(s));
+}
+
+template <std::same_as<Mat3> A, std::same_as<Mat3> B>
+VOLCONTACT_VECTOR_INLINE Mat3 operator+(const A& a, const B& b) {
+  Mat3 sum;
+  for (int i = 0; i < 9; ++i) sum.data()[i] = a.data()[i] + b.data()[i];
+  return sum;
+}
+template <std::same_as<Mat3> A, std::same_as<Mat3> B>
+VOLCONTACT_VECTOR_INLINE Mat3 operator-(const A& a, const B& b) {
+  Mat3 difference;
+  for (int i = 0; i < 9; ++i) difference.data()[i] = a.data()[i] - b.data()[i];
+  return difference;
 }
 
 #undef VOLCONTACT_VECTOR_INLINE

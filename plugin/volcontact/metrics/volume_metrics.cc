@@ -61,7 +61,7 @@ VolumeMetrics operator+(const VolumeMetrics& a, const VolumeMetrics& b) {
     m.centroid = (a.volume * a.centroid + b.volume * b.centroid) / m.volume;
     const Vec3 apart = b.centroid - a.centroid;
     m.inertia = a.inertia + b.inertia +
-                (a.volume * b.volume / m.volume) * inertia_from_second(apart * apart.transpose());
+                (a.volume * b.volume / m.volume) * inertia_from_second(outer(apart, apart));
   }
   m.area_vector = a.area_vector + b.area_vector;
   m.area_moment = a.area_moment + b.area_moment;
@@ -90,7 +90,7 @@ VolumeMetrics MomentSum::metrics() const {
   if (!(volume > 0.0)) return m;
   m.volume = volume;
   m.centroid = first / volume;
-  m.inertia = inertia_from_second(second - m.centroid * first.transpose());
+  m.inertia = inertia_from_second(second - outer(m.centroid, first));
   m.area_vector = area_vector;
   m.area_moment = area_moment;
   m.area = area;

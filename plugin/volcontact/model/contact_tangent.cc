@@ -10,9 +10,7 @@ namespace volcontact {
 namespace {
 
 using Mat12 = ContactTangent::Matrix;
-using Mat6x12 = Eigen::Matrix<double, 6, 12>;
 using Column6 = Eigen::Matrix<double, 6, 1>;
-using Row12 = Eigen::Matrix<double, 1, 12>;
 
 // Friction of a site as one column: torque, then force.
 Column6 friction_of(const SiteLaws& laws, const SiteReport& site, double normal_force,
@@ -23,12 +21,17 @@ Column6 friction_of(const SiteLaws& laws, const SiteReport& site, double normal_
   return wrench;
 }
 
-// What friction adds: by the slip, the spin and the normal force, from differences of the law
-// alone.
+// What friction adds: by the relative speed, of turning and of sliding, and by the normal force,
+// from differences of the law alone.
 struct FrictionTangent {
-  Eigen::Matrix<double, 6, 3> by_slip = Eigen::Matrix<double, 6, 3>::Zero();
-  Column6 by_spin = Column6::Zero(), by_force = Column6::Zero();
+  Mat6 by_speed = Mat6::Zero();
+  Column6 by_force = Column6::Zero();
 };
+
+// Adds a b' to the three columns from `first` on.
+void add_outer(const Column6& a, const Vec3& b, int first, Mat6& out) {
+  for (int k = 0; k < 3; ++k) out.col(first + k) += a * b[k];
+}
 
 FrictionTangent friction_tangent(const SiteLaws& laws, const SiteReport& site) {
   constexpr double kSmall = 1e-6;  // of the slip or 1 m/s, of the force: near the root of rounding
@@ -42,12 +45,12 @@ FrictionTangent friction_tangent(const SiteLaws& laws, const SiteReport& site) {
         friction_of(laws, site, site.normal_force, site.slip + speed * along, site.spin);
     const Column6 less =
         friction_of(laws, site, site.normal_force, site.slip - speed * along, site.spin);
-    out.by_slip += (more - less) / (2.0 * speed) * along.transpose();
+    add_outer((more - less) / (2.0 * speed), along, 3, out.by_speed);
   }
   const double turn = kSmall * std::max(1e-1, std::abs(site.spin));
-  out.by_spin = (friction_of(laws, site, site.normal_force, site.slip, site.spin + turn) -
-                 friction_of(laws, site, site.normal_force, site.slip, site.spin - turn)) /
-                (2.0 * turn);
+  const Column6 more = friction_of(laws, site, site.normal_force, site.slip, site.spin + turn);
+  const Column6 less = friction_of(laws, site, site.normal_force, site.slip, site.spin - turn);
+  add_outer((more - less) / (2.0 * turn), site.normal, 0, out.by_speed);
   const double force = kSmall * site.normal_force;
   if (force > 0.0) {
     out.by_force = (friction_of(laws, site, site.normal_force + force, site.slip, site.spin) -
@@ -58,16 +61,26 @@ FrictionTangent friction_tangent(const SiteLaws& laws, const SiteReport& site) {
   return out;
 }
 
-// Turn and displacement of A against B at the point c, from those of both frames.
-Mat6x12 relative_motion(const Vec3& from_A, const Vec3& from_B) {
-  Mat6x12 j = Mat6x12::Zero();
-  j.block<3, 3>(0, 0).setIdentity();
-  j.block<3, 3>(3, 3).setIdentity();
-  j.block<3, 3>(3, 0) = -skew(from_A);
-  j.block<3, 3>(0, 6) = -Mat3::Identity();
-  j.block<3, 3>(3, 9) = -Mat3::Identity();
-  j.block<3, 3>(3, 6) = skew(from_B);
+// Turn and displacement of a body at a point, from those of its frame: the point lies at `p`.
+Mat6 motion_at(const Vec3& p) {
+  Mat6 j = Mat6::Identity();
+  j.bottomLeftCorner<3, 3>() = -skew(p);
   return j;
+}
+
+// Adds how the wrenches on both bodies change with the motion of both, from how the one on A at the
+// site changes with that of A against B there.
+void add_between(const Mat6& at_site, const Mat6 (&motion)[2], Mat12& out) {
+  for (const int row : {0, 1}) {
+    for (const int column : {0, 1}) {
+      const Mat6 change = motion[row].transpose() * (at_site * motion[column]);
+      if (row == column) {
+        out.block<6, 6>(6 * row, 6 * column) += change;
+      } else {
+        out.block<6, 6>(6 * row, 6 * column) -= change;
+      }
+    }
+  }
 }
 
 // The wrench of a site turns with the bodies, with the mean of both, and its point moves with A.
@@ -97,20 +110,22 @@ void add_site(const ContactModel& model, ContactReport& report, std::size_t i, M
   const Vec3 n = site.normal;
   const Vec3 from_A = site.metrics.centroid - report.p_WA,
              from_B = site.metrics.centroid - report.p_WB;
-  const Mat6x12 motion = relative_motion(from_A, from_B);
-  Column6 push;
-  push << Vec3::Zero(), n;
+  const Mat6 motion[2] = {motion_at(from_A), motion_at(from_B)};
   // How the normal force itself changes, and with it friction.
-  const Row12 force_by_motion = -push.transpose() * tangent.stiffness_W() * motion;
-  const Row12 force_by_speed = -push.transpose() * tangent.damping_W() * motion;
-  Mat6x12 x = -tangent.stiffness_W() * motion + friction.by_force * force_by_motion;
-  Mat6x12 v = -tangent.damping_W() * motion + friction.by_force * force_by_speed;
-  v += friction.by_slip * motion.bottomRows<3>() +
-       friction.by_spin * (n.transpose() * motion.topRows<3>());
+  const auto with_friction = [&](const Mat6& tangent_W) {
+    Mat6 out = -tangent_W;
+    for (int k = 0; k < 6; ++k) {
+      const double by_force = n.dot(Vec3(tangent_W.col(k).tail<3>()));
+      out.col(k) -= friction.by_force * by_force;
+    }
+    return out;
+  };
   // The velocity at the centroid changes too where a spinning body is turned or moved: left out,
   // as is the motion of the centroid in the bodies.
-  by_motion += motion.transpose() * x;
-  by_speed += motion.transpose() * v;
+  add_between(with_friction(tangent.stiffness_W()), motion, by_motion);
+  Mat6 at_speed = with_friction(tangent.damping_W());
+  at_speed += friction.by_speed;
+  add_between(at_speed, motion, by_speed);
   add_turning(site, from_A, from_B, by_motion);
 }
 

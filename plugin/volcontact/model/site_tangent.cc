@@ -19,15 +19,19 @@ Mat3 mean_square(const Vec2& mean, const Mat2& spread) {
   return m;
 }
 
+// Of the rows and columns along n, about t_1, about t_2, and of friction: along t_1 and t_2, about
+// n.
 Mat6 in_world(const Mat3& axes, const Mat3& normal, double along, double about) {
-  const auto t = axes.leftCols<2>();
-  const Vec3 n = axes.col(2);
+  Mat3 turn = Mat3::Zero(), both = Mat3::Zero();
+  turn << normal(1, 1), normal(1, 2), 0.0, normal(2, 1), normal(2, 2), 0.0, 0.0, 0.0, about;
+  both.col(2) << normal(1, 0), normal(2, 0), 0.0;
+  const Mat3 push = Vec3(along, along, normal(0, 0)).asDiagonal();
+  const Mat3 to_site = axes.transpose();
   Mat6 m;
-  m.topLeftCorner<3, 3>() =
-      t * normal.bottomRightCorner<2, 2>() * t.transpose() + about * n * n.transpose();
-  m.topRightCorner<3, 3>() = t * normal.bottomLeftCorner<2, 1>() * n.transpose();
+  m.topLeftCorner<3, 3>() = axes * turn * to_site;
+  m.topRightCorner<3, 3>() = axes * both * to_site;
   m.bottomLeftCorner<3, 3>() = m.topRightCorner<3, 3>().transpose();
-  m.bottomRightCorner<3, 3>() = normal(0, 0) * n * n.transpose() + along * t * t.transpose();
+  m.bottomRightCorner<3, 3>() = axes * push * to_site;
   return m;
 }
 
@@ -37,13 +41,15 @@ PatchMoments patch_moments(const VolumeMetrics& metrics_W, const Mat3& axes) noe
   PatchMoments patch;
   patch.area = metrics_W.area_vector.norm();
   if (!(patch.area > 0.0) || !(metrics_W.volume > 0.0)) return patch;
-  const auto t = axes.leftCols<2>();
+  const Mat3 to_site = axes.transpose();
   const Vec3 n = axes.col(2);
   // T about the centroid, per area: (r x n) of the patch's centre r, turned round.
   const Vec3 turned =
       (metrics_W.centroid.cross(metrics_W.area_vector) - metrics_W.area_moment) / patch.area;
-  patch.offset = t.transpose() * n.cross(turned);
-  patch.weighed = t.transpose() * metrics_W.second_moment() * t / metrics_W.volume;
+  const Vec3 offset = to_site * n.cross(turned);
+  const Mat3 weighed = to_site * metrics_W.second_moment() * axes;
+  patch.offset = offset.head<2>();
+  patch.weighed = weighed.topLeftCorner<2, 2>() / metrics_W.volume;
 
   // About the patch's centre the volume and the patch have the same second moments where the depth
   // is linear. A smooth body pushed in has those of a paraboloid, 2/3 of an ellipse's; which of the

@@ -2,26 +2,14 @@
 #include "volcontact/step/contact_equations.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "volcontact/base/cholesky.h"
 #include "volcontact/base/sizes.h"
 
 namespace volcontact {
 namespace {
 
 using Vector = Eigen::Map<Eigen::VectorXd>;
-
-// The lower triangular L of L L', of a matrix that may be semidefinite.
-Mat3 root_of(Mat3 rest) {
-  Mat3 out = Mat3::Zero();
-  for (int k = 0; k < 3; ++k) {
-    if (!(rest(k, k) > 0.0)) continue;
-    out.col(k) = rest.col(k) / std::sqrt(rest(k, k));
-    out.col(k).head(k).setZero();
-    rest -= out.col(k) * out.col(k).transpose();
-  }
-  return out;
-}
 
 }  // namespace
 
@@ -61,7 +49,7 @@ void ContactEquations::factor(const ContactSpace& space, double step, ByForces<K
     const Slope& slope = slopes[size(place)];
     if (slope.is_zero()) continue;
     out.active.push_back(place);
-    out.roots[size(place)] = {root_of(slope.normal), slope.friction.cwiseSqrt()};
+    out.roots[size(place)] = {cholesky(slope.normal), slope.friction.cwiseSqrt()};
   }
   const bool is_symmetric = space.is_symmetric();
   const int count = static_cast<int>(out.active.size());

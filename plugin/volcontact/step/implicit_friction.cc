@@ -109,7 +109,7 @@ void ImplicitStep::set_friction_of(Site& site, std::size_t i, double step) {
   const double normal_force = this->normal_force(i);
   const Vec3 slip = slip_of(site, velocity_, i);
   const Mat3& axes = site.tangent.axes;
-  const Vec3 along = axes.leftCols<2>() * slip.head<2>();
+  const Vec3 along = slip[0] * axes.col(0) + slip[1] * axes.col(1);
   const double spin = velocity_[i * size(kRows) + 5];
   if (!site.laws.friction_keeps()) {
     set_damper(site, normal_force, along, spin, slip.norm());
@@ -160,7 +160,8 @@ ImplicitStep::Load ImplicitStep::load(std::size_t i) const {
   if (!site.laws.has_friction()) return {};
   const double* f = &force_[i * size(kRows)];
   const Vec3 slip = slip_of(site, velocity_, i);
-  const Vec3 along = site.tangent.axes.leftCols<2>() * slip.head<2>();
+  const Mat3& axes = site.tangent.axes;
+  const Vec3 along = slip[0] * axes.col(0) + slip[1] * axes.col(1);
   const FrictionSlope slope =
       site.laws.friction_slope(normal_force(i), along, velocity_[i * size(kRows) + 5]);
   return {slope.strength, slope.viscous, slope.strength + slope.viscous * slip.norm(),

@@ -38,7 +38,7 @@ inline SphericalCap spherical_cap(double radius, double h) {
 /// Inertia about the centroid of a body of revolution about the unit vector `axis`, from its second
 /// moments along and across the axis.
 inline Mat3 inertia_of_revolution(double axial, double lateral, const Vec3& axis) {
-  return (axial + lateral) * Mat3::Identity() + (lateral - axial) * axis * axis.transpose();
+  return (axial + lateral) * Mat3::Identity() + outer((lateral - axial) * axis, axis);
 }
 
 }  // namespace volcontact

@@ -45,7 +45,7 @@ double add_parts(const SurfaceView& solid, const Pose& X_AM, const SurfaceView& 
     const Vec3 first = own.volume * own.centroid;
     sum.volume += sign * own.volume;
     sum.first += sign * first;
-    sum.second += sign * (own.second_moment() + first * own.centroid.transpose());
+    sum.second += sign * (own.second_moment() + outer(first, own.centroid));
     surface += around * part.surface_area;
   }
   return surface;
@@ -63,7 +63,7 @@ VolumeMetrics contained_parts(const SurfaceView& a, const SurfaceView& b, const 
   m.volume = sum.volume;
   if (sum.volume != 0.0) {
     m.centroid = sum.first / sum.volume;
-    const Mat3 second = sum.second - m.centroid * sum.first.transpose();
+    const Mat3 second = sum.second - outer(m.centroid, sum.first);
     m.inertia = second.trace() * Mat3::Identity() - second;
     m.status = Status::kContained;
   }

@@ -49,7 +49,7 @@ void add_column(double x, double y, double area, std::vector<ColumnHit>& hits, S
     const Vec3 c(x, y, middle);
     m.volume += volume;
     m.first += volume * c;
-    m.second += volume * (c * c.transpose());
+    m.second += volume * outer(c, c);
     m.second(2, 2) += volume * length * length / 12.0;
     sums.energy += 0.5 * volume * length;
     sums.depth = std::max(sums.depth, length);

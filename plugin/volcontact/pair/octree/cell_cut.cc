@@ -56,9 +56,7 @@ void CellCut::add_polytope(CellSums& sums) const {
       const Vec3 sum = p + q + r;
       sums.volume += six / 6.0;
       sums.first += six / 24.0 * sum;
-      sums.second +=
-          six / 120.0 *
-          (sum * sum.transpose() + p * p.transpose() + q * q.transpose() + r * r.transpose());
+      sums.second += six / 120.0 * (outer(sum, sum) + outer(p, p) + outer(q, q) + outer(r, r));
     }
   }
 }
@@ -98,7 +96,7 @@ void CellCut::estimate(Cell& cell) {
     // Samples that all but cancel say nothing about where the volume is: it is at the face.
     const Vec3 at = tangents_[i].touch.cwiseMax(-half_).cwiseMin(half_);
     sums.first -= volume * at;
-    sums.second -= volume * at * at.transpose();
+    sums.second -= outer(volume * at, at);
   }
   const double inside = std::clamp(sums.volume, cell.low, cell.high);
   if (inside != sums.volume) {
@@ -182,9 +180,9 @@ void CellCut::place(Cell& cell) const {
       spread.minCoeff() >= -slack && (spread - 0.25 * size.cwiseAbs2()).maxCoeff() <= slack;
   if ((at - middle).norm() <= kPlaceSlack * size.norm() && spreads) return;
   if (spreads) {
-    sums.second += sums.volume * (at * at.transpose() - middle * middle.transpose());
+    sums.second += sums.volume * (outer(at, at) - outer(middle, middle));
   } else {
-    sums.second = sums.volume * at * at.transpose();
+    sums.second = outer(sums.volume * at, at);
   }
   sums.first = sums.volume * at;
 }

@@ -148,7 +148,7 @@ void CellCut::sample_point(const Normal& normal, const Vec3& x, double weight) {
   const double volume = weight * foot.depth;
   gap_sample_.volume += volume;
   gap_sample_.first += volume * middle;
-  gap_sample_.second += volume * middle * middle.transpose();
+  gap_sample_.second += outer(volume * middle, middle);
 }
 
 // How far x can go in the tangent plane along the unit vector `outward` before it leaves the cell

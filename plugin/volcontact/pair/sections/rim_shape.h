@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "volcontact/base/cholesky.h"
 #include "volcontact/pair/sections/section.h"
 
 namespace volcontact {
@@ -20,19 +20,18 @@ struct RimShape {
   /// tell.
   bool round_off(SectionFrame& frame) const {
     double area = 0.0;
-    Eigen::Vector2d first = Eigen::Vector2d::Zero();
-    Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
+    Vec3 first = Vec3::Zero();
+    Mat3 second = Mat3::Zero();
     for (int i = 0; i < kLanes; ++i) {
-      const Eigen::Vector2d direction(u[i], v[i]);
+      const Vec3 direction(u[i], v[i], 0.0);
       const double r2 = rho[i] * rho[i];
       area += r2 / 2.0;
       first += r2 * rho[i] / 3.0 * direction;
-      second += r2 * r2 / 4.0 * direction * direction.transpose();
+      second += outer(r2 * r2 / 4.0 * direction, direction);
     }
-    const Eigen::Vector2d shift = first / area;
-    const Eigen::LLT<Eigen::Matrix2d> factor(4.0 * (second / area - shift * shift.transpose()));
-    if (factor.info() != Eigen::Success) return false;
-    const Eigen::Matrix2d axes = factor.matrixL();
+    const Vec3 shift = first / area;
+    const Mat3 axes = cholesky(4.0 * (second / area - outer(shift, shift)));
+    if (!(axes(0, 0) > 0.0) || !(axes(1, 1) > 0.0)) return false;
     (frame.central ? frame.t : frame.center) += frame.u * shift.x() + frame.v * shift.y();
     frame.u = frame.u * axes(0, 0) + frame.v * axes(1, 0);
     frame.v *= axes(1, 1);

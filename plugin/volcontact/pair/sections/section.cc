@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/sections/section.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -28,10 +27,13 @@ namespace volcontact {
 
 SectionFrame round_frame(const Vec3& center, const Mat3& spread, const Vec3& t) {
   const Mat3 basis = basis_with_z(t);
-  const Mat3 seen = basis.transpose() * spread;
-  const Eigen::Matrix2d square = (seen * seen.transpose()).topLeftCorner<2, 2>();
-  const Eigen::Matrix2d l = Eigen::LLT<Eigen::Matrix2d>(square).matrixL();
-  return {center, basis.col(0) * l(0, 0) + basis.col(1) * l(1, 0), basis.col(1) * l(1, 1), t};
+  // How the spread is seen along t, as a triangle: the rest of y is taken before it is squared, for
+  // of a thin one the difference of squares is nothing but rounding.
+  const Mat3 seen = spread.transpose() * basis;
+  const Vec3 x = seen.col(0), y = seen.col(1);
+  const double across = x.norm(), along = across > 0.0 ? x.dot(y) / across : 0.0;
+  const Vec3 rest = across > 0.0 ? Vec3(y - along / across * x) : y;
+  return {center, basis.col(0) * across + basis.col(1) * along, basis.col(1) * rest.norm(), t};
 }
 
 void Sections::clear(SectionSums& sums, std::vector<SectionSums::OnPlane>& planes) const {

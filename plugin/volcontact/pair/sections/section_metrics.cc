@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/sections/section_metrics.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace volcontact {
 namespace {
 
@@ -84,14 +87,12 @@ double share_of_b(const Surface& a, const Surface& b, const FaceSet& faces) {
 MomentSum moments_of(const Sections& sections, const FaceSet& faces, const SectionFrame& frame) {
   const double* m = sections.total().moments;
   const Vec3 &u = frame.u, &v = frame.v, &t = frame.t;
-  const auto both = [](const Vec3& x, const Vec3& y) -> Mat3 {
-    return x * y.transpose() + y * x.transpose();
-  };
+  const auto both = [](const Vec3& x, const Vec3& y) -> Mat3 { return outer(x, y) + outer(y, x); };
   MomentSum sum;
   sum.volume = m[0];
   sum.first = u * m[1] + v * m[2] + t * m[3];
-  sum.second = m[4] * u * u.transpose() + m[5] * both(u, v) + m[6] * v * v.transpose() +
-               m[7] * both(u, t) + m[8] * both(v, t) + m[9] * t * t.transpose();
+  sum.second = outer(m[4] * u, u) + m[5] * both(u, v) + outer(m[6] * v, v) + m[7] * both(u, t) +
+               m[8] * both(v, t) + outer(m[9] * t, t);
   const Surface surface[2] = {surface_of(sections, faces, frame, Owner::kA),
                               surface_of(sections, faces, frame, Owner::kB)};
   const double share_b = share_of_b(surface[0], surface[1], faces);
@@ -103,20 +104,23 @@ MomentSum moments_of(const Sections& sections, const FaceSet& faces, const Secti
 }
 
 void SurfaceFlux::add_round(const SectionRound& r, const double* x) {
-  Mat3 gradient, sums;  // of 1, x, y, times the same
-  gradient << Vec3(r.g), Vec3(r.g_u), Vec3(r.g_v);
-  sums << x[0], x[1], x[2], x[1], x[4], x[5], x[2], x[5], x[6];
-  flux_ += sums * (gradient.transpose() * axes_) +
-           Vec3(x[3], x[7], x[8]) * (Vec3(r.g_t).transpose() * axes_);
+  const Vec3 g(r.g), g_u(r.g_u), g_v(r.g_v), g_t(r.g_t);
+  for (int k = 0; k < 2; ++k) {
+    const Vec3& axis = axes_[k];
+    flux_[k] += Vec3(x[0], x[1], x[2]) * g.dot(axis) + Vec3(x[1], x[4], x[5]) * g_u.dot(axis) +
+                Vec3(x[2], x[5], x[6]) * g_v.dot(axis) + Vec3(x[3], x[7], x[8]) * g_t.dot(axis);
+  }
 }
 
-double SurfaceFlux::open(double volume, const Eigen::Vector2d& middle, double size) const {
-  Axes rest = flux_;
-  rest.bottomRows<2>() -= middle * flux_.row(0);
-  rest.row(0) *= size;
-  rest(1, 0) -= volume;
-  rest(2, 1) -= volume;
-  return rest.cwiseAbs().maxCoeff();
+double SurfaceFlux::open(double volume, double middle_x, double middle_y, double size) const {
+  double most = 0.0;
+  for (int k = 0; k < 2; ++k) {
+    const double one = flux_[k][0];
+    const double along_x = flux_[k][1] - middle_x * one - (k == 0 ? volume : 0.0);
+    const double along_y = flux_[k][2] - middle_y * one - (k == 1 ? volume : 0.0);
+    most = std::max({most, std::abs(size * one), std::abs(along_x), std::abs(along_y)});
+  }
+  return most;
 }
 
 namespace {
@@ -124,7 +128,7 @@ namespace {
 // Through the faces, and through what else there is.
 SurfaceFlux flux_of(const Sections& sections, const FaceSet& faces, const SectionFrame& frame,
                     const SurfaceFlux::Axes& other) {
-  SurfaceFlux flux((SurfaceFlux::Axes() << frame.u, frame.v).finished());
+  SurfaceFlux flux({frame.u, frame.v});
   for (int i = 0; i < sections.faces().active_planes; ++i) {
     flux.add_plane(faces.planes[sections.faces().planes[i].face].normal,
                    sections.total().planes[i].sums);
@@ -139,7 +143,7 @@ SurfaceFlux flux_of(const Sections& sections, const FaceSet& faces, const Sectio
 }  // namespace
 
 double openness(const Sections& sections, const FaceSet& faces, const SectionFrame& frame) {
-  return flux_of(sections, faces, frame, SurfaceFlux::Axes::Zero())
+  return flux_of(sections, faces, frame, {Vec3::Zero(), Vec3::Zero()})
       .open(sections.total().moments[0]);
 }
 
@@ -152,8 +156,7 @@ double bore_openness(const Sections& sections, const FaceSet& faces, const Secti
   if (!frame.central) {
     // The wall is at rho = 1, where n dS is -(u cos + v sin) dw / |u|^2.
     const SectionSums::OnBore& w = sections.total().bore;
-    SurfaceFlux::Axes wall;
-    wall << -w.x, -w.y, -w.xx, -w.xy, -w.xy, -w.yy;
+    const SurfaceFlux::Axes wall = {Vec3(-w.x, -w.xx, -w.xy), Vec3(-w.y, -w.xy, -w.yy)};
     gap = std::max(gap, flux_of(sections, faces, frame, wall).open(volume) / frame.u.norm());
   }
   return gap / area * volume;

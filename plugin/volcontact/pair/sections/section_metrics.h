@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+
 #include "volcontact/metrics/volume_metrics.h"
 #include "volcontact/pair/sections/section.h"
 #include "volcontact/pair/sections/section_region.h"
@@ -17,23 +19,27 @@ MomentSum moments_of(const Sections& sections, const FaceSet& faces, const Secti
 /// surface is closed only where no change of face was overlooked, in a half-plane or between two.
 class SurfaceFlux {
  public:
-  using Axes = Eigen::Matrix<double, 3, 2>;
+  using Axes = std::array<Vec3, 2>;
   explicit SurfaceFlux(const Axes& axes) : axes_(axes) {}
 
   /// `sums`: of 1, x and y over the face.
   void add_plane(const Vec3& normal, const double* sums) {
-    flux_ += Vec3(sums[0], sums[1], sums[2]) * (normal.transpose() * axes_);
+    for (int k = 0; k < 2; ++k) {
+      flux_[k] += Vec3(sums[0], sums[1], sums[2]) * normal.dot(axes_[k]);
+    }
   }
   void add_round(const SectionRound& round, const double* sums);
-  void add(const Axes& flux) { flux_ += flux; }  ///< rows: of 1, x, y; columns: along e, f
+  /// Along e and along f, each of 1, x and y.
+  void add(const Axes& flux) {
+    for (int k = 0; k < 2; ++k) flux_[k] += flux[k];
+  }
 
-  /// How far from closed the surface is, as an error of V, which is `volume`. Seen from `middle`,
+  /// How far from closed the surface is, as an error of V, which is `volume`. Seen from a middle,
   /// of an overlap about `size` long in x and y.
-  double open(double volume, const Eigen::Vector2d& middle = Eigen::Vector2d::Zero(),
-              double size = 1.0) const;
+  double open(double volume, double middle_x = 0.0, double middle_y = 0.0, double size = 1.0) const;
 
  private:
-  Axes axes_, flux_ = Axes::Zero();
+  Axes axes_, flux_ = {Vec3::Zero(), Vec3::Zero()};
 };
 
 /// The same of a set of sections without a bore.

@@ -455,7 +455,7 @@ class SweepRun {
   bool has_gap(const ScratchRegion& region) const {
     const Vec3 gap = region.flux[0].normal + region.flux[1].normal;
     const Mat3 moment =
-        region.flux[0].moment + region.flux[1].moment - region.box.center() * gap.transpose();
+        region.flux[0].moment + region.flux[1].moment - outer(region.box.center(), gap);
     const double volume = moment.trace() / 3.0;
     const double open = (moment - volume * Mat3::Identity()).cwiseAbs().maxCoeff();
     return open + gap.norm() * 0.5 * region.box.diagonal().norm() + region.error > kWorst * volume;

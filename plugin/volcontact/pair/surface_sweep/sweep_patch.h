@@ -17,9 +17,9 @@ struct SweepFlux {
   void add(const Vec3& x, const Vec3& n) {
     const double out = x.dot(n);
     normal += n;
-    moment += x * n.transpose();
+    moment += outer(x, n);
     first += 0.25 * out * x;
-    second += 0.2 * out * (x * x.transpose());
+    second += 0.2 * out * outer(x, x);
     area += n.norm();
   }
   void operator+=(const SweepFlux& other) {

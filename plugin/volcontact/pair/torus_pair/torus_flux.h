@@ -20,7 +20,7 @@ struct TorusFlux {
     const double flux = x.dot(n_area);
     volume += x.cwiseProduct(n_area);
     first += flux * x;
-    second += (flux * x) * x.transpose();
+    second += outer(flux * x, x);
     area += n_area.norm();
     vector += n_area;
     moment += x.cross(n_area);

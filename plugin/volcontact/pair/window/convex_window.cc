@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/window/convex_window.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "volcontact/base/cholesky.h"
 #include "volcontact/pair/convex/gjk.h"
 
 namespace volcontact {
@@ -462,8 +462,8 @@ class WindowSearch {
   }
 
   // Whether an ellipsoid of these second moments is about a ball.
-  static bool is_even(const Mat3& second, const Eigen::LLT<Mat3>& factor) {
-    const double mean = std::cbrt(factor.matrixLLT().diagonal().prod());
+  static bool is_even(const Mat3& second, const Mat3& root) {
+    const double mean = std::cbrt(root.diagonal().prod());
     return second.trace() < 3.0 * kEven * mean * mean;
   }
 
@@ -487,7 +487,7 @@ class WindowSearch {
       Mat3 second;
       second << s.second[0], s.second[1], s.second[3], s.second[1], s.second[2], s.second[4],
           s.second[3], s.second[4], s.second[5];
-      second = 3.0 / s.total * second - 5.0 * shift * shift.transpose();
+      second = 3.0 / s.total * second - outer(5.0 * shift, shift);
       const double largest = second.diagonal().maxCoeff();
       if (!(largest > 0.0)) return;
       second += kThinnest * largest * Mat3::Identity();
@@ -499,10 +499,10 @@ class WindowSearch {
       }
       window.area = scale * (s.surface[0][3] + s.surface[1][3]);
       c = step_inside(c, spread * shift);
-      const Eigen::LLT<Mat3> factor(second);
-      spread = spread * Mat3(factor.matrixL());
+      const Mat3 root = cholesky(second);
+      spread = spread * root;
       // No chord may come near the axis of a layer that is seen far too high, and none is long.
-      const bool even = !layer || is_even(second, factor);
+      const bool even = !layer || is_even(second, root);
       if (step > 0 && even && s.longest < kRound * s.shortest) break;
     }
     if (!(window.volume > 0.0) || !inside(c)) return;

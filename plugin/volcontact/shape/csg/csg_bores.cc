@@ -16,7 +16,7 @@ std::optional<Bore> as_tube(const Quadric& q) {
   if (!(along.diagonal().maxCoeff(&largest) > 0.3)) return std::nullopt;
   Bore bore;
   bore.axis = along.col(largest).normalized();
-  if (!((along - bore.axis * bore.axis.transpose()).norm() < kRoundTube)) return std::nullopt;
+  if (!((along - outer(bore.axis, bore.axis)).norm() < kRoundTube)) return std::nullopt;
   bore.center = -(q.linear - bore.axis * bore.axis.dot(q.linear)) / h;
   const double square_radius = -2.0 * (q.constant + 0.5 * q.linear.dot(bore.center)) / h;
   if (!(square_radius > 0.0)) return std::nullopt;

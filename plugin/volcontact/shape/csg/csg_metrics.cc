@@ -17,7 +17,7 @@ MomentSum moments_of(const SimpleShape& shape, const Pose& X_SM, double sign) {
   MomentSum sum;
   sum.volume = sign * m.volume;
   sum.first = sign * m.volume * m.centroid;
-  sum.second = sign * (m.second_moment() + m.volume * m.centroid * m.centroid.transpose());
+  sum.second = sign * (m.second_moment() + outer(m.volume * m.centroid, m.centroid));
   return sum;
 }
 

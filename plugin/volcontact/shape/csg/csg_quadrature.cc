@@ -331,8 +331,7 @@ VolumeMetrics metrics_by_lattice(const Csg& solid, double work) {
         const Vec3 x = p + 0.5 * (a + b) * d;
         sum.volume += area * length;
         sum.first += area * length * x;
-        sum.second +=
-            area * length * (x * x.transpose() + length * length / 12.0 * (d * d.transpose()));
+        sum.second += area * length * (outer(x, x) + length * length / 12.0 * outer(d, d));
       }
     }
     squares += sum.volume * sum.volume;

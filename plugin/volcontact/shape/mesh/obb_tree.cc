@@ -71,13 +71,12 @@ class TreeBuilder {
       const Vec3 sum = a + b + c;
       weight += area;
       mean += area / 3.0 * sum;
-      second += area / 12.0 *
-                (sum * sum.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
+      second += area / 12.0 * (outer(sum, sum) + outer(a, a) + outer(b, b) + outer(c, c));
     }
     Obb upright = around(Mat3::Identity(), first, last, stride);
     if (!(weight > 0.0)) return upright;
     mean /= weight;
-    const Mat3 covariance = second / weight - mean * mean.transpose();
+    const Mat3 covariance = second / weight - outer(mean, mean);
     const Mat3 axes = symmetric_eigen(covariance).vectors;
     const Obb turned = around(axes.transpose(), first, last, stride);
     return upright.half.prod() < 0.9 * turned.half.prod() ? upright : turned;

@@ -20,8 +20,7 @@ struct TetrahedronSum {
     const Vec3 s = a + b + c;
     sum.volume += det / 6.0;
     sum.first += det / 24.0 * s;
-    sum.second += det / 120.0 *
-                  (s * s.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
+    sum.second += det / 120.0 * (outer(s, s) + outer(a, a) + outer(b, b) + outer(c, c));
     surface_area += 0.5 * (b - a).cross(c - a).norm();
   }
   VolumeMetrics metrics() const {

@@ -302,7 +302,7 @@ class RoundColumns {
     for (const RimExcess& excess : s_.excess) {
       sum.volume -= excess.volume;
       sum.first -= excess.volume * excess.middle;
-      sum.second -= excess.volume * excess.middle * excess.middle.transpose();
+      sum.second -= outer(excess.volume * excess.middle, excess.middle);
       sum.energy -= excess.volume * excess.length;
       doubt += excess.doubt;
     }
@@ -407,7 +407,7 @@ class RoundColumns {
     const Vec3 first = copies * own_b.volume * own_b.centroid;
     all.moments.volume = copies * own_b.volume;
     all.moments.first = first;
-    all.moments.second = copies * own_b.second_moment() + first * own_b.centroid.transpose();
+    all.moments.second = copies * own_b.second_moment() + outer(first, own_b.centroid);
     for (const Patch& patch : s_.patches) {
       all.moments += patch.moments;
       all.volume_error += patch.volume_error;

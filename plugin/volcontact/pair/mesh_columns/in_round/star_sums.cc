@@ -50,9 +50,9 @@ class Star {
                  k5 = 0.2 * (rho2 * rho2 * rho - r2 * r2 * r);
     sum.volume = solid_angle * k3;
     sum.first = solid_angle * (k3 * center_ + k4 * u);
-    const Mat3 mixed = center_ * u.transpose();
-    sum.second = solid_angle * (k3 * center_ * center_.transpose() +
-                                k4 * (mixed + mixed.transpose()) + k5 * u * u.transpose());
+    const Mat3 mixed = outer(center_, u);
+    sum.second = solid_angle * (outer(k3 * center_, center_) + k4 * (mixed + mixed.transpose()) +
+                                outer(k5 * u, u));
     const double facing = u.dot(normal);
     if (facing > 0.0) sum.counter_area = solid_angle * rho2 / facing;
     const double area = n_dA.norm();

@@ -33,7 +33,7 @@ MomentSum sum_of(const VolumeMetrics& m, double sign) {
   const Vec3 first = m.volume * m.centroid;
   sum.volume = sign * m.volume;
   sum.first = sign * first;
-  sum.second = sign * (m.second_moment() + first * m.centroid.transpose());
+  sum.second = sign * (m.second_moment() + outer(first, m.centroid));
   sum.area_vector = sign * m.area_vector;
   sum.area_moment = sign * m.area_moment;
   sum.area = sign * m.area;

@@ -396,7 +396,9 @@ class BoreRun {
     }
   };
 
-  void integrate_arc(const Arc& arc, double x_from, double x_to, int depth) {
+  // One function, not a copy for each depth inside the other.
+  [[gnu::noinline, gnu::noclone]] void integrate_arc(const Arc& arc, double x_from, double x_to,
+                                                     int depth) {
     double u[kLanes], v[kLanes], weight[kLanes], section[kLanes];
     for (int i = 0; i < kLanes; ++i) {
       double angle, speed;

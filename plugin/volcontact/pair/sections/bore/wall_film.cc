@@ -258,7 +258,7 @@ class WallFilm {
     MomentSum& m = sum.moments;
     m.volume += dv;
     m.first += dv * x;
-    m.second += dv * x * x.transpose();
+    m.second += outer(dv * x, x);
     // Of A, outward: the wall looks to the axis.
     const double sign = s_.owner == Owner::kA ? -1.0 : 1.0;
     const Vec3 n_dA = sign * weight * r * (e - bore_.slope * bore_.axis);

@@ -208,11 +208,8 @@ class TorusSectionsRun {
     const TorusSums& sums = s_.sections.total();
     const SectionFaces& sections = s_.sections.faces().sections;
     const double* m = sums.across_rho;
-    SurfaceFlux::Axes axes, of_torus;
-    axes << Vec3::UnitX(), Vec3::UnitY();
-    of_torus << sums.vector[0], sums.vector[1], m[0], m[1], m[1], m[2];
-    SurfaceFlux flux(axes);
-    flux.add(of_torus);
+    SurfaceFlux flux({Vec3::UnitX(), Vec3::UnitY()});
+    flux.add({Vec3(sums.vector[0], m[0], m[1]), Vec3(sums.vector[1], m[1], m[2])});
     for (int i = 0; i < sections.active_planes; ++i) {
       flux.add_plane(s_.faces.planes[s_.sections.plane_face(i)].normal, sums.planes[i].sums);
     }
@@ -223,7 +220,7 @@ class TorusSectionsRun {
     if (!(v[0] > 0.0)) return 0.0;
     const Vec3 middle = Vec3(v[1], v[2], v[3]) / v[0];
     const double spread = (v[4] + v[6] + v[9]) / v[0] - middle.squaredNorm();
-    return flux.open(v[0], middle.head<2>(), std::sqrt(std::max(spread, 0.0)));
+    return flux.open(v[0], middle.x(), middle.y(), std::sqrt(std::max(spread, 0.0)));
   }
 
   // A range without breaks, where openness() can tell whether one was overlooked. At its ends
@@ -271,7 +268,9 @@ class TorusSectionsRun {
     return false;
   }
 
-  void integrate_arc(const Arc& arc, double x_from, double x_to, int divisions) {
+  // One function, not a copy for each depth inside the other.
+  [[gnu::noinline, gnu::noclone]] void integrate_arc(const Arc& arc, double x_from, double x_to,
+                                                     int divisions) {
     double u[kLanes], v[kLanes], weight[kLanes], section[kLanes];
     for (int i = 0; i < kLanes; ++i) {
       double angle, speed;
