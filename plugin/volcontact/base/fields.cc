@@ -13,6 +13,13 @@ std::string out_of_range_message(std::string_view component, std::string_view fi
   return message.str();
 }
 
+std::string unknown_field_message(std::string_view component, std::string_view field,
+                                  const std::vector<std::string>& fields) {
+  std::ostringstream message;
+  message << component << " has no field '" << field << "'" << did_you_mean(field, fields);
+  return message.str();
+}
+
 std::string wrong_size_message(std::string_view component, std::string_view field, int wanted,
                                std::size_t got) {
   std::ostringstream message;

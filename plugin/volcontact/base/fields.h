@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -96,6 +97,9 @@ using ChoiceValues = std::map<std::string, std::string, std::less<>>;
 /// "hunt_crossley: stiffness = -1 [N/m^3] is out of range: must be > 0".
 std::string out_of_range_message(std::string_view component, std::string_view field,
                                  std::string_view unit, double value, const Range& range);
+/// "box has no field 'half_size' (did you mean 'half_sizes'?)".
+std::string unknown_field_message(std::string_view component, std::string_view field,
+                                  const std::vector<std::string>& fields);
 /// "box: half_sizes takes 3 numbers, got 2".
 std::string wrong_size_message(std::string_view component, std::string_view field, int wanted,
                                std::size_t got);
@@ -143,10 +147,14 @@ typename Component::Params params_from(const FieldValues& values) {
   typename Component::Params params{};
   for (const auto& [name, numbers] : values) {
     const auto* field = find_field<Component>(name);
-    require(field != nullptr, std::string(Component::kName) + " has no field '" + name + "'" +
-                                  did_you_mean(name, field_names<Component>()));
-    require(static_cast<int>(numbers.size()) == field->size(),
-            wrong_size_message(Component::kName, name, field->size(), numbers.size()));
+    if (field == nullptr) {
+      throw std::invalid_argument(
+          unknown_field_message(Component::kName, name, field_names<Component>()));
+    }
+    if (static_cast<int>(numbers.size()) != field->size()) {
+      throw std::invalid_argument(
+          wrong_size_message(Component::kName, name, field->size(), numbers.size()));
+    }
     for (int i = 0; i < field->size(); ++i) field->set(params, i, numbers[i]);
   }
   return validated<Component>(params);

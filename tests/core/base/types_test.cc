@@ -58,6 +58,11 @@ TEST(Skew, IsTheCrossProduct) {
   EXPECT_EQ(skew(a) * b, a.cross(b));
 }
 
+TEST(Outer, IsTheColumnTimesTheRow) {
+  const Vec3 a(1, -2, 3), b(0.5, 4, -1);
+  EXPECT_EQ(outer(a, b), Mat3(a * b.transpose()));
+}
+
 TEST(BasisWithZ, IsOrthonormalAndRightHandedForEveryDirection) {
   test::Random random(4);
   for (int i = 0; i < 200; ++i) {

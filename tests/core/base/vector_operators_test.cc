@@ -73,6 +73,16 @@ TEST(VectorOperators, ProductsStayEigens) {
   }
 }
 
+TEST(VectorOperators, SumsOfMatricesAreMatricesWithTheBitsOfEigen) {
+  test::Random random(3);
+  for (int i = 0; i < 50; ++i) {
+    const Mat3 m = matrix(random), n = matrix(random);
+    static_assert(std::is_same_v<decltype(m + n), Mat3> && std::is_same_v<decltype(m - n), Mat3>);
+    EXPECT_EQ(m + n, Mat3(m.operator+(n)));
+    EXPECT_EQ(m - n, Mat3(m.operator-(n)));
+  }
+}
+
 TEST(VectorOperators, AVectorMayBeAssignedToItself) {
   const Mat3 quarter = Mat3(Eigen::AngleAxisd(0.5 * kPi, Vec3::UnitZ())).array().round();
   Vec3 v(1, 2, 3);
