@@ -46,7 +46,6 @@ def main() -> int:
     """Builds and tries; 0 when the wheels work."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "wheels-aarch64")
-    parser.add_argument("--eigen", type=Path, help="folder of Eigen, so that builds share a cache")
     parser.add_argument("--releases", nargs="+", required=True, help="of MuJoCo, in the wheels")
     parser.add_argument("--pythons", nargs="+", type=Path, required=True)
     arguments = parser.parse_args()
@@ -54,7 +53,7 @@ def main() -> int:
     out.mkdir(parents=True, exist_ok=True)
 
     source = native.make_source(out)
-    eigen = native.near(source, arguments.eigen)
+    os.environ["CCACHE_BASEDIR"] = str(source)  # a compiler cache finds what other trees have
     os.environ["CMAKE_TOOLCHAIN_FILE"] = str(TOOLCHAIN)
     os.environ["_PYTHON_HOST_PLATFORM"] = f"linux-{MACHINE}"
     # uv remembers what a Python says of its machine, and would tell every later command.
@@ -65,12 +64,10 @@ def main() -> int:
         tag = native.tag_of(python)
         suffix = f".cpython-{tag.removeprefix('cp')}-{MACHINE}-linux-gnu.so"
         os.environ["SETUPTOOLS_EXT_SUFFIX"] = suffix
-        raw.append(native.make_raw_wheel(out, source, python, eigen))
+        raw.append(native.make_raw_wheel(out, source, python))
     package = native.unpacked(raw[0], out / "unpacked") / "volcontact"
     adaptors = [
-        native.make_adaptor(
-            out, package / "source", release, arguments.pythons, eigen, machine=MACHINE
-        )
+        native.make_adaptor(out, package / "source", release, arguments.pythons, MACHINE)
         for release in arguments.releases
     ]
     shutil.rmtree(out / "dist", ignore_errors=True)

@@ -50,7 +50,6 @@ def main() -> int:
     """Builds and tries; 0 when every wheel works with every MuJoCo it can meet."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "wheels")
-    parser.add_argument("--eigen", type=Path, help="folder of Eigen, so that builds share a cache")
     parser.add_argument("--releases", nargs="+", required=True, help="of MuJoCo, in the wheels")
     parser.add_argument("--other", help="a release that is compiled at first use; none: not tried")
     parser.add_argument("--untried", action="store_true", help="build alone, and keep no record")
@@ -63,11 +62,11 @@ def main() -> int:
     for name, program in (("CC", "cc"), ("CXX", "c++")):
         os.environ.setdefault(name, shutil.which(program) or program)
     source = make_source(out)
-    eigen = near(source, arguments.eigen)
-    raw = [make_raw_wheel(out, source, python, eigen) for python in arguments.pythons]
+    os.environ["CCACHE_BASEDIR"] = str(source)  # a compiler cache finds what other trees have
+    raw = [make_raw_wheel(out, source, python) for python in arguments.pythons]
     package = unpacked(raw[0], out / "unpacked") / "volcontact"
     adaptors = [
-        make_adaptor(out, package / "source", release, arguments.pythons, eigen)
+        make_adaptor(out, package / "source", release, arguments.pythons)
         for release in arguments.releases
     ]
     shutil.rmtree(out / "dist", ignore_errors=True)
@@ -80,7 +79,7 @@ def main() -> int:
         for adaptor in adaptors:
             rows += try_wheel(out, python, wheel, release_of(adaptor))
     if arguments.other:
-        compiler = {"PATH": os.environ["PATH"], "CMAKE_PREFIX_PATH": str(eigen or "")}
+        compiler = {"PATH": os.environ["PATH"]}
         rows += try_wheel(out, arguments.pythons[0], wheels[0], arguments.other, compiler)
     write_table(rows)
     return 0
@@ -114,18 +113,7 @@ def make_source(out: Path) -> Path:
     return source
 
 
-def near(source: Path, eigen: Path | None) -> Path | None:
-    """A link to Eigen where `./run` has it: then a compiler cache finds what other trees have."""
-    if eigen is None:
-        return None
-    link = source / ".venv" / "tools" / "eigen"
-    link.parent.mkdir(parents=True)
-    link.symlink_to(eigen)
-    os.environ["CCACHE_BASEDIR"] = str(source)
-    return link
-
-
-def make_raw_wheel(out: Path, source: Path, python: Path, eigen: Path | None) -> Path:
+def make_raw_wheel(out: Path, source: Path, python: Path) -> Path:
     """The wheel of one Python, without an adaptor."""
     tag = tag_of(python)
     say(f"wheel for {tag}")
@@ -135,8 +123,6 @@ def make_raw_wheel(out: Path, source: Path, python: Path, eigen: Path | None) ->
     command += ["-C", f"build-dir={source / 'build' / tag}"]
     for define in ("VOLCONTACT_MUJOCO=OFF", "VOLCONTACT_WARNINGS_AS_ERRORS=ON"):
         command += ["-C", f"cmake.define.{define}"]
-    if eigen is not None:
-        command += ["-C", f"cmake.define.Eigen3_ROOT={eigen}"]
     run(*command)
     (wheel,) = folder.glob("*.whl")
     return wheel
@@ -156,12 +142,7 @@ def unpacked(wheel: Path, folder: Path) -> Path:
 
 
 def make_adaptor(
-    out: Path,
-    source: Path,
-    release: str,
-    pythons: list[Path],
-    eigen: Path | None,
-    machine: str = "",
+    out: Path, source: Path, release: str, pythons: list[Path], machine: str = ""
 ) -> Path:
     """The adaptor of a release, from the sources in a wheel and the package of that MuJoCo.
 
@@ -173,8 +154,6 @@ def make_adaptor(
     configure = ["cmake", "-G", "Ninja", "-S", source / "adaptor", "-B", tree]
     # The path to libmujoco is the one that an installation has, not the one of this build.
     configure += [f"-DMUJOCO_DIR={folder}", "-DCMAKE_BUILD_WITH_INSTALL_RPATH=ON"]
-    if eigen is not None:
-        configure.append(f"-DEigen3_ROOT={eigen}")
     run(*configure)
     run("cmake", "--build", tree, "--target", "volcontact_mujoco")
     library = tree / "plugin" / LIBRARY.format(version)

@@ -43,7 +43,8 @@ NOT_CODE = re.compile(
 # In a namespace, which is not indented; and anywhere, also as a parameter of a template.
 DECLARED = re.compile(r"^(?:struct|class|enum class|concept|using) ([A-Z]\w+)", re.MULTILINE)
 DECLARED_WITHIN = re.compile(
-    r"\b(?:struct|class|enum|concept|typename|using|auto|int|Solid|namespace)(?:\.\.\.)? ([A-Z]\w+)"
+    r"\b(?:struct|class|enum|concept|typename|using|auto|int|Solid|Vector|namespace)(?:\.\.\.)? "
+    r"([A-Z]\w+)"
 )
 WORD = re.compile(r"(?<![\w.:])[A-Z]\w+")
 

@@ -12,7 +12,6 @@ using namespace volcontact::c_api;
 
 namespace {
 
-void copy_vector(const Vec3& from, double (&to)[3]) { std::copy_n(from.data(), 3, to); }
 void copy_channels(const ByChannel& from, double (&to)[4]) {
   const double numbers[] = {from.normal, from.roll, from.slide, from.spin};
   std::copy(std::begin(numbers), std::end(numbers), to);
@@ -64,17 +63,16 @@ int keep(const ContactReport& report, int row, double* state, int size) {
 vc_site plain(const SiteReport& from) {
   vc_site to{};
   to.metrics = c_api::plain(from.metrics);
-  copy_vector(from.normal, to.normal);
+  from.normal.to(to.normal);
   to.normal_force = from.normal_force;
-  copy_vector(from.force_on_A, to.force);
-  copy_vector(from.torque_on_A, to.torque);
+  from.force_on_A.to(to.force);
+  from.torque_on_A.to(to.torque);
   to.approach_speed = from.approach_speed;
-  copy_vector(from.slip, to.slip);
+  from.slip.to(to.slip);
   to.spin = from.spin;
   to.elastic_energy = from.elastic_energy;
   copy_channels(from.power, to.power);
-  const Mat3 second_moment = from.metrics.second_moment();
-  std::copy_n(second_moment.data(), 9, to.second_moment);  // symmetric: rows are columns
+  from.metrics.second_moment().to_rows(to.second_moment);
   to.pair = from.pair;
   return to;
 }
@@ -90,10 +88,10 @@ bool is_finite(const ContactReport& report) {
 vc_result plain(const ContactReport& from) {
   vc_result to{};
   const Wrench on_A = from.wrench_on_A(), on_B = from.wrench_on_B();
-  copy_vector(on_A.force, to.force_on_a);
-  copy_vector(on_A.torque, to.torque_on_a);
-  copy_vector(on_B.force, to.force_on_b);
-  copy_vector(on_B.torque, to.torque_on_b);
+  on_A.force.to(to.force_on_a);
+  on_A.torque.to(to.torque_on_a);
+  on_B.force.to(to.force_on_b);
+  on_B.torque.to(to.torque_on_b);
   to.elastic_energy = from.elastic_energy;
   copy_channels(from.power, to.power);
   VolumeMetrics sum;

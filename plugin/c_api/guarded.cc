@@ -45,12 +45,11 @@ void require_given(const void* pointer, const char* function, const char* argume
 Pose pose_from(const double* matrix, const char* name) {
   if (!matrix) return {};
   constexpr double kOrthonormal = 1e-6;  // numbers of single precision are welcome
-  using Matrix4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
-  const Eigen::Map<const Matrix4> m(matrix);
+  const auto m = Matrix<4, 4>::from_rows(matrix);
   if (!m.allFinite()) {
     throw std::invalid_argument(std::string(name) + ": the pose has a number that is not finite");
   }
-  const Pose pose{m.topLeftCorner<3, 3>(), m.topRightCorner<3, 1>()};
+  const Pose pose{m.block<3, 3>(0, 0), m.col(3).head<3>()};
   const double skewed = (pose.rotation.transpose() * pose.rotation - Mat3::Identity()).norm();
   if (skewed > kOrthonormal || pose.rotation.determinant() < 0.0) {
     std::ostringstream message;
@@ -59,7 +58,7 @@ Pose pose_from(const double* matrix, const char* name) {
             << kOrthonormal << "); poses are row-major 4x4 matrices";
     throw std::invalid_argument(message.str());
   }
-  if (m.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)) {
+  if (m.row(3) != Vector<4>::Unit(3)) {
     throw std::invalid_argument(
         std::string(name) +
         ": the last row of a pose must be 0 0 0 1; poses are row-major 4x4 matrices");
@@ -68,15 +67,14 @@ Pose pose_from(const double* matrix, const char* name) {
 }
 
 void copy_pose(const Pose& pose, double* matrix) noexcept {
-  using Matrix4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
-  Eigen::Map<Matrix4> m(matrix);
-  m.setIdentity();
-  m.topLeftCorner<3, 3>() = pose.rotation;
-  m.topRightCorner<3, 1>() = pose.translation;
+  auto m = Matrix<4, 4>::Identity();
+  m.set_block(0, 0, pose.rotation);
+  pose.translation.to(m.col(3).data());
+  m.to_rows(matrix);
 }
 
 Twist twist_from(const double* numbers, const char* name) {
-  const Eigen::Map<const Eigen::Matrix<double, 6, 1>> v(numbers);
+  const auto v = Vector<6>::from(numbers);
   if (!v.allFinite()) {
     throw std::invalid_argument(std::string(name) + ": the twist has a number that is not finite");
   }

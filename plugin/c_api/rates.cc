@@ -18,8 +18,7 @@ Pose advanced(const Pose& pose, const Twist& twist, double time) {
   Pose out = pose;
   out.translation += time * twist.linear;
   if (angle > 0.0) {
-    const Eigen::AngleAxisd turn(angle, twist.angular.normalized());
-    out.rotation = turn.toRotationMatrix() * pose.rotation;
+    out.rotation = rotation_about(twist.angular.normalized(), angle) * pose.rotation;
   }
   return out;
 }
@@ -29,16 +28,17 @@ void bring_to_now(const BodyMotion& motion, int row, std::vector<double>& rows) 
   VolumeMetrics any;
   any.volume = 1.0;
   const SiteHead now = site_head(0, any, motion);
-  const Eigen::Map<const Mat3> R_AB(now.rotation_AB);
-  const Eigen::Map<const Vec3> p_AB(now.origin_B_A);
+  const Mat3 R_AB = Mat3::from(now.rotation_AB);
+  const Vec3 p_AB = Vec3::from(now.origin_B_A);
   for (std::size_t at = kStateHead; at + static_cast<std::size_t>(row) <= rows.size();
        at += static_cast<std::size_t>(row)) {
     SiteHead head;
     std::memcpy(static_cast<void*>(&head), &rows[at], sizeof head);
-    Eigen::Map<Vec3> point_A(head.point_A);
-    const Vec3 point_B = Eigen::Map<const Mat3>(head.rotation_AB).transpose() *
-                         (point_A - Eigen::Map<const Vec3>(head.origin_B_A));
-    point_A = 0.5 * (point_A + R_AB * point_B + p_AB);  // half with A, half with B
+    const Vec3 point_A = Vec3::from(head.point_A);
+    const Vec3 point_B =
+        Mat3::from(head.rotation_AB).transpose() * (point_A - Vec3::from(head.origin_B_A));
+    const Vec3 point = 0.5 * (point_A + R_AB * point_B + p_AB);  // half with A, half with B
+    point.to(head.point_A);
     std::copy_n(now.rotation_AB, 9, head.rotation_AB);
     std::copy_n(now.origin_B_A, 3, head.origin_B_A);
     std::memcpy(&rows[at], &head, sizeof head);

@@ -93,10 +93,10 @@ std::vector<NamedSolid::Row> NamedSolid::rows() const {
 vc_metrics plain(const VolumeMetrics& from) noexcept {
   vc_metrics to{};
   to.volume = from.volume;
-  std::copy_n(from.centroid.data(), 3, to.centroid);
-  std::copy_n(from.inertia.data(), 9, to.inertia);  // symmetric: rows or columns
-  std::copy_n(from.area_vector.data(), 3, to.area_vector);
-  std::copy_n(from.area_moment.data(), 3, to.area_moment);
+  from.centroid.to(to.centroid);
+  from.inertia.to_rows(to.inertia);
+  from.area_vector.to(to.area_vector);
+  from.area_moment.to(to.area_moment);
   to.area = from.area;
   to.counter_area = from.counter_area;
   to.depth_moment = from.depth_moment;

@@ -21,8 +21,8 @@ extern "C" int vc_tangent_of(const vc_model* model, vc_workspace* workspace, vc_
     const ContactTangent found = contact_tangent(*model->contact, workspace->report);
     check(found.by_motion.allFinite() && found.by_speed.allFinite(),
           [] { return "vc_tangent_of: a derivative is no finite number"; });
-    std::copy_n(found.by_motion.data(), 144, tangent->by_motion);
-    std::copy_n(found.by_speed.data(), 144, tangent->by_speed);
+    found.by_motion.to_rows(tangent->by_motion);
+    found.by_speed.to_rows(tangent->by_speed);
     return 0;
   });
 }

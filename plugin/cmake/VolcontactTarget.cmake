@@ -98,9 +98,7 @@ endfunction()
 function(volcontact_core_usage name scope)
   cmake_path(GET CMAKE_CURRENT_FUNCTION_LIST_DIR PARENT_PATH plugin)
   target_include_directories(${name} ${scope} "${plugin}")
-  target_link_libraries(${name} ${scope} Eigen3::Eigen OpenMP::OpenMP_CXX)
-  # Our tasks are the only parallel ones; Eigen's own threads would change the order of its sums.
-  target_compile_definitions(${name} ${scope} EIGEN_DONT_PARALLELIZE EIGEN_MPL2_ONLY)
+  target_link_libraries(${name} ${scope} OpenMP::OpenMP_CXX)
   # Equal bits on every machine: headers are inlined into users of the core, so they need it too.
   target_compile_options(${name} ${scope} -ffp-contract=off)
 endfunction()

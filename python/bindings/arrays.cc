@@ -2,18 +2,23 @@
 #include "arrays.h"
 
 #include <sstream>
-#include <string>
 
 #include "volcontact/base/check.h"
 
 namespace volcontact::python {
+
+std::string text_of(const Vec3& vector) {
+  std::ostringstream text;
+  text << vector.x() << ' ' << vector.y() << ' ' << vector.z();
+  return text.str();
+}
 
 Pose pose_from(const std::optional<Matrix4>& matrix, const char* name) {
   if (!matrix) return {};
   constexpr double kOrthonormal = 1e-6;  // single precision input is welcome
   const Matrix4& m = *matrix;
   require(m.allFinite(), std::string(name) + ": the pose has a number that is not finite");
-  const Pose pose{m.topLeftCorner<3, 3>(), m.topRightCorner<3, 1>()};
+  const Pose pose{m.block<3, 3>(0, 0), m.col(3).head<3>()};
   const double skewed = (pose.rotation.transpose() * pose.rotation - Mat3::Identity()).norm();
   if (skewed > kOrthonormal || pose.rotation.determinant() < 0.0) {
     std::ostringstream message;
@@ -22,8 +27,8 @@ Pose pose_from(const std::optional<Matrix4>& matrix, const char* name) {
             << kOrthonormal << ")";
     throw std::invalid_argument(message.str());
   }
-  const Eigen::RowVector4d last(0.0, 0.0, 0.0, 1.0);
-  require(m.row(3) == last, std::string(name) + ": the last row of a pose must be 0 0 0 1");
+  require(m.row(3) == Vector<4>::Unit(3),
+          std::string(name) + ": the last row of a pose must be 0 0 0 1");
   return pose;
 }
 

@@ -21,10 +21,8 @@ namespace nb = nanobind;
 using NormalPtr = std::shared_ptr<const NormalForce>;
 using FrictionPtr = std::shared_ptr<const Friction>;
 
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
 struct PyReport : ContactReport {
-  Eigen::Index row_size = 0;
+  int row_size = 0;
   std::optional<ContactTangent> tangent;
 
   VolumeMetrics metrics() const {
@@ -32,10 +30,11 @@ struct PyReport : ContactReport {
     for (const SiteReport& site : sites) sum = sum + site.metrics;
     return sum;
   }
-  Rows state() const {
-    const Eigen::Index count =
-        row_size > 0 ? static_cast<Eigen::Index>(memory.size()) / row_size : 0;
-    return Eigen::Map<const Rows>(memory.data(), count, row_size);
+  auto state() const {
+    const auto stride = static_cast<std::size_t>(row_size);
+    return new_array<double, nb::ndim<2>>(
+        {stride > 0 ? memory.size() / stride : 0, stride},
+        [this](double* numbers) { std::copy(memory.begin(), memory.end(), numbers); });
   }
 };
 
@@ -46,14 +45,15 @@ PyReport evaluate(const ContactModel& model, const std::optional<Matrix4>& X_WA,
   PyReport report;
   report.row_size = model.row_size();
   report.keeps_inputs = tangent;
-  require(!state || state->cols() == report.row_size,
-          "evaluate: the rows of state have " + std::to_string(state ? state->cols() : 0) +
+  const std::size_t columns = state ? state->shape(1) : 0;
+  require(!state || columns == static_cast<std::size_t>(report.row_size),
+          "evaluate: the rows of state have " + std::to_string(columns) +
               " numbers, those of the model have " + std::to_string(report.row_size));
   require(elapsed >= 0.0, "evaluate: elapsed must be >= 0 s");
   const BodyMotion motion{pose_from(X_WA, "X_WA"), pose_from(X_WB, "X_WB"),
                           twist_from(V_WA, "V_WA"), twist_from(V_WB, "V_WB")};
   SiteMemory memory;
-  if (state) memory = {state->data(), static_cast<int>(state->rows()), model.row_size(), 0.0};
+  if (state) memory = {state->data(), static_cast<int>(state->shape(0)), model.row_size(), 0.0};
   memory.elapsed = elapsed;
   thread_local ContactModel::Workspace workspace;
   {
@@ -150,7 +150,7 @@ void bind_report(nb::module_& m) {
       .def_ro("elastic_energy", &PyReport::elastic_energy, "[J]")
       .def_ro("power", &PyReport::power, nb::rv_policy::copy, "Dissipated [W]")
       .def_ro("tangent", &PyReport::tangent, "None unless it was asked for")
-      .def_prop_ro("state", &PyReport::state,
+      .def_prop_ro("state", &PyReport::state, nb::rv_policy::reference,
                    "What the sites keep for the next evaluation, shape (sites, row_size)");
 }
 

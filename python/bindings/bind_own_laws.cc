@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <nanobind/eigen/dense.h>
+#include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>

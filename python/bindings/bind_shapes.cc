@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <nanobind/eigen/dense.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>
@@ -20,8 +19,6 @@ namespace volcontact::python {
 namespace {
 
 namespace nb = nanobind;
-
-using Vertices = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
 template <typename Solid>
 std::string shape_doc() {
@@ -63,6 +60,14 @@ std::string csg_text(const Csg& solid) {
   return waiting.back();
 }
 
+std::vector<Vec3> points_from(const RowsOfThree& rows) {
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < rows.shape(0); ++i) {
+    points.push_back(Vec3::from(rows.data() + 3 * i));
+  }
+  return points;
+}
+
 template <typename Solid>
 void def_init(nb::class_<Solid>& type) {
   if constexpr (requires { Solid::kFields; }) {
@@ -71,11 +76,7 @@ void def_init(nb::class_<Solid>& type) {
   } else {
     type.def(
         "__init__",
-        [](Solid* self, const Vertices& vertices) {
-          std::vector<Vec3> points;
-          for (Eigen::Index i = 0; i < vertices.rows(); ++i) points.push_back(vertices.row(i));
-          new (self) Solid(points);
-        },
+        [](Solid* self, const RowsOfThree& vertices) { new (self) Solid(points_from(vertices)); },
         nb::arg("vertices"), "vertices [m], shape (n, 3): the solid is their convex hull");
   }
 }
@@ -144,12 +145,9 @@ A half-space may be a member; where the solid stays unbounded it can only meet b
       .def("__repr__", [](const Csg& self) { return csg_text(self); });
 }
 
-using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
-
 // nanobind changes the numbers of NumPy's own arrays alone, not those of types derived from them.
-template <typename Rows>
-Rows rows_from(const nb::object& array, const char* message) {
-  Rows rows;
+RowsOfThree rows_from(const nb::object& array, const char* message) {
+  RowsOfThree rows;
   if (!nb::try_cast(nb::module_::import_("numpy").attr("asarray")(array), rows)) {
     throw nb::type_error(message);
   }
@@ -159,19 +157,20 @@ Rows rows_from(const nb::object& array, const char* message) {
 // From numbers as they were given: a cast to int would make 0.5 and 2^32 a silent 0.
 std::vector<Triangle> triangles_from(const nb::object& given) {
   const auto faces =
-      rows_from<Vertices>(given, "mesh: faces must be an array of whole numbers, shape (m, 3)");
+      rows_from(given, "mesh: faces must be an array of whole numbers, shape (m, 3)");
   constexpr double kMost = std::numeric_limits<int>::max();
   std::vector<Triangle> triangles;
-  for (Eigen::Index i = 0; i < faces.rows(); ++i) {
-    for (const double index : faces.row(i)) {
+  for (std::size_t i = 0; i < faces.shape(0); ++i) {
+    const Vec3 corners = Vec3::from(faces.data() + 3 * i);
+    for (const double index : corners) {
       if (index == std::floor(index) && std::abs(index) <= kMost) continue;
       std::ostringstream message;
       message << "mesh: triangle " << i << " names vertex " << index
               << "; indices are whole numbers from 0 on";
       throw std::invalid_argument(message.str());
     }
-    triangles.push_back({static_cast<int>(faces(i, 0)), static_cast<int>(faces(i, 1)),
-                         static_cast<int>(faces(i, 2))});
+    triangles.push_back(
+        {static_cast<int>(corners[0]), static_cast<int>(corners[1]), static_cast<int>(corners[2])});
   }
   return triangles;
 }
@@ -186,10 +185,9 @@ overlap each other count twice.)");
   type.def(
       "__init__",
       [](Mesh* self, const nb::object& given_vertices, const nb::object& given_faces) {
-        const auto vertices = rows_from<Vertices>(
-            given_vertices, "mesh: vertices must be an array of numbers, shape (n, 3)");
-        std::vector<Vec3> points;
-        for (Eigen::Index i = 0; i < vertices.rows(); ++i) points.push_back(vertices.row(i));
+        const auto vertices =
+            rows_from(given_vertices, "mesh: vertices must be an array of numbers, shape (n, 3)");
+        const std::vector<Vec3> points = points_from(vertices);
         new (self) Mesh(points, triangles_from(given_faces));
       },
       nb::arg("vertices"), nb::arg("faces"),
@@ -201,22 +199,21 @@ overlap each other count twice.)");
   def_solid(type);
   const auto vertices = [](const Mesh& self) {
     const std::vector<Vec3>& points = self.topology().vertices;
-    Vertices array(static_cast<Eigen::Index>(points.size()), 3);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      array.row(static_cast<Eigen::Index>(i)) = points[i];
-    }
-    return array;
+    return new_array<double, nb::shape<-1, 3>>({points.size(), 3}, [&points](double* numbers) {
+      for (std::size_t i = 0; i < points.size(); ++i) points[i].to(numbers + 3 * i);
+    });
   };
   const auto faces = [](const Mesh& self) {
     const std::vector<Triangle>& triangles = self.topology().triangles;
-    Triangles array(static_cast<Eigen::Index>(triangles.size()), 3);
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-      for (int k = 0; k < 3; ++k) array(static_cast<Eigen::Index>(i), k) = triangles[i][k];
-    }
-    return array;
+    return new_array<int, nb::shape<-1, 3>>({triangles.size(), 3}, [&triangles](int* numbers) {
+      for (const Triangle& triangle : triangles) {
+        numbers = std::copy(triangle.begin(), triangle.end(), numbers);
+      }
+    });
   };
-  type.def_prop_ro("vertices", vertices, "Corners after welding [m], shape (n, 3)")
-      .def_prop_ro("faces", faces, "Triangles after welding, shape (m, 3)")
+  constexpr auto kOwn = nb::rv_policy::reference;  // the arrays have an owner
+  type.def_prop_ro("vertices", vertices, kOwn, "Corners after welding [m], shape (n, 3)")
+      .def_prop_ro("faces", faces, kOwn, "Triangles after welding, shape (m, 3)")
       .def_prop_ro(
           "turned", [](const Mesh& self) { return self.topology().turned; },
           "Whether all triangles pointed inwards and were turned")

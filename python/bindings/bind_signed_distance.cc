@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <nanobind/eigen/dense.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
@@ -25,7 +24,7 @@ namespace {
 namespace nb = nanobind;
 using namespace nb::literals;
 
-using Corners = Eigen::Matrix<double, 2, 3, Eigen::RowMajor>;
+using Corners = Matrix<2, 3>;
 using TwoCorners = std::array<std::array<double, 3>, 2>;  // from any sequences
 // Any number of axes: a wrong one is told with the shape.
 using Distances = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
@@ -148,7 +147,7 @@ Args:
             if (!PyCallable_Check(distance.ptr())) {
               throw nb::type_error("SignedDistance: distance must be callable");
             }
-            const Aabb box{Vec3(bounds[0].data()), Vec3(bounds[1].data())};
+            const Aabb box{Vec3::from(bounds[0].data()), Vec3::from(bounds[1].data())};
             new (self) SignedDistance(std::make_shared<const PythonSource>(distance, box),
                                       {lipschitz, curvature.value_or(kInfinity)});
           },
@@ -162,7 +161,8 @@ Args:
           "bounds",
           [](const SignedDistance& self) {
             Corners corners;
-            corners << self.bounds().min.transpose(), self.bounds().max.transpose();
+            corners.set_row(0, self.bounds().min);
+            corners.set_row(1, self.bounds().max);
             return corners;
           },
           "[m], shape (2, 3), the lower corner first")

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from tasks.building import CORE, build_core_if_older
 from tasks.interpreters import python_for
-from tasks.shell import BUILD, ROOT, TOOLS, VENVS, Stopped, locked, newer, run, say
+from tasks.shell import BUILD, ROOT, VENVS, Stopped, locked, newer, run, say
 from tasks.system import need_system, use_compiler_cache
 
 BASELINE = "2.2.2"  # the oldest MuJoCo served
@@ -162,7 +162,6 @@ def _install_package(environment: Environment) -> None:
         "VOLCONTACT_MUJOCO": "ON",
         "VOLCONTACT_CORE": CORE,
         "VOLCONTACT_WARNINGS_AS_ERRORS": "ON",
-        "Eigen3_ROOT": TOOLS / "eigen",
     }
     environment.install(
         "--no-build-isolation",

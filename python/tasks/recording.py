@@ -14,7 +14,7 @@ from tasks.building import CORE, build, build_core, configure
 from tasks.cgal import NoCgal, build_cgal, link_cgal
 from tasks.environments import BASELINE, Environment, NoPython, located, prepared
 from tasks.interpreters import VERSIONS, all_interpreters, from_newer_debian
-from tasks.shell import BUILD, RESULTS, ROOT, TOOLS, Stopped, output_of, run, say
+from tasks.shell import BUILD, RESULTS, ROOT, Stopped, output_of, run, say
 from tasks.sites import tool_environment
 from tasks.system import need_system
 from tasks.testing import pytest
@@ -167,7 +167,7 @@ def wheels(arguments: list[str]) -> None:
         script, other = "make_aarch64_wheels.py", []
         arguments = [each for each in arguments if not each.startswith("--machine")]
     run(
-        python, ROOT / "python" / script, "--eigen", TOOLS / "eigen", *other,
+        python, ROOT / "python" / script, *other,
         "--releases", *MATRIX, "--pythons", *reversed(pythons.values()), *arguments,
     )  # fmt: skip
 

@@ -89,7 +89,6 @@ def _compile(library: Path, source: Path, package: Path) -> None:
     )
     with tempfile.TemporaryDirectory(prefix="volcontact-") as tree:
         configure = [cmake, "-S", str(source / "adaptor"), "-B", tree, f"-DMUJOCO_DIR={package}"]
-        configure += [f"-DCMAKE_PREFIX_PATH={';'.join(_places_of_eigen())}"]
         parallel = str(os.cpu_count() or 1)
         make = [cmake, "--build", tree, "--target", "volcontact_mujoco", "--parallel", parallel]
         for command in (configure, make):
@@ -98,12 +97,6 @@ def _compile(library: Path, source: Path, package: Path) -> None:
         # In one go, so that no one ever loads a part of it.
         shutil.copy(made, library.with_suffix(".part"))
         library.with_suffix(".part").replace(library)
-
-
-def _places_of_eigen() -> list[str]:
-    """The PyPI package cmeel-eigen, wherever one is installed; CMake knows those of the system."""
-    places = [Path(entry) / "cmeel.prefix" for entry in sys.path]
-    return [str(place) for place in places if place.is_dir()]
 
 
 def _program(name: str, advice: str) -> str:
@@ -124,7 +117,4 @@ def _run(command: list[str], log: Path) -> None:
     log.write_text(done.stdout, encoding="utf-8")
     if done.returncode != 0:
         end = "\n".join(done.stdout.splitlines()[-_LOG_LINES:])
-        raise RuntimeError(
-            "compiling failed; it needs g++ 11 or newer and Eigen 3.4 or newer "
-            f"(pip install cmeel-eigen). The end of {log}:\n{end}"
-        )
+        raise RuntimeError(f"compiling failed; it needs g++ 11 or newer. The end of {log}:\n{end}")

@@ -25,11 +25,11 @@ class VolumeMetrics:
         """Centroid of the volume [m], shape (3,)"""
 
     @property
-    def inertia(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order='F')]:
+    def inertia(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order='C')]:
         """Inertia tensor about the centroid, unit density [m^5], shape (3, 3)"""
 
     @property
-    def second_moment(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order='F')]:
+    def second_moment(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order='C')]:
         """
         Integral of r r^T over the volume, r from the centroid [m^5], shape (3, 3)
         """
@@ -737,7 +737,7 @@ class Torus:
 class ConvexPolytope:
     """Solid 'convex_polytope' in its own frame."""
 
-    def __init__(self, vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')]) -> None:
+    def __init__(self, vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', writable=False)]) -> None:
         """vertices [m], shape (n, 3): the solid is their convex hull"""
 
     def __add__(self, other: HalfSpace | Sphere | Ellipsoid | Capsule | Cylinder | Frustum | Box | RoundedBox | Torus | ConvexPolytope | Csg | SignedDistance | Mesh) -> Csg:
@@ -1102,7 +1102,7 @@ class Patch:
         """Projected along the normal [m^2]"""
 
     @property
-    def second_moment(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order='F')]:
+    def second_moment(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order='C')]:
         """int r r^T dV about the centroid [m^5], shape (3, 3)"""
 
 class FrictionInput:
@@ -1342,7 +1342,7 @@ class ContactModel:
         All of it as text, as the C container reads it (docs/c_container.md). Raises ValueError with a SignedDistance or a law of your own
         """
 
-    def evaluate(self, *, X_WA: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, X_WB: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, V_WA: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')] | None = None, V_WB: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')] | None = None, state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C')] | None = None, elapsed: float = 0.0, tangent: bool = False) -> ContactReport:
+    def evaluate(self, *, X_WA: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, X_WB: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C')] | None = None, V_WA: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')] | None = None, V_WB: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')] | None = None, state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', writable=False)] | None = None, elapsed: float = 0.0, tangent: bool = False) -> ContactReport:
         """
         Wrenches on both bodies from their poses and twists.
 

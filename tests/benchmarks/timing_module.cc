@@ -3,12 +3,13 @@
 // Python module `volcontact_timing` of peers_benchmark.py and mesh_benchmark.py: our queries timed
 // without Python, the independent integral they are judged by, and the bumpy balls of the tests.
 // The solids are those of the package `volcontact`.
-#include <nanobind/eigen/dense.h>
+#include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/variant.h>
 
+#include <algorithm>
 #include <ctime>
 #include <stdexcept>
 #include <string>
@@ -26,13 +27,17 @@ namespace {
 namespace nb = nanobind;
 
 using Poses = nb::ndarray<const double, nb::shape<-1, 4, 4>, nb::c_contig, nb::device::cpu>;
-using Matrix4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+using Matrix4 = nb::ndarray<const double, nb::shape<4, 4>, nb::c_contig, nb::device::cpu>;
+
+Pose pose_from(const double* numbers) {
+  const auto X = Matrix<4, 4>::from_rows(numbers);
+  return {X.block<3, 3>(0, 0), X.col(3).head<3>()};
+}
 
 std::vector<Pose> poses_from(const Poses& matrices) {
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < matrices.shape(0); ++i) {
-    const Eigen::Map<const Matrix4> X(matrices.data() + 16 * i);
-    poses.push_back({X.topLeftCorner<3, 3>(), X.topRightCorner<3, 1>()});
+    poses.push_back(pose_from(matrices.data() + 16 * i));
   }
   return poses;
 }
@@ -70,7 +75,7 @@ double time_queries(const Shape& a, const Shape& b, const Poses& matrices, doubl
 // engines. They only say where to look: the values do not depend on it.
 std::tuple<double, double> reference_volume(const Shape& a, const Shape& b, const Matrix4& X,
                                             double half_range) {
-  const Pose X_AB{X.topLeftCorner<3, 3>(), X.topRightCorner<3, 1>()};
+  const Pose X_AB = pose_from(X.data());
   InterferenceWorkspace workspace;
   Interference out;
   interference(a, b, X_AB, {}, workspace, out);
@@ -81,19 +86,22 @@ std::tuple<double, double> reference_volume(const Shape& a, const Shape& b, cons
   return {r.metrics.volume, r.volume_error};
 }
 
-using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
-using Faces = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
+using Points = nb::ndarray<nb::numpy, double, nb::shape<-1, 3>, nb::c_contig>;
+using Faces = nb::ndarray<nb::numpy, int, nb::shape<-1, 3>, nb::c_contig>;
+
+// A new array of Python with a row of each.
+template <typename Array, typename Number, typename Row>
+Array rows_of(const std::vector<Row>& rows) {
+  Number* const numbers = new Number[3 * rows.size()];
+  const nb::capsule owner(numbers, [](void* p) noexcept { delete[] static_cast<Number*>(p); });
+  for (std::size_t i = 0; i < rows.size(); ++i) std::copy_n(rows[i].begin(), 3, numbers + 3 * i);
+  return Array(numbers, {rows.size(), 3}, owner);
+}
 
 // Points and triangles of a ball of about radius 1 with bumps, 20 * 4^levels triangles.
 std::tuple<Points, Faces> bumpy_ball(int levels, int seed) {
   const test::Soup soup = test::bumpy_soup(levels, seed);
-  Points points(soup.vertices.size(), 3);
-  for (Eigen::Index i = 0; i < points.rows(); ++i) points.row(i) = soup.vertices[i];
-  Faces faces(soup.triangles.size(), 3);
-  for (Eigen::Index i = 0; i < faces.rows(); ++i) {
-    for (int corner = 0; corner < 3; ++corner) faces(i, corner) = soup.triangles[i][corner];
-  }
-  return {points, faces};
+  return {rows_of<Points, double>(soup.vertices), rows_of<Faces, int>(soup.triangles)};
 }
 
 const char* simd_path() {

@@ -60,8 +60,7 @@ TEST(CEvaluate, EqualsTheModelBehindItToTheBit) {
   ContactModel::Workspace own;
   ContactReport report;
   BodyMotion bodies;
-  bodies.X_WA.rotation = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(motion.X_WA)
-                             .topLeftCorner<3, 3>();
+  bodies.X_WA.rotation = Matrix<4, 4>::from_rows(motion.X_WA).block<3, 3>(0, 0);
   bodies.X_WA.translation = {0.45, 0.02, 0.099};
   bodies.V_WA = {{0.0, 0.0, 0.7}, {0.1, 0.0, 0.0}};
   same.evaluate(bodies, {}, own, report);

@@ -69,10 +69,9 @@ std::vector<double>& BodyForces::cartesian(const mjModel* m, const mjData* d) {
     const Vec3 com = vec3_at(d->subtree_com, m->body_rootid[body]);
     const Wrench load =
         at_tree_com_[static_cast<std::size_t>(body)].about(vec3_at(d->xipos, body) - com);
-    Eigen::Map<Vec3> force(&numbers_[6 * static_cast<std::size_t>(body)]);
-    Eigen::Map<Vec3> torque(&numbers_[6 * static_cast<std::size_t>(body) + 3]);
-    force = load.force;
-    torque = load.torque;
+    double* const numbers = &numbers_[6 * static_cast<std::size_t>(body)];
+    load.force.to(numbers);
+    load.torque.to(numbers + 3);
   }
   return numbers_;
 }

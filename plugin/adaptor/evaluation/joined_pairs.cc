@@ -22,7 +22,7 @@ Aabb reach_of(const SceneContact& contact, const mjData* d, std::span<const int>
     std::visit(
         [&](const auto& solid) {
           for (int i = 0; i < 3; ++i) {
-            const Vec3 axis = X_FG.rotation.row(i).transpose();
+            const Vec3 axis = X_FG.rotation.row(i);
             const double at = X_FG.translation[i];
             reach.min[i] = std::min(reach.min[i], at - solid.support_height(-axis));
             reach.max[i] = std::max(reach.max[i], at + solid.support_height(axis));

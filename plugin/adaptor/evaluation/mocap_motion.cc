@@ -32,7 +32,8 @@ Twist MocapMotion::at(const mjModel* m, const mjData* d, int body, const Vec3& p
   if (mocap < 0 || !rows_) return {};
   const MocapRow row = this->row(mocap);
   const Vec3 arm = point - vec3_at(d->xpos, m->body_rootid[body]);
-  return {row.angular(), Twist{row.angular(), row.linear()}.at(arm)};
+  const Twist twist = row.twist();
+  return {twist.angular, twist.at(arm)};
 }
 
 void MocapMotion::read(const mjModel* m, const mjData* d, const MocapMotion* before, double elapsed,
@@ -46,22 +47,20 @@ void MocapMotion::read(const mjModel* m, const mjData* d, const MocapMotion* bef
     if (!before) continue;
     const MocapRow last = before->row(mocap);
     if (goes_on) {
-      now.angular() = last.angular();
-      now.linear() = last.linear();
+      now.set_twist(last.twist());
       continue;
     }
     if (!(elapsed > 0.0) || now.pose() == last.pose()) continue;
     mjtNum turn[3];
     mju_subQuat(turn, now.p + 3, last.p + 3);
     mju_rotVecQuat(turn, turn, last.p + 3);
-    const Vec3 angular = Eigen::Map<const Vec3>(turn) / elapsed;
+    const Vec3 angular = Vec3::from(turn) / elapsed;
     const Vec3 linear = (now.pose().head<3>() - last.pose().head<3>()) / elapsed;
     const double radius = radius_of(m, body), speed = linear.norm() + radius * angular.norm();
     const bool is_put =
         !(speed <= kFastestMocap) || (radius > 0.0 && speed * elapsed > 2.0 * radius);
     if (is_put) continue;
-    now.angular() = angular;
-    now.linear() = linear;
+    now.set_twist({angular, linear});
   }
 }
 
@@ -69,16 +68,15 @@ void MocapMotion::add_load(const mjModel* m, const mjData* d, int body, const Ve
                            const Vec3& force, const Vec3& torque) const {
   const int mocap = mocap_of(m, body);
   if (mocap < 0) return;
-  const MocapRow row = this->row(mocap);
-  row.force() += force;
-  row.torque() += torque + (point - vec3_at(d->xpos, m->body_rootid[body])).cross(force);
+  const Vec3 arm = point - vec3_at(d->xpos, m->body_rootid[body]);
+  row(mocap).add({torque + arm.cross(force), force});
 }
 
 double MocapMotion::work_since(const mjModel* m, const MocapMotion& before, double elapsed) const {
   double power = 0.0;
   for (int mocap = 0; mocap < m->nmocap; ++mocap) {
     const MocapRow now = row(mocap), last = before.row(mocap);
-    power += last.force().dot(now.linear()) + last.torque().dot(now.angular());
+    power += power_of(last.wrench(), now.twist());
   }
   return -elapsed * power;
 }

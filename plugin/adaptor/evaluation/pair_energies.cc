@@ -14,7 +14,7 @@ namespace {
 
 // What lifting bodies of that inverse mass out of the contacts of a pair takes at least [J].
 double lift(const mjModel* m, const ContactReport& report, double inverse_mass) {
-  const Eigen::Map<const Vec3> gravity(m->opt.gravity);
+  const Vec3 gravity = Vec3::from(m->opt.gravity);
   double most = 0.0;
   for (const SiteReport& site : report.sites) {
     const double area = site.metrics.area_vector.norm();
@@ -99,7 +99,7 @@ void lend(const SceneContact& contact, const mjModel* m, const GeomPair& geoms,
     if (tree != MechanismTrees::kNone) mass += trees.mass[size(tree)];
   }
   const double h = m->opt.timestep;
-  const double fall = h * std::abs(site.normal.dot(Eigen::Map<const Vec3>(m->opt.gravity)));
+  const double fall = h * std::abs(site.normal.dot(Vec3::from(m->opt.gravity)));
   limit.lend(h * site.normal_force, mass, fall, parting);
 }
 

@@ -53,7 +53,7 @@ inline Bounds world_bounds(const Shape& solid, const Pose& X_WG) {
       [&](const auto& s) {
         Bounds box;
         for (int i = 0; i < 3; ++i) {
-          const Vec3 axis = X_WG.rotation.row(i).transpose();
+          const Vec3 axis = X_WG.rotation.row(i);
           // With -max instead of max both ends are lower bounds of the same kind.
           box.set(i, X_WG.translation[i] - s.support_height(-axis),
                   -X_WG.translation[i] - s.support_height(axis));

@@ -57,7 +57,7 @@ void BoxUnion::build(std::span<const Aabb> boxes, const Aabb& region) {
   for (const Aabb& box : boxes) {
     const auto i = static_cast<int>(parts_.size());
     const Aabb within{box.min.cwiseMax(region.min), box.max.cwiseMin(region.max)};
-    const bool is_inside = (within.max.array() > within.min.array()).all();
+    const bool is_inside = within.min.less_than(within.max);
     parts_.push_back({within, box, is_inside ? i : kOutside});
     if (is_inside) order_.push_back(i);
   }

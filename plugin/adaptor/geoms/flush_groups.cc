@@ -23,8 +23,7 @@ constexpr double kFlush = 1e-9;
 Pose pose_at(const mjtNum* position, const mjtNum* quaternion) {
   mjtNum rotation[9];
   mju_quat2Mat(rotation, quaternion);
-  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  return {Eigen::Map<const RowMajor>(rotation), Eigen::Map<const Vec3>(position)};
+  return {Mat3::from_rows(rotation), Vec3::from(position)};
 }
 
 // The body against which a body cannot move, as all that is fixed to it: a mocap body or the world
@@ -47,7 +46,7 @@ Pose pose_in_rigid_root(const mjModel* m, int geom) {
 
 // The rotation by quarter turns that this one is but for rounding; none where it is another.
 std::optional<Mat3> quarter_turns(const Mat3& rotation) {
-  const Mat3 rounded = rotation.array().round();
+  const Mat3 rounded = rotation.rounded();
   if ((rotation - rounded).cwiseAbs().maxCoeff() > kFlush) return {};
   return rounded;
 }
@@ -89,9 +88,7 @@ int widest_axis(const std::vector<Block>& blocks) {
     low = low.cwiseMin(block.bounds.min);
     high = high.cwiseMax(block.bounds.min);
   }
-  int axis = 0;
-  (high - low).maxCoeff(&axis);
-  return axis;
+  return (high - low).largest();
 }
 
 // Joins blocks with parallel axes, by their bounds.
@@ -202,7 +199,7 @@ void FlushGroups::add_group(const mjModel* m, const std::vector<const Block*>& b
   const Pose& X_RF = blocks.front()->X_RG;
   std::vector<Aabb*> boxes;
   for (const Block* block : blocks) {
-    const Mat3 turns = (X_RF.rotation.transpose() * block->X_RG.rotation).array().round();
+    const Mat3 turns = (X_RF.rotation.transpose() * block->X_RG.rotation).rounded();
     const Aabb bounds = bounds_in(X_RF, *block, turns);
     tiles_[size(block->geom)] = {blocks.front()->geom, number, {turns, bounds.center()}, bounds};
     boxes.push_back(&tiles_[size(block->geom)].bounds);

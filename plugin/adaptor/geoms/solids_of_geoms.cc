@@ -12,8 +12,7 @@ namespace {
 Pose pose_in_body(const mjModel* m, int geom) {
   mjtNum rotation[9];
   mju_quat2Mat(rotation, m->geom_quat + 4 * geom);
-  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  return {Eigen::Map<const RowMajor>(rotation), vec3_at(m->geom_pos, geom)};
+  return {Mat3::from_rows(rotation), vec3_at(m->geom_pos, geom)};
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
-
 #include "volcontact/base/types.h"
 
 namespace volcontact::adaptor {
@@ -13,13 +11,19 @@ struct MocapRow {
   static constexpr int kNumbers = 7 + 6 + 6;
   double* p;
 
-  Eigen::Map<Eigen::Matrix<double, 7, 1>> pose() const {
-    return Eigen::Map<Eigen::Matrix<double, 7, 1>>(p);
+  Vector<7> pose() const { return Vector<7>::from(p); }  ///< position, quaternion
+  Twist twist() const { return {Vec3::from(p + 7), Vec3::from(p + 10)}; }
+  void set_twist(const Twist& twist) const {
+    twist.angular.to(p + 7);
+    twist.linear.to(p + 10);
   }
-  Eigen::Map<Vec3> angular() const { return Eigen::Map<Vec3>(p + 7); }
-  Eigen::Map<Vec3> linear() const { return Eigen::Map<Vec3>(p + 10); }
-  Eigen::Map<Vec3> force() const { return Eigen::Map<Vec3>(p + 13); }
-  Eigen::Map<Vec3> torque() const { return Eigen::Map<Vec3>(p + 16); }
+  Wrench wrench() const { return {.torque = Vec3::from(p + 16), .force = Vec3::from(p + 13)}; }
+  void add(const Wrench& more) const {
+    Wrench sum = wrench();
+    sum += more;
+    sum.force.to(p + 13);
+    sum.torque.to(p + 16);
+  }
 };
 
 }  // namespace volcontact::adaptor

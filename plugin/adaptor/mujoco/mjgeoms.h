@@ -9,14 +9,11 @@ namespace volcontact::adaptor {
 /// MuJoCo's word for the geom's type: "box", "mesh".
 const char* type_name(const mjModel* m, int geom);
 
-inline Eigen::Map<const Vec3> vec3_at(const mjtNum* array, int index) {
-  return Eigen::Map<const Vec3>(array + 3 * index);
-}
+inline Vec3 vec3_at(const mjtNum* array, int index) { return Vec3::from(array + 3 * index); }
 
 /// Pose of the geom frame in the world, X_WG.
 inline Pose pose_of_geom(const mjData* d, int geom) {
-  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  return {Eigen::Map<const RowMajor>(d->geom_xmat + 9 * geom), vec3_at(d->geom_xpos, geom)};
+  return {Mat3::from_rows(d->geom_xmat + 9 * geom), vec3_at(d->geom_xpos, geom)};
 }
 
 /// Twist of the geom frame in the world: velocity of its origin. MuJoCo keeps a body's velocity at

@@ -18,10 +18,10 @@ SceneForce native_force(const mjModel* m, const mjData* d, int index) {
   out.is_native = true;
   out.position = vec3_at(contact.pos, 0);
   // Its rows are the axes of the contact; the first is the normal, from geom 1 to geom 2.
-  const Mat3 axes = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(contact.frame);
+  const Mat3 axes = Mat3::from_rows(contact.frame);
   double on_2[6] = {};
   mj_contactForce(m, d, index, on_2);
-  out.normal = -axes.row(0).transpose();
+  out.normal = -axes.row(0);
   out.force = -(axes.transpose() * vec3_at(on_2, 0));
   out.torque = -(axes.transpose() * vec3_at(on_2, 1));
   out.normal_force = on_2[0];

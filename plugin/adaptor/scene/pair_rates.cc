@@ -130,7 +130,7 @@ double longest_step_at_rest(const mjModel* m, const std::vector<Shape>& solids,
   const double inverse =
       inverse_sliding_mass(m, geoms.a, solids[static_cast<std::size_t>(geoms.a)]) +
       inverse_sliding_mass(m, geoms.b, solids[static_cast<std::size_t>(geoms.b)]);
-  const double weight = resting_force(Eigen::Map<const Vec3>(m->opt.gravity).norm(), along);
+  const double weight = resting_force(Vec3::from(m->opt.gravity).norm(), along);
   // Of all solids that size, a ball has the smallest patch: where that shakes, all do.
   const double radius = 0.5 * std::min(sides_of(solids[static_cast<std::size_t>(geoms.a)])[0],
                                        sides_of(solids[static_cast<std::size_t>(geoms.b)])[0]);

@@ -189,7 +189,7 @@ void SceneContact::alert(const std::string& warning) {
 }
 
 void SceneContact::read_laws(const mjModel* m) {
-  gravity_ = Eigen::Map<const Vec3>(m->opt.gravity).norm();
+  gravity_ = Vec3::from(m->opt.gravity).norm();
   facts_.resize(static_cast<std::size_t>(m->ngeom));
   for (const int geom : rules_.touching()) {
     const auto i = static_cast<std::size_t>(geom);

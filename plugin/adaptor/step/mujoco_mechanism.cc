@@ -35,9 +35,7 @@ MechanismTrees trees_of(const mjModel* m) {
   return out;
 }
 
-double fall_of(const mjModel* m) {
-  return m->opt.timestep * Eigen::Map<const Vec3>(m->opt.gravity).norm();
-}
+double fall_of(const mjModel* m) { return m->opt.timestep * Vec3::from(m->opt.gravity).norm(); }
 
 MujocoMechanism::MujocoMechanism(const mjModel* m, mjData* d, const MechanismTrees& of_model,
                                  const StepMetric& metric)

@@ -10,8 +10,8 @@
 namespace volcontact::fmu {
 namespace {
 
-using Mat12 = Eigen::Matrix<double, 12, 12, Eigen::RowMajor>;
-using Column12 = Eigen::Matrix<double, 12, 1>;
+using Mat12 = Matrix<12, 12>;
+using Column12 = Vector<12>;
 
 // The turn in the world that a change of a rotation is.
 Vec3 turn_of(const Mat3& change, const Mat3& rotation) {
@@ -20,9 +20,10 @@ Vec3 turn_of(const Mat3& change, const Mat3& rotation) {
 }
 
 Vec3 turn_of_quaternion(const double* change, const double* quaternion) {
-  const Eigen::Quaterniond q(quaternion[0], quaternion[1], quaternion[2], quaternion[3]);
-  const Eigen::Quaterniond dq(change[0], change[1], change[2], change[3]);
-  return 2.0 / q.squaredNorm() * (dq * q.conjugate()).vec();
+  const auto q = Vector<4>::from(quaternion), dq = Vector<4>::from(change);
+  const Vec3 along = q.tail<3>(), change_along = dq.tail<3>();
+  // Twice the vector of dq times the inverse of q.
+  return 2.0 / q.squaredNorm() * (q[0] * change_along - dq[0] * along - change_along.cross(along));
 }
 
 }  // namespace
@@ -40,20 +41,17 @@ std::vector<double> ContactUnit::body_change(int body, const std::vector<double>
   if (const double* dq = at(Role::kQuaternion)) {
     turn = turn_of_quaternion(dq, values(Role::kQuaternion, body));
   } else {
-    turn =
-        turn_of(Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(at(Role::kRotation)),
-                now.X.rotation);
+    turn = turn_of(Mat3::from_rows(at(Role::kRotation)), now.X.rotation);
   }
-  Vec3 angular = Eigen::Map<const Vec3>(at(Role::kAngularVelocity)),
-       linear = Eigen::Map<const Vec3>(at(Role::kVelocity));
+  Vec3 angular = Vec3::from(at(Role::kAngularVelocity)), linear = Vec3::from(at(Role::kVelocity));
   if (file_.is_in_body) {
     angular = now.X.rotation * angular + turn.cross(now.V.angular);
     linear = now.X.rotation * linear + turn.cross(now.V.linear);
   }
-  Eigen::Map<Vec3>(out.data()) = turn;
-  Eigen::Map<Vec3>(out.data() + 3) = Eigen::Map<const Vec3>(at(Role::kPosition));
-  Eigen::Map<Vec3>(out.data() + 6) = angular;
-  Eigen::Map<Vec3>(out.data() + 9) = linear;
+  turn.to(out.data());
+  Vec3::from(at(Role::kPosition)).to(out.data() + 3);
+  angular.to(out.data() + 6);
+  linear.to(out.data() + 9);
   return out;
 }
 
@@ -72,22 +70,22 @@ void ContactUnit::analytic(const std::vector<double>& change, std::vector<double
     Column12 x, v;
     for (int side = 0; side < 2; ++side) {
       const std::vector<double>& body = moved[static_cast<std::size_t>(sides[side])];
-      x.segment<6>(6 * side) = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(body.data());
-      v.segment<6>(6 * side) = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(body.data() + 6);
+      std::copy_n(body.data(), 6, x.data() + 6 * side);
+      std::copy_n(body.data() + 6, 6, v.data() + 6 * side);
     }
-    const Column12 w = Eigen::Map<const Mat12>(tangent.by_motion) * x +
-                       Eigen::Map<const Mat12>(tangent.by_speed) * v;
-    for (int side = 0; side < 2; ++side) {
-      Eigen::Map<Eigen::Matrix<double, 6, 1>>(
-          &wrenches[6 * static_cast<std::size_t>(sides[side])]) += w.segment<6>(6 * side);
+    const Column12 w =
+        Mat12::from_rows(tangent.by_motion) * x + Mat12::from_rows(tangent.by_speed) * v;
+    for (int k = 0; k < 12; ++k) {
+      wrenches[6 * static_cast<std::size_t>(sides[k / 6]) + static_cast<std::size_t>(k % 6)] +=
+          w[k];
     }
   }
   for (std::size_t i = 0; file_.is_in_body && i < bodies_.size(); ++i) {
     const Mat3 to = bodies_[i].X.rotation.transpose();
-    const Vec3 turn = Eigen::Map<const Vec3>(moved[i].data());
+    const Vec3 turn = Vec3::from(moved[i].data());
     const auto turned_back = [&](const double* wrench, double* change_of_it) {
-      Eigen::Map<Vec3> d(change_of_it);
-      d = Vec3(to * d - to * turn.cross(Vec3(to.transpose() * Eigen::Map<const Vec3>(wrench))));
+      const Vec3 in_world = to.transpose() * Vec3::from(wrench);
+      (to * (Vec3::from(change_of_it) - turn.cross(in_world))).to(change_of_it);
     };
     const int body = static_cast<int>(i);
     turned_back(values(Role::kTorque, body), &wrenches[6 * i]);

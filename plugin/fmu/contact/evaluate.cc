@@ -26,7 +26,7 @@ SiteHead head_of(const std::vector<double>& rows, int row, int i) {
 
 double distance(const SiteHead& a, const SiteHead& b) {
   if (a.pair != b.pair) return HUGE_VAL;
-  return (Eigen::Map<const Vec3>(a.point_A) - Eigen::Map<const Vec3>(b.point_A)).norm();
+  return (Vec3::from(a.point_A) - Vec3::from(b.point_A)).norm();
 }
 
 }  // namespace

@@ -8,22 +8,21 @@
 namespace volcontact::fmu {
 namespace {
 
-using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-
 std::string body_name(int body) { return "body " + std::to_string(body); }
 
 Mat3 rotation_from_quaternion(const double* q, int body) {
-  const Eigen::Quaterniond turn(q[0], q[1], q[2], q[3]);
+  const auto turn = Vector<4>::from(q);
   constexpr double kLeast = 1e-6;
   if (!(turn.norm() > kLeast)) {
     throw Discarded(body_name(body) + ": the quaternion has the norm " +
                     std::to_string(turn.norm()) + ", must be above 1e-6; start with 1 0 0 0");
   }
-  return turn.normalized().toRotationMatrix();
+  const Vector<4> unit = turn.normalized();
+  return rotation_of(unit[0], unit[1], unit[2], unit[3]);
 }
 
 Mat3 rotation_from_matrix(const double* numbers, int body) {
-  const Mat3 r = Eigen::Map<const RowMajor3>(numbers);
+  const Mat3 r = Mat3::from_rows(numbers);
   const Mat3 skewed = r.transpose() * r - Mat3::Identity();
   constexpr double kFar = 1e-2;
   if (!(skewed.norm() < kFar) || r.determinant() < 0.0) {
@@ -39,7 +38,7 @@ Mat3 rotation_from_matrix(const double* numbers, int body) {
 Pose moved(const Pose& pose, const Vec3& turn, const Vec3& way) {
   const double angle = turn.norm();
   if (angle == 0.0) return {pose.rotation, pose.translation + way};
-  const Mat3 by = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+  const Mat3 by = rotation_about(turn / angle, angle);
   return {by * pose.rotation, pose.translation + way};
 }
 
@@ -60,9 +59,9 @@ ContactUnit::Body ContactUnit::body_at(int body, double later) const {
   const double* q = values(Role::kQuaternion, body);
   const double* r = values(Role::kRotation, body);
   out.X.rotation = q ? rotation_from_quaternion(q, body) : rotation_from_matrix(r, body);
-  out.X.translation = Eigen::Map<const Vec3>(values(Role::kPosition, body));
-  out.V.angular = Eigen::Map<const Vec3>(values(Role::kAngularVelocity, body));
-  out.V.linear = Eigen::Map<const Vec3>(values(Role::kVelocity, body));
+  out.X.translation = Vec3::from(values(Role::kPosition, body));
+  out.V.angular = Vec3::from(values(Role::kAngularVelocity, body));
+  out.V.linear = Vec3::from(values(Role::kVelocity, body));
   if (file_.is_in_body) {
     out.V.angular = out.X.rotation * out.V.angular;
     out.V.linear = out.X.rotation * out.V.linear;
@@ -72,8 +71,8 @@ ContactUnit::Body ContactUnit::body_at(int body, double later) const {
   Twist slope;  // zero until two communication points are known
   if (*order == 2.0 && memory_.step_before > 0.0) {
     const double* before = &memory_.twists_before[6 * static_cast<std::size_t>(body)];
-    slope.angular = (out.V.angular - Eigen::Map<const Vec3>(before)) / memory_.step_before;
-    slope.linear = (out.V.linear - Eigen::Map<const Vec3>(before + 3)) / memory_.step_before;
+    slope.angular = (out.V.angular - Vec3::from(before)) / memory_.step_before;
+    slope.linear = (out.V.linear - Vec3::from(before + 3)) / memory_.step_before;
   }
   out.X = moved(out.X, later * out.V.angular + 0.5 * later * later * slope.angular,
                 later * out.V.linear + 0.5 * later * later * slope.linear);
@@ -140,9 +139,9 @@ void ContactUnit::publish_model(std::size_t m, std::vector<Wrench>& wrenches) {
   if (double* value = values(Role::kTouching, 0)) *value = touching_;
   const UnitFile::Model& of = file_.models[m];
   wrenches[static_cast<std::size_t>(of.body_a)] +=
-      Wrench{Eigen::Map<const Vec3>(r.torque_on_a), Eigen::Map<const Vec3>(r.force_on_a)};
+      Wrench{Vec3::from(r.torque_on_a), Vec3::from(r.force_on_a)};
   wrenches[static_cast<std::size_t>(of.body_b)] +=
-      Wrench{Eigen::Map<const Vec3>(r.torque_on_b), Eigen::Map<const Vec3>(r.force_on_b)};
+      Wrench{Vec3::from(r.torque_on_b), Vec3::from(r.force_on_b)};
 }
 
 void ContactUnit::publish_sites(std::size_t m) {

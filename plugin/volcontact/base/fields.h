@@ -68,16 +68,10 @@ struct Field {
       : name(field_name), unit(field_unit), vector(member), range(allowed), meaning(text) {}
 
   constexpr int size() const { return scalar ? 1 : 3; }
-  double get(const Params& params, int i = 0) const {
-    return scalar ? params.*scalar : (params.*vector)[i];
-  }
-  void set(Params& params, int i, double value) const {
-    if (scalar) {
-      params.*scalar = value;
-    } else {
-      (params.*vector)[i] = value;
-    }
-  }
+  /// The numbers of the parameter.
+  double* of(Params& params) const { return scalar ? &(params.*scalar) : (params.*vector).data(); }
+  double get(const Params& params, int i = 0) const { return of(const_cast<Params&>(params))[i]; }
+  void set(Params& params, int i, double value) const { of(params)[i] = value; }
 };
 
 /// A parameter that is a choice among words, held in an enum whose values count from 0 in the order

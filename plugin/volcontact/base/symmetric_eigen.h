@@ -6,20 +6,14 @@
 namespace volcontact {
 
 /// Of a symmetric matrix: eigenvalues, rising, and unit eigenvectors, one a column.
-template <typename Vector, typename Matrix>
+template <int N>
 struct SymmetricEigen {
-  Vector values;
-  Matrix vectors;
+  Vector<N> values;
+  Matrix<N, N> vectors;
 };
 
-// Eigen's solvers, compiled once: each file that has one takes seconds longer to compile.
-
-/// By iteration, to rounding.
-SymmetricEigen<Vec3, Mat3> symmetric_eigen(const Mat3& m);
-SymmetricEigen<Eigen::Vector2d, Eigen::Matrix2d> symmetric_eigen(const Eigen::Matrix2d& m);
-
-/// By the roots of the cubic: quicker, half the digits where two eigenvalues are nearly the same.
-Vec3 direct_eigenvalues(const Mat3& m);
-Mat3 direct_eigenvectors(const Mat3& m);
+/// To rounding, by Jacobi's rotations. [Golub and Van Loan, Matrix Computations, 8.5]
+SymmetricEigen<3> symmetric_eigen(const Mat3& m);
+SymmetricEigen<2> symmetric_eigen(const Mat2& m);
 
 }  // namespace volcontact

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <cmath>
 
-#include "volcontact/base/vector_operators.h"
+#include "volcontact/base/matrix.h"
 
 namespace volcontact {
 
@@ -17,7 +15,7 @@ namespace volcontact {
 // Letters: W world, A and B the two bodies of a pair, C the centroid of a contact site.
 // Units are SI throughout: m, kg, s, N, rad.
 
-// Vec3 and Mat3 are in vector_operators.h.
+// Vec3 is in vector.h, Mat3 in matrix.h.
 
 inline constexpr double kPi = 3.14159265358979323846;
 
@@ -69,18 +67,27 @@ struct Wrench {
   }
 };
 
-/// Cross-product matrix: skew(a) b = a x b.
-inline Mat3 skew(const Vec3& a) {
-  Mat3 s;
-  s << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
-  return s;
+/// Power of a load on a body that moves, both about its frame's origin [W].
+inline double power_of(const Wrench& load, const Twist& motion) {
+  return load.force.dot(motion.linear) + load.torque.dot(motion.angular);
 }
 
-/// Outer product: outer(a, b) c = a (b . c).
-inline Mat3 outer(const Vec3& a, const Vec3& b) {
-  Mat3 m;
-  for (int k = 0; k < 3; ++k) m.col(k) = Vec3(a.x() * b[k], a.y() * b[k], a.z() * b[k]);
-  return m;
+/// Cross-product matrix: skew(a) b = a x b.
+inline Mat3 skew(const Vec3& a) {
+  return {0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0};
+}
+
+/// Rotation matrix of a turn by `angle` [rad] about a unit vector (Rodrigues).
+inline Mat3 rotation_about(const Vec3& axis, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return c * Mat3::Identity() + s * skew(axis) + (1.0 - c) * outer(axis, axis);
+}
+
+/// Rotation matrix of the unit quaternion w + x i + y j + z k.
+inline Mat3 rotation_of(double w, double x, double y, double z) {
+  return {1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z),       2.0 * (x * z + w * y),
+          2.0 * (x * y + w * z),       1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x),
+          2.0 * (x * z - w * y),       2.0 * (y * z + w * x),       1.0 - 2.0 * (x * x + y * y)};
 }
 
 /// Orthonormal basis whose third column is the unit vector `n`; continuous except at n.z = 0.

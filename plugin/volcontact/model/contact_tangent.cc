@@ -9,15 +9,15 @@
 namespace volcontact {
 namespace {
 
-using Mat12 = ContactTangent::Matrix;
-using Column6 = Eigen::Matrix<double, 6, 1>;
+using Column6 = Vector<6>;
 
 // Friction of a site as one column: torque, then force.
 Column6 friction_of(const SiteLaws& laws, const SiteReport& site, double normal_force,
                     const Vec3& slip, double spin) {
   const FrictionOutput out = laws.friction(normal_force, slip, spin);
   Column6 wrench;
-  wrench << out.torque * site.normal, out.force;
+  (out.torque * site.normal).to(wrench.data());
+  out.force.to(wrench.data() + 3);
   return wrench;
 }
 
@@ -64,7 +64,7 @@ FrictionTangent friction_tangent(const SiteLaws& laws, const SiteReport& site) {
 // Turn and displacement of a body at a point, from those of its frame: the point lies at `p`.
 Mat6 motion_at(const Vec3& p) {
   Mat6 j = Mat6::Identity();
-  j.bottomLeftCorner<3, 3>() = -skew(p);
+  j.set_block(3, 0, -skew(p));
   return j;
 }
 
@@ -74,11 +74,7 @@ void add_between(const Mat6& at_site, const Mat6 (&motion)[2], Mat12& out) {
   for (const int row : {0, 1}) {
     for (const int column : {0, 1}) {
       const Mat6 change = motion[row].transpose() * (at_site * motion[column]);
-      if (row == column) {
-        out.block<6, 6>(6 * row, 6 * column) += change;
-      } else {
-        out.block<6, 6>(6 * row, 6 * column) -= change;
-      }
+      out.add_block(6 * row, 6 * column, row == column ? change : -change);
     }
   }
 }
@@ -87,15 +83,15 @@ void add_between(const Mat6& at_site, const Mat6 (&motion)[2], Mat12& out) {
 void add_turning(const SiteReport& site, const Vec3& from_A, const Vec3& from_B, Mat12& by_motion) {
   const Mat3 force = skew(site.force_on_A), torque = skew(site.torque_on_A);
   for (const int body : {0, 6}) {
-    by_motion.block<3, 3>(0, body) -= 0.5 * (torque + skew(from_A) * force);
-    by_motion.block<3, 3>(3, body) -= 0.5 * force;
-    by_motion.block<3, 3>(6, body) += 0.5 * (torque + skew(from_B) * force);
-    by_motion.block<3, 3>(9, body) += 0.5 * force;
+    by_motion.add_block(0, body, -0.5 * (torque + skew(from_A) * force));
+    by_motion.add_block(3, body, -0.5 * force);
+    by_motion.add_block(6, body, 0.5 * (torque + skew(from_B) * force));
+    by_motion.add_block(9, body, 0.5 * force);
   }
-  by_motion.block<3, 3>(0, 0) += force * skew(from_A);
-  by_motion.block<3, 3>(6, 0) -= force * skew(from_A);
-  by_motion.block<3, 3>(6, 3) += force;
-  by_motion.block<3, 3>(6, 9) -= force;
+  by_motion.add_block(0, 0, force * skew(from_A));
+  by_motion.add_block(6, 0, -(force * skew(from_A)));
+  by_motion.add_block(6, 3, force);
+  by_motion.add_block(6, 9, -force);
 }
 
 void add_site(const ContactModel& model, ContactReport& report, std::size_t i, Mat12& by_motion,
@@ -115,7 +111,7 @@ void add_site(const ContactModel& model, ContactReport& report, std::size_t i, M
   const auto with_friction = [&](const Mat6& tangent_W) {
     Mat6 out = -tangent_W;
     for (int k = 0; k < 6; ++k) {
-      const double by_force = n.dot(Vec3(tangent_W.col(k).tail<3>()));
+      const double by_force = n.dot(tangent_W.col(k).tail<3>());
       out.col(k) -= friction.by_force * by_force;
     }
     return out;

@@ -5,14 +5,15 @@
 
 namespace volcontact {
 
+using Mat12 = Matrix<12, 12>;
+
 /// How the wrenches on both bodies change with their motion, in the world frame. Rows: torque and
 /// force on A about A's origin, then those on B about B's. Columns: turn [rad] and displacement [m]
 /// of A's frame, then of B's, or their speeds. At fixed states; the patch is taken as flat
 /// (docs/theory.md, "Stiffness of a site"), and friction from differences of its law alone.
 struct ContactTangent {
-  using Matrix = Eigen::Matrix<double, 12, 12, Eigen::RowMajor>;
-  Matrix by_motion = Matrix::Zero();  ///< dW/dx
-  Matrix by_speed = Matrix::Zero();   ///< dW/dv
+  Mat12 by_motion = Mat12::Zero();  ///< dW/dx
+  Mat12 by_speed = Mat12::Zero();   ///< dW/dv
 };
 
 /// Of a report that keeps its inputs, by the model that made it. What the laws keep is as before.

@@ -8,8 +8,6 @@
 namespace volcontact {
 namespace {
 
-using ConstMap3 = Eigen::Map<const Vec3>;
-
 SiteHead head_of(const double* row) {
   SiteHead head;
   std::memcpy(static_cast<void*>(&head), row, sizeof head);
@@ -50,11 +48,12 @@ SiteHead site_head(int pair, const VolumeMetrics& metrics_W, const BodyMotion& m
   head.pair = pair;
   head.volume = metrics_W.volume;
   head.radius = radius_of(metrics_W);
-  Eigen::Map<Vec3>(head.point_A) =
+  const Vec3 point_A =
       motion.X_WA.rotation.transpose() * (metrics_W.centroid - motion.X_WA.translation);
-  Eigen::Map<Vec3>(head.normal_W) = metrics_W.normal();
-  Eigen::Map<Mat3>(head.rotation_AB) = X_AB.rotation;
-  Eigen::Map<Vec3>(head.origin_B_A) = X_AB.translation;
+  point_A.to(head.point_A);
+  metrics_W.normal().to(head.normal_W);
+  X_AB.rotation.to(head.rotation_AB);
+  X_AB.translation.to(head.origin_B_A);
   return head;
 }
 
@@ -68,8 +67,8 @@ void SiteCarrier::predict(const SiteMemory& memory, int pair, const BodyMotion& 
     const double* row = memory.rows + static_cast<std::ptrdiff_t>(i) * memory.stride;
     const SiteHead head = head_of(row);
     if (head.pair != pair) continue;
-    const Eigen::Map<const Mat3> old_R_AB(head.rotation_AB);
-    const ConstMap3 old_p_AB(head.origin_B_A), point_A(head.point_A);
+    const Mat3 old_R_AB = Mat3::from(head.rotation_AB);
+    const Vec3 old_p_AB = Vec3::from(head.origin_B_A), point_A = Vec3::from(head.point_A);
     // Differences of what was and is, so that bodies at rest have exactly no way.
     const Vec3 point_B = old_R_AB.transpose() * (point_A - old_p_AB);
     const Vec3 way_of_B = (X_AB.rotation - old_R_AB) * point_B + (X_AB.translation - old_p_AB);
@@ -144,10 +143,10 @@ void SiteCarrier::inherit(std::size_t site, const VolumeMetrics& metrics_W,
       switch (state.keeping) {
         case Keeping::kVector:
         case Keeping::kVectorValue: {
-          const Vec3 moved = turned(ConstMap3(from + i), ConstMap3(head.normal_W), normal);
+          const Vec3 moved = turned(Vec3::from(from + i), Vec3::from(head.normal_W), normal);
           const Vec3 spun_on = moved * std::cos(spun) + normal.cross(moved) * std::sin(spun);
           const bool is_amount = state.keeping == Keeping::kVector;
-          Eigen::Map<Vec3>(to + i) += (is_amount ? share : weight) * spun_on;
+          (Vec3::from(to + i) + (is_amount ? share : weight) * spun_on).to(to + i);
           break;
         }
         case Keeping::kAmount:

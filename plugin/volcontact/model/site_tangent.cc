@@ -7,31 +7,28 @@
 namespace volcontact {
 namespace {
 
-using Vec2 = Eigen::Vector2d;
-using Mat2 = Eigen::Matrix2d;
-
 // The mean of q q^T with q = (1, y, -x), which is how a point (x, y) of the plane moves along n.
 Mat3 mean_square(const Vec2& mean, const Mat2& spread) {
-  Mat3 m;
-  m << 1.0, mean.y(), -mean.x(),              //
-      mean.y(), spread(1, 1), -spread(0, 1),  //
-      -mean.x(), -spread(0, 1), spread(0, 0);
-  return m;
+  return {1.0,       mean.y(),      -mean.x(),      //
+          mean.y(),  spread(1, 1),  -spread(0, 1),  //
+          -mean.x(), -spread(0, 1), spread(0, 0)};
 }
 
 // Of the rows and columns along n, about t_1, about t_2, and of friction: along t_1 and t_2, about
 // n.
 Mat6 in_world(const Mat3& axes, const Mat3& normal, double along, double about) {
-  Mat3 turn = Mat3::Zero(), both = Mat3::Zero();
-  turn << normal(1, 1), normal(1, 2), 0.0, normal(2, 1), normal(2, 2), 0.0, 0.0, 0.0, about;
-  both.col(2) << normal(1, 0), normal(2, 0), 0.0;
+  const Mat3 turn(normal(1, 1), normal(1, 2), 0.0, normal(2, 1), normal(2, 2), 0.0, 0.0, 0.0,
+                  about);
+  Mat3 both = Mat3::Zero();
+  both.col(2) = {normal(1, 0), normal(2, 0), 0.0};
   const Mat3 push = Vec3(along, along, normal(0, 0)).asDiagonal();
   const Mat3 to_site = axes.transpose();
+  const Mat3 beside = axes * both * to_site;
   Mat6 m;
-  m.topLeftCorner<3, 3>() = axes * turn * to_site;
-  m.topRightCorner<3, 3>() = axes * both * to_site;
-  m.bottomLeftCorner<3, 3>() = m.topRightCorner<3, 3>().transpose();
-  m.bottomRightCorner<3, 3>() = axes * push * to_site;
+  m.set_block(0, 0, axes * turn * to_site);
+  m.set_block(0, 3, beside);
+  m.set_block(3, 0, beside.transpose());
+  m.set_block(3, 3, axes * push * to_site);
   return m;
 }
 
@@ -49,12 +46,12 @@ PatchMoments patch_moments(const VolumeMetrics& metrics_W, const Mat3& axes) noe
   const Vec3 offset = to_site * n.cross(turned);
   const Mat3 weighed = to_site * metrics_W.second_moment() * axes;
   patch.offset = offset.head<2>();
-  patch.weighed = weighed.topLeftCorner<2, 2>() / metrics_W.volume;
+  patch.weighed = weighed.block<2, 2>(0, 0) / metrics_W.volume;
 
   // About the patch's centre the volume and the patch have the same second moments where the depth
   // is linear. A smooth body pushed in has those of a paraboloid, 2/3 of an ellipse's; which of the
   // two it is shows in the area.
-  const Mat2 square = patch.offset * patch.offset.transpose();
+  const Mat2 square = outer(patch.offset, patch.offset);
   const Mat2 about_centre = patch.weighed + square;
   const double ratio = kPi * std::sqrt(std::max(0.0, about_centre.determinant())) / patch.area;
   const double paraboloid = std::clamp(12.0 * (0.25 - ratio), 0.0, 1.0);

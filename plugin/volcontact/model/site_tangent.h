@@ -8,15 +8,15 @@
 
 namespace volcontact {
 
-using Mat6 = Eigen::Matrix<double, 6, 6>;
+using Mat6 = Matrix<6, 6>;
 
 /// What is known of the patch of a site, in its plane through the centroid of the volume:
 /// coordinates along the first two axes of the frame.
 struct PatchMoments {
-  double area = 0.0;                                  ///< |S| [m^2]
-  Eigen::Vector2d offset = Eigen::Vector2d::Zero();   ///< of the patch's centre from there [m]
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();   ///< mean r r^T over the patch [m^2]
-  Eigen::Matrix2d weighed = Eigen::Matrix2d::Zero();  ///< mean r r^T over the volume [m^2]
+  double area = 0.0;            ///< |S| [m^2]
+  Vec2 offset = Vec2::Zero();   ///< of the patch's centre from there [m]
+  Mat2 spread = Mat2::Zero();   ///< mean r r^T over the patch [m^2]
+  Mat2 weighed = Mat2::Zero();  ///< mean r r^T over the volume [m^2]
 };
 
 /// Area and offset are exact: they are dV/dx and dV/dtheta. The spread follows from the moments of

@@ -76,8 +76,6 @@ class Frustum {
   }
 
  private:
-  using Vec2 = Eigen::Vector2d;
-
   double at_top(double across, double z) const {
     return p_.top_radius * across + p_.half_length * z;
   }

@@ -76,8 +76,7 @@ Vec3 Ellipsoid::gradient(const Vec3& p) const {
   const Vec3 normal = p.cwiseProduct(inverse_).cwiseProduct(inverse_);
   const double length = normal.norm();
   if (length > 0.0 && !is_flat()) return normal / length;
-  Eigen::Index thinnest;
-  p_.semi_axes.minCoeff(&thinnest);
+  const int thinnest = p_.semi_axes.least();
   return std::copysign(1.0, p[thinnest]) * Vec3::Unit(thinnest);
 }
 
@@ -266,7 +265,7 @@ double Frustum::from_profile(double rho, double z) const {
   return (Vec2(rho, z) - nearest(rho, z)).norm();
 }
 
-Frustum::Vec2 Frustum::nearest(double rho, double z) const {
+Vec2 Frustum::nearest(double rho, double z) const {
   const Vec2 bottom(p_.bottom_radius, -p_.half_length), top(p_.top_radius, p_.half_length);
   const Vec2 edge = top - bottom, point(rho, z);
   const double length2 = edge.squaredNorm();
@@ -305,8 +304,8 @@ RayInterval Frustum::quadratic_at_most_zero(double a, double b, double c, double
 Box::Box(const Params& params) : p_(validated<Box>(params)) {}
 Vec3 Box::gradient(const Vec3& p) const {
   const Vec3 excess = p.cwiseAbs() - p_.half_sizes;
-  Eigen::Index i;
-  if (excess.maxCoeff(&i) <= 0.0) return std::copysign(1.0, p[i]) * Vec3::Unit(i);
+  const int i = excess.largest();
+  if (excess[i] <= 0.0) return std::copysign(1.0, p[i]) * Vec3::Unit(i);
   Vec3 direction = excess.cwiseMax(0.0).normalized();
   for (int k = 0; k < 3; ++k) direction[k] = std::copysign(direction[k], p[k]);
   return direction;
@@ -354,8 +353,8 @@ RoundedBox::RoundedBox(const Params& params)
 
 Vec3 RoundedBox::gradient(const Vec3& p) const {
   const Vec3 excess = p.cwiseAbs() - inner_;
-  Eigen::Index i;
-  if (excess.maxCoeff(&i) <= 0.0) return std::copysign(1.0, p[i]) * Vec3::Unit(i);
+  const int i = excess.largest();
+  if (excess[i] <= 0.0) return std::copysign(1.0, p[i]) * Vec3::Unit(i);
   const Vec3 outside = excess.cwiseMax(0.0);
   Vec3 direction = outside.normalized();
   for (int k = 0; k < 3; ++k) direction[k] = std::copysign(direction[k], p[k]);

@@ -18,6 +18,24 @@ struct Aabb {
   bool bounded() const { return is_finite(min) && is_finite(max); }
   Vec3 center() const { return 0.5 * (min + max); }
   Vec3 half_sizes() const { return 0.5 * (max - min); }
+
+  /// The box that holds nothing.
+  static Aabb none() {
+    const Vec3 far = Vec3::Constant(std::numeric_limits<double>::infinity());
+    return {far, -far};
+  }
+  void add(const Vec3& point) {
+    min = min.cwiseMin(point);
+    max = max.cwiseMax(point);
+  }
+  void add(const Aabb& other) {
+    min = min.cwiseMin(other.min);
+    max = max.cwiseMax(other.max);
+  }
+  /// Distance from another box, 0 where they overlap [m].
+  double distance(const Aabb& other) const {
+    return (other.min - max).cwiseMax(min - other.max).cwiseMax(0.0).norm();
+  }
 };
 
 /// Part of the line o + t d inside a convex solid: t from `enter` to `leave`; empty when

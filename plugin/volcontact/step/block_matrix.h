@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
+
+#include "volcontact/base/matrix.h"
 
 namespace volcontact {
 
@@ -16,8 +17,8 @@ namespace volcontact {
 template <int K>
 class BlockMatrix {
  public:
-  using Block = Eigen::Matrix<double, K, K>;
-  using Vector = Eigen::Matrix<double, K, 1>;
+  using Block = Matrix<K, K>;
+  using Column = Vector<K>;
 
   /// Of `count` blocks a side, with any values.
   void reset(int count, bool is_symmetric) {
@@ -34,7 +35,7 @@ class BlockMatrix {
   /// In place: blocks of L below the diagonal, and of U, transposed, above it.
   void factor() {
     for (int k = 0; k < count_; ++k) {
-      const Vector whole = (*this)(k, k).diagonal();
+      const Column whole = (*this)(k, k).diagonal();
       subtract_before(k, k);
       factor_block(k, whole);
       for (int i = k + 1; i < count_; ++i) {
@@ -42,7 +43,7 @@ class BlockMatrix {
         divide(k, (*this)(i, k), true);
         if (is_symmetric_) continue;
         subtract_before(k, i);
-        (*this)(k, i).transposeInPlace();
+        (*this)(k, i) = (*this)(k, i).transpose();
         divide(k, (*this)(k, i), false);
       }
     }
@@ -51,16 +52,17 @@ class BlockMatrix {
   /// After `factor`: solves for one right side, K numbers a block, in place.
   void solve(double* x) const {
     for (int i = 0; i < count_; ++i) {
-      Eigen::Map<Vector> out = of(x, i);
-      for (int k = 0; k < i; ++k) out.noalias() -= at(i, k) * of(x, k);
+      Column out = of(x, i);
+      for (int k = 0; k < i; ++k) out -= at(i, k) * of(x, k);
       const Block& block = at(i, i);
       for (int r = 0; r < K; ++r) {
         for (int c = 0; c < r; ++c) out[r] -= block(r, c) * out[c];
         if (is_symmetric_) out[r] *= inverse(i)[r];
       }
+      out.to(x + K * i);
     }
     for (int i = count_ - 1; i >= 0; --i) {
-      Eigen::Map<Vector> out = of(x, i);
+      Column out = of(x, i);
       const Block& block = at(i, i);
       for (int r = K - 1; r >= 0; --r) {
         for (int c = r + 1; c < K; ++c) {
@@ -68,22 +70,25 @@ class BlockMatrix {
         }
         out[r] *= inverse(i)[r];
       }
-      for (int k = 0; k < i; ++k) of(x, k).noalias() -= upper(k, i).transpose() * out;
+      out.to(x + K * i);
+      for (int k = 0; k < i; ++k) {
+        (of(x, k) - upper(k, i).transposed_times(out)).to(x + K * k);
+      }
     }
   }
 
  private:
-  static Eigen::Map<Vector> of(double* x, int i) { return Eigen::Map<Vector>(x + K * i); }
+  static Column of(const double* x, int i) { return Column::from(x + K * i); }
   const Block& at(int i, int k) const { return blocks_[index(i, k)]; }
   // The transpose of block (k, i) of U, k < i.
   const Block& upper(int k, int i) const { return is_symmetric_ ? at(i, k) : at(k, i); }
-  const Vector& inverse(int i) const { return inverse_[static_cast<std::size_t>(i)]; }
+  const Column& inverse(int i) const { return inverse_[static_cast<std::size_t>(i)]; }
 
   // What the columns factored so far make of block (i, k).
   void subtract_before(int i, int k) {
     Block sum = (*this)(i, k);
     for (int before = 0; before < std::min(i, k); ++before) {
-      sum.noalias() -= at(i, before) * upper(before, k).transpose();
+      sum -= at(i, before) * upper(before, k).transpose();
     }
     (*this)(i, k) = sum;
   }
@@ -91,9 +96,9 @@ class BlockMatrix {
   // L and U of a block of the diagonal, L with ones on its diagonal where it is not symmetric.
   // `whole`: its diagonal at first. Where rounding has made the matrix singular, a pivot is what
   // rounding leaves of it.
-  void factor_block(int k, const Vector& whole) {
+  void factor_block(int k, const Column& whole) {
     Block& block = (*this)(k, k);
-    Vector& inverse = inverse_[static_cast<std::size_t>(k)];
+    Column& inverse = inverse_[static_cast<std::size_t>(k)];
     for (int c = 0; c < K; ++c) {
       const double pivot = std::max(block(c, c), std::numeric_limits<double>::epsilon() * whole[c]);
       inverse[c] = 1.0 / (is_symmetric_ ? std::sqrt(pivot) : pivot);
@@ -124,7 +129,7 @@ class BlockMatrix {
   int count_ = 0;
   bool is_symmetric_ = true;
   std::vector<Block> blocks_;
-  std::vector<Vector> inverse_;  // of U's diagonal
+  std::vector<Column> inverse_;  // of U's diagonal
 };
 
 }  // namespace volcontact

@@ -7,11 +7,6 @@
 #include "volcontact/base/sizes.h"
 
 namespace volcontact {
-namespace {
-
-using Vector = Eigen::Map<Eigen::VectorXd>;
-
-}  // namespace
 
 void ContactEquations::solve(ContactSpace& space, double step, std::vector<double>& force,
                              std::vector<double>& velocity) {
@@ -63,19 +58,17 @@ void ContactEquations::factor(const ContactSpace& space, double step, ByForces<K
       const ContactSpace::Square& lambda = space.delassus(place, other);
       const Root& right = out.roots[size(other)];
       auto& block = out.matrix(i, k);
-      const Mat3 moved = lambda.topLeftCorner<3, 3>() * right.normal;
-      block.template topLeftCorner<3, 3>().noalias() = left.normal.transpose() * moved;
+      const Mat3 left_normal = left.normal.transpose();
+      block.set_block(0, 0, left_normal * (lambda.block<3, 3>(0, 0) * right.normal));
       if constexpr (K > 3) {
-        const Mat3 rubbed = lambda.topRightCorner<3, 3>() * right.friction.asDiagonal();
-        const Mat3 slid = lambda.bottomLeftCorner<3, 3>() * right.normal;
-        block.template topRightCorner<3, 3>().noalias() = left.normal.transpose() * rubbed;
-        block.template bottomLeftCorner<3, 3>() = left.friction.asDiagonal() * slid;
-        block.template bottomRightCorner<3, 3>() = left.friction.asDiagonal() *
-                                                   lambda.bottomRightCorner<3, 3>() *
-                                                   right.friction.asDiagonal();
+        const auto left_friction = left.friction.asDiagonal();
+        const auto right_friction = right.friction.asDiagonal();
+        block.set_block(0, 3, left_normal * (lambda.block<3, 3>(0, 3) * right_friction));
+        block.set_block(3, 0, left_friction * (lambda.block<3, 3>(3, 0) * right.normal));
+        block.set_block(3, 3, left_friction * lambda.block<3, 3>(3, 3) * right_friction);
       }
     }
-    out.matrix(i, i).diagonal().array() += 1.0;
+    for (int k = 0; k < K; ++k) out.matrix(i, i)(k, k) += 1.0;
   }
   out.matrix.factor();
   out.is_valid = true;
@@ -92,7 +85,7 @@ void ContactEquations::solve_blocks(const ContactSpace& space, double step, ByFo
     const Root& root = by.roots[size(place)];
     const double* const motion = &response_[size(kRows * place)];
     double* const right = &right_[size(K * i)];
-    Eigen::Map<Vec3>(right).noalias() = root.normal.transpose() * Eigen::Map<const Vec3>(motion);
+    root.normal.transposed_times(Vec3::from(motion)).to(right);
     for (int r = 3; r < K; ++r) right[r] = root.friction[r - 3] * motion[r];
   }
   by.matrix.solve(right_.data());
@@ -101,7 +94,7 @@ void ContactEquations::solve_blocks(const ContactSpace& space, double step, ByFo
     const Root& root = by.roots[size(place)];
     const double* const solved = &right_[size(K * i)];
     double* const f = &force[size(kRows * place)];
-    Eigen::Map<Vec3>(f).noalias() -= root.normal * Eigen::Map<const Vec3>(solved);
+    (Vec3::from(f) - root.normal * Vec3::from(solved)).to(f);
     for (int r = 3; r < K; ++r) f[r] -= root.friction[r - 3] * solved[r];
   }
 }
@@ -153,20 +146,18 @@ void ContactEquations::solve_for_dofs(ContactSpace& space, double step, std::vec
   // What the contacts would bear at the velocities of now.
   force.assign(constant.begin(), constant.end());
   velocity.resize(size(rows));
-  Vector u(velocity.data(), rows);
-  u = space.velocity();
+  std::copy(space.velocity().begin(), space.velocity().end(), velocity.begin());
   const auto bear = [&](int place) {
-    Eigen::Map<ContactSpace::Block>(&force[size(place * kRows)]) -=
-        slopes[size(place)] * u.segment<kRows>(place * kRows);
+    double* const f = &force[size(place * kRows)];
+    const auto u = ContactSpace::Block::from(&velocity[size(place * kRows)]);
+    (ContactSpace::Block::from(f) - slopes[size(place)] * u).to(f);
   };
   for (int place = 0; place < rows / kRows; ++place) {
     if (!slopes[size(place)].is_zero()) bear(place);
   }
-  right_.resize(size(n));
-  Vector right(right_.data(), n);
-  right = space.known();
+  right_ = space.known();
   space.add_load(force.data(), right_.data());
-  right *= step;
+  for (double& load : right_) load *= step;
   by.matrix.solve(right_.data(), 0, n);
   space.add_motion(right_.data(), velocity.data());
   std::copy(constant.begin(), constant.end(), force.begin());

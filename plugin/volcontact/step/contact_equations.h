@@ -22,8 +22,8 @@ struct ContactEquations {
     bool is_zero() const { return friction.isZero(0.0) && normal.isZero(0.0); }
     ContactSpace::Block operator*(const ContactSpace::Block& u) const {
       ContactSpace::Block out;
-      out.head<3>().noalias() = normal * u.head<3>();
-      out.tail<3>() = friction.cwiseProduct(u.tail<3>());
+      (normal * u.head<3>()).to(out.data());
+      friction.cwiseProduct(u.tail<3>()).to(out.data() + 3);
       return out;
     }
   };

@@ -30,10 +30,11 @@ void ContactSpace::add_place(const Mechanism& mechanism, const ContactPlace& pla
   if (tree_b >= 0) add_body(mechanism, place, place.body_b, -1.0);
   const auto take = [&](int tree) {
     for (int dof = matrix_.tree(tree).begin; dof < matrix_.tree(tree).end; ++dof) {
-      Eigen::Map<Block> column(&dense_[size(kRows * dof)]);
-      if (column.isZero(0.0)) continue;
-      moves_.push_back({column, dof});
-      column.setZero();
+      double* const column = &dense_[size(kRows * dof)];
+      const Block moved = Block::from(column);
+      if (moved.isZero(0.0)) continue;
+      moves_.push_back({moved, dof});
+      Block::Zero().to(column);
     }
   };
   if (tree_a >= 0) take(tree_a);
@@ -64,13 +65,13 @@ void ContactSpace::carry(int place, Carry carry, Block Carried::* out) {
   support_.clear();
   for (const Carried& one : carried(place)) support_.push_back(one.dof);
   for (const Move& move : moves(place)) {
-    std::copy_n(move.column.data(), kRows, &dense_[size(kRows * move.dof)]);
+    move.column.to(&dense_[size(kRows * move.dof)]);
   }
   carry(support_, dense_.data());
   for (Carried& one : carried(place)) {
-    Eigen::Map<Block> numbers(&dense_[size(kRows * one.dof)]);
-    one.*out = numbers;
-    numbers.setZero();
+    double* const numbers = &dense_[size(kRows * one.dof)];
+    one.*out = Block::from(numbers);
+    Block::Zero().to(numbers);
   }
 }
 
@@ -95,9 +96,8 @@ void ContactSpace::respond() {
     carry(place, lower, &Carried::moved);
     if (!factor.is_symmetric()) carry(place, upper, &Carried::forced);
     for (Carried& one : carried(place)) {
-      one.forced =
-          factor.inverse_pivot(one.dof) * (factor.is_symmetric() ? one.moved : one.forced).eval();
-      free_mobility_[size(place)].noalias() += one.moved * one.forced.transpose();
+      one.forced = factor.inverse_pivot(one.dof) * (factor.is_symmetric() ? one.moved : one.forced);
+      free_mobility_[size(place)] += outer(one.moved, one.forced);
     }
   }
 }
@@ -107,19 +107,18 @@ void ContactSpace::make_free_row(int place, int end) {
   free_block(place, place) = free_mobility_[size(place)];
   if (place == 0 && end == 1) return;
   for (const Carried& one : carried(place)) {
-    std::copy_n(one.moved.data(), kRows, &dense_[size(kRows * one.dof)]);
+    one.moved.to(&dense_[size(kRows * one.dof)]);
   }
   for (int other = 0; other < end; ++other) {
     if (other == place) continue;
     Square& out = free_block(place, other);
     out.setZero();
     for (const Carried& one : carried(other)) {
-      const Eigen::Map<const Block> moved(&dense_[size(kRows * one.dof)]);
-      out.noalias() += moved * one.forced.transpose();
+      out += outer(Block::from(&dense_[size(kRows * one.dof)]), one.forced);
     }
   }
   for (const Carried& one : carried(place)) {
-    Eigen::Map<Block>(&dense_[size(kRows * one.dof)]).setZero();
+    Block::Zero().to(&dense_[size(kRows * one.dof)]);
   }
 }
 
@@ -180,8 +179,7 @@ ContactSpace::Square ContactSpace::constrained(const Square& free, int place, in
   Square out = free;
   const std::size_t count = matrix_.columns().size();
   for (std::size_t c = 0; c < count; ++c) {
-    out.noalias() -=
-        opened_[size(place) * count + c] * closed_[size(other) * count + c].transpose();
+    out -= outer(opened_[size(place) * count + c], closed_[size(other) * count + c]);
   }
   return out;
 }
@@ -240,29 +238,32 @@ void ContactSpace::move_by_delassus(const double* f, double* u) const {
   const bool is_symmetric = this->is_symmetric();
   std::fill(u, u + rows(), 0.0);
   for (int i = 0; i < count; ++i) {
-    Eigen::Map<Block> motion(u + kRows * i);
-    const Eigen::Map<const Block> force(f + kRows * i);
+    Block motion = Block::from(u + kRows * i);
+    const Block force = Block::from(f + kRows * i);
     for (int k = 0; k < (is_symmetric ? i + 1 : count); ++k) {
       const Square& block = delassus(i, k);
-      motion.noalias() += block * Eigen::Map<const Block>(f + kRows * k);
+      motion += block * Block::from(f + kRows * k);
       if (!is_symmetric || k == i) continue;
-      Eigen::Map<Block>(u + kRows * k).noalias() += block.transpose() * force;
+      double* const other = u + kRows * k;
+      (Block::from(other) + block.transposed_times(force)).to(other);
     }
+    motion.to(u + kRows * i);
   }
   for (std::size_t i = 0; i < free_.size(); ++i) u[i] = free_[i] + step_ * u[i];
 }
 
 void ContactSpace::add_load(const double* f, double* load) const {
   for (int place = 0; place < places(); ++place) {
-    const Eigen::Map<const Block> force(f + kRows * place);
+    const Block force = Block::from(f + kRows * place);
     for (const Move& move : moves(place)) load[move.dof] += move.column.dot(force);
   }
 }
 
 void ContactSpace::add_motion(const double* x, double* u) const {
   for (int place = 0; place < places(); ++place) {
-    Eigen::Map<Block> motion(u + kRows * place);
+    Block motion = Block::from(u + kRows * place);
     for (const Move& move : moves(place)) motion += x[move.dof] * move.column;
+    motion.to(u + kRows * place);
   }
 }
 

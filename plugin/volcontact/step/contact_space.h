@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <span>
 #include <vector>
 
@@ -18,8 +17,8 @@ inline constexpr int kRows = 6;  ///< of a contact place: along and about its th
 /// constraints is made once. Memory is reused from step to step.
 class ContactSpace {
  public:
-  using Block = Eigen::Matrix<double, kRows, 1>;
-  using Square = Eigen::Matrix<double, kRows, kRows>;
+  using Block = Vector<kRows>;
+  using Square = Matrix<kRows, kRows>;
 
   /// A column of J at one place that is not zero.
   struct Move {
@@ -58,9 +57,11 @@ class ContactSpace {
   }
   /// The block of Lambda of one place.
   const Square& mobility(std::size_t place) const { return mobility_[place]; }
-  Eigen::Map<const Eigen::VectorXd> known() const { return {known_.data(), dofs()}; }
-  Eigen::Map<const Eigen::VectorXd> velocity() const { return {velocity_.data(), rows()}; }
-  Eigen::Map<const Eigen::VectorXd> free_velocity() const { return {free_.data(), rows()}; }
+  const std::vector<double>& known() const { return known_; }
+  const std::vector<double>& velocity() const { return velocity_; }
+  /// u and u_free of one place.
+  Block velocity(std::size_t place) const { return Block::from(&velocity_[kRows * place]); }
+  Block free_velocity(std::size_t place) const { return Block::from(&free_[kRows * place]); }
   /// u' under the forces f: by the degrees of freedom, and by Lambda after build_delassus().
   void move(const std::vector<double>& f, std::vector<double>& u);
   void move_by_delassus(const double* f, double* u) const;

@@ -83,19 +83,20 @@ class EnvelopeMatrix {
   /// right sides at first.
   template <int kSides = 1>
   void solve(double* x, int begin, int end) const {
-    using Numbers = Eigen::Matrix<double, kSides, 1>;
-    const auto of = [&](int i) { return Eigen::Map<Numbers>(x + kSides * (i - begin)); };
+    using Numbers = Vector<kSides>;
+    const auto at_unknown = [&](int i) { return x + kSides * (i - begin); };
+    const auto of = [&](int i) { return Numbers::from(at_unknown(i)); };
     for (int i = begin; i < end; ++i) {
       const double* row = at(i, first(i));
       Numbers sum = of(i);
       for (int k = first(i); k < i; ++k) sum -= *row++ * of(k);
-      of(i) = is_symmetric() ? Numbers(*row * sum) : sum;
+      (is_symmetric() ? *row * sum : sum).to(at_unknown(i));
     }
     for (int i = end - 1; i >= begin; --i) {
       const Numbers solved = (*this)(i, i) * of(i);
-      of(i) = solved;
+      solved.to(at_unknown(i));
       const double* row = is_symmetric() ? at(i, first(i)) : &upper_[index(i, first(i))];
-      for (int k = first(i); k < i; ++k) of(k) -= *row++ * solved;
+      for (int k = first(i); k < i; ++k) (of(k) - *row++ * solved).to(at_unknown(k));
     }
   }
 

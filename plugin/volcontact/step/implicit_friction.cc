@@ -83,7 +83,7 @@ ImplicitStep::Slide ImplicitStep::slide_under(std::size_t i, double strength, do
   }
   const Vec3 direction = speed > 0.0 ? Vec3(slip / speed) : Vec3::UnitX();
   const Vec3 scaled(direction[0], direction[1], lever * direction[2]);
-  const double mobility = scaled.dot(space_.mobility(i).bottomRightCorner<3, 3>() * scaled);
+  const double mobility = scaled.dot(space_.mobility(i).block<3, 3>(3, 3) * scaled);
   const double slowed = step * mobility;
   return with_viscous(strength, speed - slowed * (strength + acting.dot(direction)), slowed);
 }

@@ -43,7 +43,6 @@ double holding(double stiffness_number) {
 // share of f_0 taken out again, so that the constant is what a motionless contact would bear.
 void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& falling,
                                 double resting, ImplicitParts parts, double step) {
-  using Vec2 = Eigen::Vector2d;
   const SiteReport& report = site.report->sites[site.index];
   const SiteTangent& tangent = site.tangent;
   const double k = tangent.stiffness(0, 0), damping = tangent.damping(0, 0);
@@ -51,12 +50,12 @@ void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& fa
   const Vec3 torque = tangent.axes.transpose() * site.report->inputs[site.index].elastic_torque;
   // The patch's centre and spread, back from the stiffness: k (1, y, -x) (1, y, -x)'.
   Vec2 centre = Vec2::Zero();
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  Mat2 spread = Mat2::Zero();
   if (k > 0.0) {
     centre = Vec2(-tangent.stiffness(0, 2), tangent.stiffness(0, 1)) / k;
-    spread << tangent.stiffness(2, 2), -tangent.stiffness(1, 2), -tangent.stiffness(1, 2),
-        tangent.stiffness(1, 1);
-    spread = spread / k - centre * centre.transpose();
+    const Mat2 about_centroid(tangent.stiffness(2, 2), -tangent.stiffness(1, 2),
+                              -tangent.stiffness(1, 2), tangent.stiffness(1, 1));
+    spread = about_centroid / k - outer(centre, centre);
   }
   // Where the force acts, times the force.
   const Vec2 moment(-torque[1], torque[0]);
@@ -73,8 +72,7 @@ void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& fa
     const Vec2 axis = principal.vectors.col(i);
     const double square = std::max(0.0, principal.values[i]);
     const Vec2 turn(axis[1], -axis[0]);
-    const double turn_number =
-        number * square * turn.dot(mobility.bottomRightCorner<2, 2>() * turn);
+    const double turn_number = number * square * turn.dot(mobility.block<2, 2>(1, 1) * turn);
     split[i] = square > 0.0 && (parts != ImplicitParts::kStiff || turn_number > kSoftNumber);
     if (!split[i]) continue;
     reach[i] = std::sqrt(square);
@@ -118,15 +116,14 @@ void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& fa
     const Vec2 axis = principal.vectors.col(i);
     const Vec3 turn(0.0, axis[1], -axis[0]);
     const double about = std::max(0.0, turn.dot(tangent.damping * turn));
-    site.rolls.noalias() += (about * turn) * turn.transpose();
+    site.rolls += outer(about * turn, turn);
   }
 }
 
 void ImplicitStep::make_points(ImplicitParts parts, double step, double resting) {
   for (std::size_t i = 0; i < island_.size(); ++i) {
-    const Eigen::Index first = static_cast<Eigen::Index>(i) * kRows;
-    const Vec3 falling = (space_.free_velocity() - space_.velocity()).segment<3>(first);
-    place_points(site(i), space_.mobility(i).topLeftCorner<3, 3>(), falling, resting, parts, step);
+    const Vec3 falling = (space_.free_velocity(i) - space_.velocity(i)).head<3>();
+    place_points(site(i), space_.mobility(i).block<3, 3>(0, 0), falling, resting, parts, step);
   }
 }
 

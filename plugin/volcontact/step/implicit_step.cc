@@ -39,15 +39,16 @@ void ImplicitStep::solve_once(bool with_friction, double step) {
     const Site& site = this->site(i);
     if (!site.pushes()) continue;
     const int first = static_cast<int>(i) * kRows;
-    Eigen::Map<Vec3> constant(&constants[size(first)]);
+    Vec3 constant = Vec3::Zero();
     for (int k = 0; k < site.point_count; ++k) {
       const Point& point = site.points[size(k)];
       if (!point.pushes) continue;
       constant += point.constant * point.motion;
     }
+    constant.to(&constants[size(first)]);
     slopes[i].normal = site.normal_slope();
     if (!with_friction) continue;
-    std::copy_n(site.held.data(), 3, &constants[size(first + 3)]);
+    site.held.to(&constants[size(first + 3)]);
     slopes[i].friction = site.friction_slope();
   }
   equations_.solve(space_, step, force_, velocity_);
@@ -60,7 +61,7 @@ bool ImplicitStep::improve_active(bool with_friction, bool takes_back, double st
   bool changed = false;
   for (std::size_t i = 0; i < island_.size(); ++i) {
     if (!limits_[site(i).pair].acts) continue;
-    const Vec3 motion = Eigen::Map<const Vec3>(&velocity_[i * size(kRows)]);
+    const Vec3 motion = Vec3::from(&velocity_[i * size(kRows)]);
     for (int k = 0; k < site(i).point_count; ++k) {
       Point& point = site(i).points[size(k)];
       const bool pushes = point.constant - point.slope * point.motion.dot(motion) > 0.0;
@@ -95,18 +96,16 @@ void ImplicitStep::solve_active(bool with_friction, double step) {
 
 // Of the motion at the begin of the step and that at its end.
 ContactSpace::Block ImplicitStep::mean_motion(std::size_t i) const {
-  const Eigen::Index first = static_cast<Eigen::Index>(i) * kRows;
-  const ConstVector u(velocity_.data(), space_.rows());
-  return 0.5 * (space_.velocity().segment<kRows>(first) + u.segment<kRows>(first));
+  return 0.5 * (space_.velocity(i) + ContactSpace::Block::from(&velocity_[i * size(kRows)]));
 }
 
 // The power that the forces take from the motion over the step.
 ByChannel ImplicitStep::taken(const Site& site, std::size_t i) const {
   const ContactSpace::Block mean = mean_motion(i);
   const double* f = &force_[i * size(kRows)];
-  const Eigen::Vector2d turning = mean.segment<2>(1);
+  const Vec2 turning(mean[1], mean[2]);
   ByChannel out;
-  out.roll = turning.dot(site.tangent.damping.bottomRightCorner<2, 2>() * turning);
+  out.roll = turning.dot(site.tangent.damping.block<2, 2>(1, 1) * turning);
   out.normal = -(f[0] * mean[0] + f[1] * mean[1] + f[2] * mean[2]) - out.roll;
   out.slide = -(f[3] * mean[3] + f[4] * mean[4]);
   out.spin = -f[5] * mean[5];
@@ -121,7 +120,7 @@ void ImplicitStep::write_results() {
     SiteReport& report = site.report->sites[site.index];
     const SiteInputs& inputs = site.report->inputs[site.index];
     const Mat3& axes = site.tangent.axes;
-    site.force = ConstVector(&force_[i * size(kRows)], kRows);
+    site.force = ContactSpace::Block::from(&force_[i * size(kRows)]);
     site.is_solved = true;
     const ContactSpace::Block& f = site.force;
     report.normal_force = f[0];
@@ -141,8 +140,9 @@ void ImplicitStep::take_explicit() {
     const SiteReport& report = site.report->sites[site.index];
     const Vec3 force = site.tangent.axes.transpose() * report.force_on_A;
     const Vec3 torque = site.tangent.axes.transpose() * report.torque_on_A;
-    site.force << force[2], torque[0], torque[1], force[0], force[1], torque[2];
-    std::copy_n(site.force.data(), kRows, &force_[i * size(kRows)]);
+    site.force =
+        ContactSpace::Block({force[2], torque[0], torque[1], force[0], force[1], torque[2]});
+    site.force.to(&force_[i * size(kRows)]);
   }
 }
 
@@ -157,8 +157,12 @@ void ImplicitStep::write_explicit() {
 // Whether the last pass changed nothing that counts.
 bool ImplicitStep::is_settled() const {
   constexpr double kChange = 1e-9;
-  const ConstVector now(force_.data(), space_.rows()), before(before_.data(), space_.rows());
-  return (now - before).lpNorm<Eigen::Infinity>() <= kChange * now.lpNorm<Eigen::Infinity>();
+  double change = 0.0, largest = 0.0;
+  for (std::size_t i = 0; i < force_.size(); ++i) {
+    change = std::max(change, std::abs(force_[i] - before_[i]));
+    largest = std::max(largest, std::abs(force_[i]));
+  }
+  return change <= kChange * largest;
 }
 
 // Normal forces and friction, under the shares of now; leaves the motion that they make.
@@ -274,20 +278,22 @@ ContactSpace::Block ImplicitStep::constant(std::size_t i) const {
   ContactSpace::Block out = ContactSpace::Block::Zero();
   const Site& site = sites_[i];
   if (!site.pushes()) return out;
+  Vec3 pushed = Vec3::Zero();
   for (int k = 0; k < site.point_count; ++k) {
     const Point& point = site.points[size(k)];
-    if (point.pushes) out.head<3>() += point.constant * point.motion;
+    if (point.pushes) pushed += point.constant * point.motion;
   }
-  out.tail<3>() = site.held;
+  pushed.to(out.data());
+  site.held.to(out.data() + 3);
   return out;
 }
 
-Eigen::Matrix<double, 6, 6> ImplicitStep::slope(std::size_t i) const {
-  Eigen::Matrix<double, 6, 6> out = Eigen::Matrix<double, 6, 6>::Zero();
+ContactSpace::Square ImplicitStep::slope(std::size_t i) const {
+  ContactSpace::Square out = ContactSpace::Square::Zero();
   const Site& site = sites_[i];
   if (!site.pushes()) return out;
-  out.topLeftCorner<3, 3>() = site.normal_slope();
-  out.diagonal().tail<3>() = site.friction_slope();
+  out.set_block(0, 0, site.normal_slope());
+  out.set_block(3, 3, Mat3(site.friction_slope().asDiagonal()));
   return out;
 }
 

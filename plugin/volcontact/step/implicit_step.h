@@ -63,13 +63,11 @@ class ImplicitStep {
 
   // For tests: the linear model of site i, f = e - C u', as last solved, and the solution.
   ContactSpace::Block constant(std::size_t site) const;
-  Eigen::Matrix<double, 6, 6> slope(std::size_t site) const;
+  ContactSpace::Square slope(std::size_t site) const;
   const ContactSpace::Block& force(std::size_t site) const { return sites_[site].force; }
   bool is_solved(std::size_t site) const { return sites_[site].is_solved; }
 
  private:
-  using ConstVector = Eigen::Map<const Eigen::VectorXd>;
-
   // A patch is borne at up to four points, which have its area and moments; none of them pulls.
   struct Point {
     Vec3 motion = Vec3::Zero();  // of the point along n, by the normal coordinates: (1, y, -x)
@@ -101,7 +99,7 @@ class ImplicitStep {
       Mat3 out = rolls;
       for (int k = 0; k < point_count; ++k) {
         const Point& point = points[size(k)];
-        if (point.pushes) out.noalias() += (point.slope * point.motion) * point.motion.transpose();
+        if (point.pushes) out += outer(point.slope * point.motion, point.motion);
       }
       return out;
     }

@@ -24,12 +24,11 @@ void ImplicitStep::add_up_work(double step, double resting) {
   });
   double from_free = 0.0, allowed = 0.0;
   for (std::size_t i = 0; i < island_.size(); ++i) {
-    const Eigen::Index first = static_cast<Eigen::Index>(i) * kRows;
-    const ContactSpace::Block impulse = step * ConstVector(&force_[i * size(kRows)], kRows);
-    const ContactSpace::Block end = ConstVector(&velocity_[i * size(kRows)], kRows);
-    const ContactSpace::Block begin = space_.velocity().segment<kRows>(first);
-    const ContactSpace::Block free = space_.free_velocity().segment<kRows>(first);
-    const ContactSpace::Block mean = 0.5 * (begin + end), mean_of_free = 0.5 * (free + end);
+    using Block = ContactSpace::Block;
+    const Block impulse = step * Block::from(&force_[i * size(kRows)]);
+    const Block end = Block::from(&velocity_[i * size(kRows)]);
+    const Block begin = space_.velocity(i), free = space_.free_velocity(i);
+    const Block mean = 0.5 * (begin + end), mean_of_free = 0.5 * (free + end);
     WorkLimit& limit = limits_[site(i).pair];
     limit.normal_work += impulse.head<3>().dot(mean.head<3>());
     limit.friction_work += impulse.tail<3>().dot(mean.tail<3>());

@@ -93,17 +93,17 @@ void LinearConstraints::set_response(int row, double force, double slope) {
 // The slope is semidefinite: it has no curvature along the way to the tip of the cone.
 void LinearConstraints::add_cone(int first, int count, const double* numbers) {
   constexpr double kFlat = 1e-12;
-  Eigen::Matrix<double, 6, 6> slope = Eigen::Matrix<double, 6, 6>::Zero();
+  Matrix<6, 6> slope = Matrix<6, 6>::Zero();
   for (int i = 0; i < count; ++i) {
     for (int k = 0; k < count; ++k) slope(i, k) = numbers[i * count + k];
   }
-  Cone cone{first, count, Eigen::Matrix<double, 6, 6>::Zero()};
+  Cone cone{first, count, Matrix<6, 6>::Zero()};
   const double least = kFlat * slope.diagonal().maxCoeff();
   for (int k = 0; k < count; ++k) {
     if (!(slope(k, k) > least)) continue;
     cone.factor.col(k) = slope.col(k) / std::sqrt(slope(k, k));
-    cone.factor.col(k).head(k).setZero();
-    slope -= cone.factor.col(k) * cone.factor.col(k).transpose();
+    std::fill_n(cone.factor.col(k).begin(), k, 0.0);
+    slope -= outer(cone.factor.col(k), cone.factor.col(k));
   }
   cones_.push_back(cone);
 }
@@ -112,10 +112,10 @@ void LinearConstraints::subtract_slope(const std::vector<double>& x,
                                        std::vector<double>& force) const {
   for (const int i : rows_) force[size(i)] -= slope_[size(i)] * x[size(i)];
   for (const Cone& cone : cones_) {
-    const Eigen::Map<const Eigen::VectorXd> along(&x[size(cone.row)], cone.count);
-    Eigen::Map<Eigen::VectorXd> out(&force[size(cone.row)], cone.count);
-    const auto factor = cone.factor.topLeftCorner(cone.count, cone.count);
-    out -= factor * (factor.transpose() * along);
+    Vector<6> along = Vector<6>::Zero();
+    std::copy_n(&x[size(cone.row)], cone.count, along.begin());
+    const Vector<6> less = cone.factor * cone.factor.transposed_times(along);
+    for (int i = 0; i < cone.count; ++i) force[size(cone.row + i)] -= less[i];
   }
 }
 

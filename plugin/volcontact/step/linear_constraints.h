@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <span>
 #include <utility>
 #include <vector>
@@ -78,7 +77,7 @@ class LinearConstraints {
   struct Cone {
     int row;
     int count;
-    Eigen::Matrix<double, 6, 6> factor;
+    Matrix<6, 6> factor;
   };
   static std::span<const Entry> part(const std::vector<Entry>& of, const std::vector<int>& begin,
                                      int i) {

@@ -57,8 +57,8 @@ class Mechanism {
   const double* twists = nullptr;        ///< motion of each body
 
   Vec3 origin(int tree) const { return numbers(origins, trees->root[size(tree)]); }
-  static Eigen::Map<const Vec3> angular(const double* of, int i) { return numbers(of, 2 * i); }
-  static Eigen::Map<const Vec3> linear(const double* of, int i) { return numbers(of, 2 * i + 1); }
+  static Vec3 angular(const double* of, int i) { return numbers(of, 2 * i); }
+  static Vec3 linear(const double* of, int i) { return numbers(of, 2 * i + 1); }
 
   /// Appends the mass matrix M of these degrees of freedom: each row as far as what carries it.
   virtual void mass(std::span<const int> dofs, std::vector<DofEntry>& out) const = 0;
@@ -69,9 +69,7 @@ class Mechanism {
   virtual bool constraints_see_damping() const = 0;
 
  private:
-  static Eigen::Map<const Vec3> numbers(const double* of, int i) {
-    return Eigen::Map<const Vec3>(of + 3 * i);
-  }
+  static Vec3 numbers(const double* of, int i) { return Vec3::from(of + 3 * i); }
 };
 
 /// The acceleration of the point of a body while all degrees of freedom keep their speeds.

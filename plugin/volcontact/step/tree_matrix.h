@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <cstddef>
 #include <span>
 #include <utility>
 #include <vector>
+
+#include "volcontact/base/vector.h"
 
 namespace volcontact {
 
@@ -134,12 +135,13 @@ class TreeMatrix {
  private:
   template <int kSides>
   void carry(const std::vector<double>& entries, std::span<const int> support, double* x) const {
-    using Numbers = Eigen::Map<Eigen::Matrix<double, kSides, 1>>;
+    using Numbers = Vector<kSides>;
     for (const int i : support) {
       const double* entry = &entries[trees_->start(i)];
-      const Numbers from(x + kSides * i);
+      const Numbers from = Numbers::from(x + kSides * i);
       for (int k = trees_->parent(i); k >= 0; k = trees_->parent(k)) {
-        Numbers(x + kSides * k) -= *++entry * from;
+        double* const carrying = x + kSides * k;
+        (Numbers::from(carrying) - *++entry * from).to(carrying);
       }
     }
   }

@@ -76,8 +76,7 @@ table {{ border-collapse: collapse }} td, th {{ border: 1px solid #ccc; padding:
 {rows}
 </table>
 <h2>Licence</h2>
-<p>The binaries are under the Apache License 2.0{", as MuJoCo is" if about.step else ""}. They hold
-Eigen, under the Mozilla Public License 2.0.</p>
+<p>The binaries are under the Apache License 2.0{", as MuJoCo is" if about.step else ""}.</p>
 </body></html>
 """
 

@@ -1,15 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The sources of a unit of contact models, for masters that compile it on another platform.
 
-They are those of the core, the C container and the FMI layer, under the Apache License 2.0, and the
-headers of Eigen that they include, under the Mozilla Public License 2.0.
+They are those of the core, the C container and the FMI layer, under the Apache License 2.0.
 """
 
 from __future__ import annotations
 
 import functools
 import re
-import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
@@ -24,12 +22,12 @@ _INCLUDE = re.compile(
     r'^[ \t]*#[ \t]*(?:include|define[ \t]+VOLCONTACT_SIMD_KERNEL)[ \t]*[<"]([^>"]+)[>"]',
     re.MULTILINE,
 )
-_DEFINITIONS = ("EIGEN_DONT_PARALLELIZE", "EIGEN_MPL2_ONLY", "VC_BUILDS_LIBRARY")
 _HEAD = """// SPDX-License-Identifier: Apache-2.0
 #if !defined(_MSC_VER) && __cplusplus < 202002L
 #error "compile the sources of this FMU as C++20: see sources/README.txt"
 #endif
-""" + "".join(f"#define {name}\n" for name in _DEFINITIONS)
+#define VC_BUILDS_LIBRARY
+"""
 _README = f"""Sources of this FMU
 
 Compile every file that modelDescription.xml (FMI 2.0) or buildDescription.xml (FMI 3.0) names, with
@@ -38,9 +36,7 @@ this folder among those for headers, and link them to one shared library named a
     c++ {OPTIONS} -I. -c FILE
     c++ -shared -fopenmp -o NAME.so *.o -ldl
 
-volcontact is under the Apache License 2.0 (https://www.apache.org/licenses/LICENSE-2.0). The folder
-Eigen has headers of Eigen (https://eigen.tuxfamily.org) as they are published, under the Mozilla
-Public License 2.0 (https://www.mozilla.org/MPL/2.0/).
+volcontact is under the Apache License 2.0 (https://www.apache.org/licenses/LICENSE-2.0).
 """
 
 
@@ -48,10 +44,10 @@ def source_files(fmi: int) -> tuple[dict[str, bytes], list[str]]:
     """Files of the folder `sources`, and which of them to compile.
 
     Raises:
-        RuntimeError: the package has no sources, or there are no headers of Eigen.
+        RuntimeError: the package has no sources.
     """
-    plugin, eigen = _plugin(), _eigen()
-    return dict(_collected(plugin, eigen, fmi)), list(_rooms(plugin, fmi))
+    plugin = _plugin()
+    return dict(_collected(plugin, fmi)), list(_rooms(plugin, fmi))
 
 
 def build_description(identifier: str, names: Iterable[str]) -> str:
@@ -83,18 +79,6 @@ def _plugin() -> Path:
         if (place / "fmu" / "instance.cc").is_file():
             return place
     raise RuntimeError("this installation of volcontact has no sources to put into an FMU")
-
-
-def _eigen() -> Path:
-    inside = Path("cmeel.prefix") / "include" / "eigen3"
-    places = [Path(entry) / inside for entry in sys.path]
-    for folder in Path(volcontact.__file__).parents:  # of a checkout
-        places += (folder / ".venv" / "tools" / "eigen").glob("**/include/eigen3")
-    places.append(Path("/usr/include/eigen3"))
-    for place in places:
-        if (place / "Eigen" / "Core").is_file():
-            return place
-    raise RuntimeError("there are no headers of Eigen: pip install cmeel-eigen")
 
 
 @functools.cache
@@ -137,7 +121,7 @@ def _rooms(plugin: Path, fmi: int) -> dict[str, list[str]]:
     return rooms
 
 
-def _collected(plugin: Path, eigen: Path, fmi: int) -> Iterator[tuple[str, bytes]]:
+def _collected(plugin: Path, fmi: int) -> Iterator[tuple[str, bytes]]:
     """All files, with the headers that they include, theirs and so on."""
     rooms = _rooms(plugin, fmi)
     yield "README.txt", _README.encode()
@@ -147,21 +131,18 @@ def _collected(plugin: Path, eigen: Path, fmi: int) -> Iterator[tuple[str, bytes
     seen = set(waiting)
     while waiting:
         name = waiting.pop()
-        root = eigen if name.startswith("Eigen/") else plugin
-        text = (root / name).read_text(errors="surrogateescape")
-        yield name, text.encode(errors="surrogateescape")
+        text = (plugin / name).read_text()
+        yield name, text.encode()
         for included in _INCLUDE.findall(text):
-            found = _found(root, name, included, (plugin, eigen))
+            found = _found(plugin, name, included)
             if found is not None and found not in seen:
                 seen.add(found)
                 waiting.append(found)
 
 
-def _found(root: Path, by: str, included: str, roots: tuple[Path, Path]) -> str | None:
+def _found(plugin: Path, by: str, included: str) -> str | None:
     """The file that an include means, by its path in `sources`; None for one of the system."""
-    beside = (root / by).parent / included
+    beside = (plugin / by).parent / included
     if beside.is_file():
-        return beside.resolve().relative_to(root.resolve()).as_posix()
-    is_eigens = included.startswith("Eigen/")
-    path = roots[1 if is_eigens else 0] / included
-    return included if path.is_file() else None
+        return beside.resolve().relative_to(plugin.resolve()).as_posix()
+    return included if (plugin / included).is_file() else None

@@ -229,7 +229,7 @@ TEST(JoinedPairs, SitesSumToWhatActs) {
   for (int i = 0; i < 200; ++i) {
     mj_step(m.get(), d.get());
     Vec3 on_box = Vec3::Zero();
-    for (const volcontact_site& site : sites_of(m, d)) on_box -= Eigen::Map<const Vec3>(site.force);
+    for (const volcontact_site& site : sites_of(m, d)) on_box -= Vec3::from(site.force);
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(d->qfrc_applied[k], on_box[k], 1e-9);
   }
 }

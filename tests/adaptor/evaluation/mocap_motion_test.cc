@@ -32,7 +32,7 @@ class MocapMotionTest : public ::testing::Test {
   }
   int body(const char* name) { return mj_name2id(m.get(), mjOBJ_BODY, name); }
   void move(const Vec3& way, double turn_about_z = 0.0) {
-    Eigen::Map<Vec3>(d->mocap_pos) += way;
+    (Vec3::from(d->mocap_pos) + way).to(d->mocap_pos);
     const mjtNum z[3] = {0.0, 0.0, 1.0};
     mju_axisAngle2Quat(d->mocap_quat, z, turn_about_z);
     mj_kinematics(m.get(), d.get());
@@ -63,9 +63,9 @@ TEST_F(MocapMotionTest, TakesAlongWhatHangsOnIt) {
 TEST_F(MocapMotionTest, IsNoneAtFirstAndWhereItWasPut) {
   for (const double way : {0.021, 0.6}) {  // 10.5 m/s; beyond its own size
     move({0.0, 0.0, way});
-    EXPECT_TRUE(now.row(0).linear().isZero(0.0)) << way;
+    EXPECT_TRUE(now.row(0).twist().linear.isZero(0.0)) << way;
     now.read(m.get(), d.get(), nullptr, 0.0, false);
-    EXPECT_TRUE(now.row(0).linear().isZero(0.0));
+    EXPECT_TRUE(now.row(0).twist().linear.isZero(0.0));
   }
 }
 
@@ -74,7 +74,7 @@ TEST_F(MocapMotionTest, GoesOnBetweenStages) {
   std::vector<double> numbers(MocapRow::kNumbers);
   const MocapMotion stage(numbers.data());
   stage.read(m.get(), d.get(), &now, 0.5 * kStep, true);
-  EXPECT_LE((stage.row(0).linear() - Vec3(0.5, 0.0, 0.0)).norm(), 1e-12);
+  EXPECT_LE((stage.row(0).twist().linear - Vec3(0.5, 0.0, 0.0)).norm(), 1e-12);
 }
 
 // The work of a wrench on a body that moves is by its power; torque by its arm.

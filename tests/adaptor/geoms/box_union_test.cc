@@ -120,7 +120,7 @@ TEST(BoxUnion, JoinedBoxesFillTheSamePlace) {
     for (std::size_t i = 0; i < tiles.size(); ++i) inside += boxes.of(i) >= 0 ? 1 : 0;
     joined_some += static_cast<int>(inside) - boxes.count();
     const auto holds = [](const Aabb& box, const Vec3& p) {
-      return (p.array() > box.min.array()).all() && (p.array() < box.max.array()).all();
+      return box.min.less_than(p) && p.less_than(box.max);
     };
     std::uniform_real_distribution<double> share(0.0, 1.0);
     for (int sample = 0; sample < 200; ++sample) {
@@ -129,7 +129,7 @@ TEST(BoxUnion, JoinedBoxesFillTheSamePlace) {
       bool in_tiles = false, in_boxes = false;
       for (const Aabb& tile : tiles) in_tiles = in_tiles || holds(tile, p);
       for (int i = 0; i < boxes.count(); ++i) in_boxes = in_boxes || holds(boxes.box(i), p);
-      ASSERT_EQ(in_tiles, in_boxes) << p.transpose();
+      ASSERT_EQ(in_tiles, in_boxes) << p;
     }
   }
   EXPECT_GT(joined_some, 50);

@@ -71,7 +71,7 @@ TEST(FlushGroups, RowsAlongAnyAxisAreOneGroup) {
       Vec3 at = Vec3::Zero();
       at[axis] = (axis == 2 ? 0.2 : 1.0) * (7 * i % 40);
       std::ostringstream place;
-      place << at.transpose();
+      place << at;
       row += box(std::to_string(i), place.str());
     }
     const Scene scene(row);

@@ -31,8 +31,7 @@ TEST(OverlapBounds, OfABoxOnItsEdgeAreThoseOfAWedge) {
   const Shape box = Box({.half_sizes = Vec3(0.1, 0.2, 0.1)});
   const SolidView view = view_of(box);
   const double c = std::sqrt(0.5), h = 0.01;
-  Mat3 turned;
-  turned << c, 0.0, c, 0.0, 1.0, 0.0, -c, 0.0, c;
+  Mat3 turned = {c, 0.0, c, 0.0, 1.0, 0.0, -c, 0.0, c};
   const Pose X_FS{turned, {0.0, 0.0, 0.1 * std::sqrt(2.0) - h}};
   const Aabb wedge = overlap_bounds(view, X_FS, kFloor);
   EXPECT_NEAR(wedge.max.x(), h, 1e-9);
@@ -51,13 +50,13 @@ TEST(OverlapBounds, OfABoxAreThoseOfTheSearch) {
   int met = 0;
   for (int round = 0; round < 500; ++round) {
     const Vec3 axis = Vec3(at(random), at(random), at(random)).normalized();
-    const Mat3 turned = Eigen::AngleAxisd(3.0 * at(random), axis).toRotationMatrix();
+    const Mat3 turned = rotation_about(axis, 3.0 * at(random));
     const Pose X_FS{round % 5 == 0 ? Mat3(Mat3::Identity()) : turned,
                     0.8 * Vec3(at(random), at(random), at(random))};
     const Aabb known = overlap_bounds(solid, X_FS, box);
     const Aabb searched = overlap_bounds(view_of(shape), X_FS, box);
-    if (!(searched.min.array() < searched.max.array()).all()) {
-      EXPECT_FALSE((known.min.array() < known.max.array()).all()) << round;
+    if (!searched.min.less_than(searched.max)) {
+      EXPECT_FALSE(known.min.less_than(known.max)) << round;
       continue;
     }
     ++met;
@@ -79,7 +78,7 @@ TEST(OverlapBounds, HoldEveryPointOfTheOverlap) {
   for (int round = 0; round < 200; ++round) {
     const SolidView view = view_of(solids[round % 5]);
     const Vec3 axis = Vec3(at(random), at(random), at(random)).normalized();
-    const Pose X_FS{Eigen::AngleAxisd(3.0 * at(random), axis).toRotationMatrix(),
+    const Pose X_FS{rotation_about(axis, 3.0 * at(random)),
                     0.5 * Vec3(at(random), at(random), at(random))};
     const Box* const solid = std::get_if<Box>(&solids[round % 5]);
     const Aabb bounds = solid ? overlap_bounds(*solid, X_FS, box) : overlap_bounds(view, X_FS, box);
@@ -87,8 +86,8 @@ TEST(OverlapBounds, HoldEveryPointOfTheOverlap) {
       const Vec3 p(0.3 * at(random), -0.1 + 0.3 * at(random), 0.1 + 0.3 * at(random));
       if (view.signed_distance(view.solid, X_FS.inverse() * p) > 0.0) continue;
       ++inside;
-      ASSERT_TRUE((p.array() >= bounds.min.array() - 1e-12).all()) << p.transpose();
-      ASSERT_TRUE((p.array() <= bounds.max.array() + 1e-12).all()) << p.transpose();
+      ASSERT_TRUE(bounds.min.at_most(p + Vec3::Constant(1e-12))) << p;
+      ASSERT_TRUE(p.at_most(bounds.max + Vec3::Constant(1e-12))) << p;
     }
   }
   EXPECT_GT(inside, 5000);

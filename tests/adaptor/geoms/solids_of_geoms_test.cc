@@ -84,7 +84,7 @@ TEST(SolidsOfGeoms, PoseMapsGeomToWorld) {
   mjtNum expected[3], local[3] = {0.1, -0.2, 0.3};
   mju_mulMatVec(expected, d->geom_xmat + 18, local, 3, 3);
   mju_addTo3(expected, d->geom_xpos + 6);
-  EXPECT_LT((X_WG * Vec3(0.1, -0.2, 0.3) - Eigen::Map<Vec3>(expected)).norm(), 1e-15);
+  EXPECT_LT((X_WG * Vec3(0.1, -0.2, 0.3) - Vec3::from(expected)).norm(), 1e-15);
 }
 
 }  // namespace

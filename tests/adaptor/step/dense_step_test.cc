@@ -36,7 +36,7 @@ MatrixXd jacobian(const ModelPointer& m, const DataPointer& d,
       const int geom = sign > 0.0 ? sites[i].geom_a : sites[i].geom_b;
       RowMajor way(3, m->nv), turn(3, m->nv);
       mj_jac(m.get(), d.get(), way.data(), turn.data(), sites[i].centroid, m->geom_bodyid[geom]);
-      const MatrixXd to_site = sign * axes.transpose();
+      const MatrixXd to_site = test::eigen(sign * axes.transpose());
       const MatrixXd w = product(to_site, way), t = product(to_site, turn);
       const Eigen::Index row = 6 * static_cast<Eigen::Index>(i);
       out.row(row) += w.row(2);
@@ -183,8 +183,8 @@ TEST_P(DenseStep, IsWhatMuJoCoDoes) {
     const ImplicitStep& step = thread_scratch().implicit;
     for (std::size_t i = 0; i < sites.size(); ++i) {
       const Eigen::Index row = 6 * static_cast<Eigen::Index>(i);
-      const MatrixXd block = j.middleRows(row, 6), slope = step.slope(i);
-      const VectorXd borne = step.constant(i) - product(slope, u.segment(row, 6));
+      const MatrixXd block = j.middleRows(row, 6), slope = test::eigen(step.slope(i));
+      const VectorXd borne = test::eigen(step.constant(i)) - product(slope, u.segment(row, 6));
       left += h * product(block.transpose(), product(slope, block));
       right += product(block.transpose(), borne);
     }
@@ -192,9 +192,10 @@ TEST_P(DenseStep, IsWhatMuJoCoDoes) {
     const VectorXd after = product(j, Eigen::Map<VectorXd>(d->qvel, nv));
     bool cut = false;
     for (std::size_t i = 0; i < sites.size(); ++i) {
-      const auto& f = step.force(i);
+      const VectorXd f = test::eigen(step.force(i));
       const Eigen::Index row = 6 * static_cast<Eigen::Index>(i);
-      const VectorXd linear = step.constant(i) - product(step.slope(i), after.segment(row, 6));
+      const VectorXd linear = test::eigen(step.constant(i)) -
+                              product(test::eigen(step.slope(i)), after.segment(row, 6));
       cut = cut || (f - linear).tail(3).norm() > 1e-9 * f.norm();
     }
     if (cut) continue;

@@ -15,7 +15,6 @@
 namespace volcontact::adaptor::implicit_step_test {
 namespace {
 
-using Eigen::VectorXd;
 using testing::Attached;
 using testing::bodies;
 using testing::DataPointer;
@@ -72,7 +71,7 @@ TEST_P(BothForms, ForForcesAndForVelocitiesAgree) {
   for (int place = 0; place < 3; ++place) {
     for (int i = 0; i < 6; ++i) equations.constant.push_back(random.uniform(-50.0, 50.0));
     Mat3 root;
-    for (double& x : root.reshaped()) x = random.uniform(-1e3, 1e3);
+    for (int k = 0; k < 3; ++k) root.col(k) = random.in_box(1e3);
     equations.slopes.push_back({root * root.transpose(), 1e6 * random.in_box(1.0).cwiseAbs2()});
   }
   std::vector<double> force, velocity, other_force, other_velocity;
@@ -80,7 +79,7 @@ TEST_P(BothForms, ForForcesAndForVelocitiesAgree) {
   space.build_mobility();
   space.build_delassus();
   equations.solve_for_forces(space, 2e-3, other_force, other_velocity);
-  const Eigen::Map<VectorXd> f(force.data(), 18), other(other_force.data(), 18);
+  const auto f = Vector<18>::from(force.data()), other = Vector<18>::from(other_force.data());
   EXPECT_LT((f - other).norm(), 1e-9 * f.norm());
   std::vector<double> moved(18);
   space.move(force, moved);

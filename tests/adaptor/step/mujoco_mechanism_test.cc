@@ -11,8 +11,7 @@
 namespace volcontact::adaptor::mujoco_mechanism_test {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using Mat14 = Matrix<14, 14>;
 using testing::DataPointer;
 using testing::ModelPointer;
 
@@ -36,8 +35,8 @@ DataPointer moving(const ModelPointer& m) {
   return d;
 }
 
-MatrixXd lower_triangle(const std::vector<DofEntry>& entries, int dofs) {
-  MatrixXd out = MatrixXd::Zero(dofs, dofs);
+Mat14 lower_triangle(const std::vector<DofEntry>& entries) {
+  Mat14 out = Mat14::Zero();
   for (const DofEntry& entry : entries) out(entry.row, entry.column) = entry.value;
   return out;
 }
@@ -66,7 +65,6 @@ TEST(MujocoMechanism, MotionsAndMassesAreThoseOfMuJoCo) {
   EXPECT_NEAR(mechanism.fall, 9.81 * m->opt.timestep, 1e-15);
   const int hand = 4;
   const Vec3 point(0.4, 0.1, 1.2), offset = point - mechanism.origin(1);
-  MatrixXd jacobian(3, m->nv);
   std::vector<double> numbers(static_cast<std::size_t>(3 * m->nv));
   mj_jac(m.get(), d.get(), numbers.data(), nullptr, point.data(), hand);
   for (int dof = trees.last_dof[hand]; dof >= 0; dof = trees.carrier[size(dof)]) {
@@ -79,9 +77,10 @@ TEST(MujocoMechanism, MotionsAndMassesAreThoseOfMuJoCo) {
   for (int i = 0; i < 14; ++i) dofs[size(i)] = i;
   std::vector<DofEntry> entries;
   mechanism.mass(dofs, entries);
-  const MatrixXd lower = lower_triangle(entries, 14);
+  const Mat14 lower = lower_triangle(entries);
   for (int i = 0; i < 14; ++i) {
-    VectorXd unit = VectorXd::Unit(14, i), column(14);
+    const auto unit = Vector<14>::Unit(i);
+    Vector<14> column;
     mj_mulM(m.get(), d.get(), column.data(), unit.data());
     for (int k = i; k < 14; ++k) EXPECT_NEAR(lower(k, i), column[k], 1e-14);
   }

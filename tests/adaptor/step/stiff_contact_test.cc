@@ -51,14 +51,18 @@ double mechanical_energy(const ModelPointer& m, const DataPointer& d) {
   return 0.5 * mju_dot(momentum, d->qvel, 6) + kMass * kGravity * d->qpos[2];
 }
 
+Vector<4> random_quaternion(test::Random& random) {
+  mjtNum rotation[9];
+  random.rotation().to_rows(rotation);
+  Vector<4> out;
+  mju_mat2Quat(out.data(), rotation);
+  return out;
+}
+
 void throw_at_floor(const DataPointer& d, std::uint64_t seed) {
   test::Random random(seed);
-  const Eigen::Quaterniond q(random.rotation());
   d->qpos[2] = 0.35;
-  d->qpos[3] = q.w();
-  d->qpos[4] = q.x();
-  d->qpos[5] = q.y();
-  d->qpos[6] = q.z();
+  random_quaternion(random).to(d->qpos + 3);
   for (int i = 0; i < 3; ++i) d->qvel[i] = random.uniform(-0.8, 0.8);
   for (int i = 3; i < 6; ++i) d->qvel[i] = random.uniform(-3.0, 3.0);
 }
@@ -94,8 +98,7 @@ TEST(StiffContact, ThrownBoxesRockNoLonger) {
     std::string bodies;
     test::Random random(6);
     for (int i = 0; i < 12; ++i) {
-      const Eigen::Quaterniond q(random.rotation());
-      const double numbers[] = {q.w(), q.x(), q.y(), q.z()};
+      const Vector<4> numbers = random_quaternion(random);
       bodies += "<body pos=\"" + std::to_string(0.5 * i) + " 0 .4\" quat=\"";
       for (const double x : numbers) bodies += std::to_string(x) + " ";
       bodies += "\"><freejoint/><geom name=\"box" + std::to_string(i) +

@@ -9,8 +9,7 @@ namespace volcontact::cholesky_test {
 namespace {
 
 Mat3 lower(double xx, double yx, double yy, double zx, double zy, double zz) {
-  Mat3 l;
-  l << xx, 0.0, 0.0, yx, yy, 0.0, zx, zy, zz;
+  Mat3 l = {xx, 0.0, 0.0, yx, yy, 0.0, zx, zy, zz};
   return l;
 }
 

@@ -60,7 +60,24 @@ TEST(Skew, IsTheCrossProduct) {
 
 TEST(Outer, IsTheColumnTimesTheRow) {
   const Vec3 a(1, -2, 3), b(0.5, 4, -1);
-  EXPECT_EQ(outer(a, b), Mat3(a * b.transpose()));
+  EXPECT_EQ(outer(a, b), Mat3(0.5, 4, -1, -1, -8, 2, 1.5, 12, -3));
+}
+
+TEST(RotationAbout, TurnsAboutItsAxis) {
+  test::Random random(5);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 axis = random.direction();
+    const double angle = random.uniform(-4.0, 4.0), half = 0.5 * angle;
+    const Mat3 r = rotation_about(axis, angle);
+    EXPECT_LT((r * axis - axis).norm(), kRounding);
+    EXPECT_LT((r.transpose() * r - Mat3::Identity()).norm(), kRounding);
+    const Vec3 across = basis_with_z(axis).col(0);
+    EXPECT_NEAR(across.dot(r * across), std::cos(angle), kRounding);
+    EXPECT_NEAR(axis.dot(across.cross(r * across)), std::sin(angle), kRounding);
+    // The same as a quaternion.
+    const Vec3 v = std::sin(half) * axis;
+    EXPECT_LT((rotation_of(std::cos(half), v.x(), v.y(), v.z()) - r).norm(), kRounding);
+  }
 }
 
 TEST(BasisWithZ, IsOrthonormalAndRightHandedForEveryDirection) {

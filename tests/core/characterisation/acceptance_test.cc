@@ -35,7 +35,7 @@ VolumeMetrics corner(const Vec3& tip, const Vec3 edges[3]) {
   m.centroid = 0.25 * (points[0] + points[1] + points[2] + points[3]);
   Mat3 second = Mat3::Zero();
   for (const Vec3& p : points) {
-    second += m.volume / 20.0 * (p - m.centroid) * (p - m.centroid).transpose();
+    second += m.volume / 20.0 * outer(p - m.centroid, p - m.centroid);
   }
   m.inertia = second.trace() * Mat3::Identity() - second;
   m.area = 0.5 * (b - a).cross(c - a).norm();

@@ -45,10 +45,7 @@ const Example& example(const std::string& name) {
   throw std::invalid_argument("no example is named " + name);
 }
 
-Pose pose(const Found& found) {
-  return {Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(found.rotation),
-          Vec3(found.translation)};
-}
+Pose pose(const Found& found) { return {Mat3::from_rows(found.rotation), Vec3(found.translation)}; }
 
 TEST(FoundPoses, VolumesAreWithinTheCertifiedBoundsInBothOrders) {
   for (const Found& found : kFound) {

@@ -46,7 +46,7 @@ TEST(ReferenceIntegral, CornerOfACube) {
   const double area = std::sqrt(3.0) / 2.0 * edge * edge;
   const Mat3 corner_down = basis_with_z(-Vec3::Ones().normalized()).transpose();
   for (int turn = 0; turn < 12; ++turn) {
-    const Mat3 about_z = Eigen::AngleAxisd(0.5 * turn, Vec3::UnitZ()).toRotationMatrix();
+    const Mat3 about_z = rotation_about(Vec3::UnitZ(), 0.5 * turn);
     const Pose X_AB{about_z * corner_down, Vec3(0.0, 0.0, 0.3 * std::sqrt(3.0) - kDepth)};
     const Reference r = integral(HalfSpace(), Box({.half_sizes = Vec3::Constant(0.3)}), X_AB,
                                  Vec3(0.0, 0.0, -0.5 * kDepth), 0.6);

@@ -121,7 +121,8 @@ TEST(RoundedBoxPairs, IsAMemberOfComposedSolids) {
       const Interference out = overlap(solid, ball, X_AB);
       const test::LatticeVolume lines = test::lattice_volume(
           test::reference_solid(solid), test::reference_solid(ball), X_AB,
-          {X_AB.translation.array() - 0.05, X_AB.translation.array() + 0.05}, 4000, random);
+          {X_AB.translation - Vec3::Constant(0.05), X_AB.translation + Vec3::Constant(0.05)}, 4000,
+          random);
       EXPECT_NEAR(out.total.volume, lines.volume, lines.error + out.total.volume_error + 1e-9) << i;
     }
   }

@@ -149,12 +149,12 @@ TEST(Bristle, IntegratedPatchLimitsTheSpinTorqueByItsMeanRadius) {
   params.static_friction = params.friction;
   const Bristle law(params);
   const double R = 0.05, volume = 1e-7, f = 50.0;
-  FrictionInput in{.normal_force = f,
-                   .patch = {.gyration_radius = R / std::sqrt(2.0),
-                             .volume = volume,
-                             .area = kPi * R * R,
-                             .second_moment = volume * R * R / 4.0 *
-                                              Vec3(1.0, 1.0, 0.0).asDiagonal().toDenseMatrix()}};
+  FrictionInput in{
+      .normal_force = f,
+      .patch = {.gyration_radius = R / std::sqrt(2.0),
+                .volume = volume,
+                .area = kPi * R * R,
+                .second_moment = (volume * R * R / 4.0 * Vec3(1.0, 1.0, 0.0)).asDiagonal()}};
   const double torque = 0.3 * f * 2.0 / 3.0 * R;
   std::array<double, 5> committed{}, pending{};
   FrictionOutput out;
@@ -199,12 +199,12 @@ TEST(Bristle, IntegratedPatchGivesWayOnItsLimitSurface) {
   const double R = 0.05, r = R / std::sqrt(2.0), volume = 1e-7, f = 50.0;
   for (const double e : {0.05, 0.3, 0.65, 0.95, 1.3, 3.0, 20.0}) {
     const Vec3 limit(disc_force(e), 0.0, disc_torque(e) * R / r);  // in units of mu f
-    FrictionInput in{.normal_force = f,
-                     .patch = {.gyration_radius = r,
-                               .volume = volume,
-                               .area = kPi * R * R,
-                               .second_moment = volume * R * R / 4.0 *
-                                                Vec3(1.0, 1.0, 0.0).asDiagonal().toDenseMatrix()}};
+    FrictionInput in{
+        .normal_force = f,
+        .patch = {.gyration_radius = r,
+                  .volume = volume,
+                  .area = kPi * R * R,
+                  .second_moment = (volume * R * R / 4.0 * Vec3(1.0, 1.0, 0.0)).asDiagonal()}};
     in.travel.x() = 1e-3 * limit.x();  // pushed far beyond the limit, at next to no speed
     in.turn = 1e-3 * limit.z() / r;
     std::array<double, 5> committed{}, pending{};

@@ -16,11 +16,10 @@ Patch ellipse(double a, double b, bool paraboloid, double turn = 0.0) {
   const double share = paraboloid ? 1.0 / 6.0 : 0.25, volume = 3e-7;
   const Vec3 x = std::cos(turn) * kBasis.col(0) + std::sin(turn) * kBasis.col(1);
   const Vec3 y = kNormal.cross(x);
-  return {
-      .gyration_radius = std::sqrt(share * (a * a + b * b)),
-      .volume = volume,
-      .area = kPi * a * b,
-      .second_moment = volume * share * (a * a * x * x.transpose() + b * b * y * y.transpose())};
+  return {.gyration_radius = std::sqrt(share * (a * a + b * b)),
+          .volume = volume,
+          .area = kPi * a * b,
+          .second_moment = volume * share * (a * a * outer(x, x) + b * b * outer(y, y))};
 }
 
 // Exact friction of a uniform disc that slides with eps = v / (R w), in units of mu f and mu f R:

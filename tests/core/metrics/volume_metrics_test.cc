@@ -125,7 +125,7 @@ TEST(MomentSum, GivesTheMetricsOfTheSums) {
   MomentSum sum;
   sum.volume = expected.volume;
   sum.first = sum.volume * c;
-  sum.second = expected.second_moment() + sum.volume * c * c.transpose();
+  sum.second = expected.second_moment() + sum.volume * outer(c, c);
   const VolumeMetrics m = sum.metrics();
   EXPECT_LT((m.centroid - c).norm(), 1e-15);
   EXPECT_LT((m.inertia - expected.inertia).norm(), 1e-15);

@@ -16,7 +16,7 @@ constexpr double kRounding = 1e-12;
 Pose pose(const Vec3& axis_angle, const Vec3& translation) {
   const double angle = axis_angle.norm();
   const Vec3 axis = angle > 0.0 ? Vec3(axis_angle / angle) : Vec3::UnitX();
-  return {Eigen::AngleAxisd(angle, axis).toRotationMatrix(), translation};
+  return {rotation_about(axis, angle), translation};
 }
 
 ContactModel sphere_on_plane(double stiffness, double damping, double friction = 0.3) {

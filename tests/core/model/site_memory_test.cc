@@ -17,9 +17,7 @@ constexpr std::array kStates{StateField{"z", "m", Keeping::kVector, ""},
                              StateField{"dwell", "-", Keeping::kValue, ""}};
 constexpr int kRow = kSiteHead + 5;
 
-Mat3 turn(const Vec3& axis, double angle) {
-  return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
-}
+Mat3 turn(const Vec3& axis, double angle) { return rotation_about(axis.normalized(), angle); }
 
 // A site of a given place, normal and volume; its size is that of a ball of 2 cm.
 VolumeMetrics site(const Vec3& centroid, double volume = 1e-6, const Vec3& normal = Vec3::UnitZ()) {
@@ -49,9 +47,7 @@ SiteMemory memory_of(const std::vector<double>& rows, double elapsed = 1e-3) {
   return {rows.data(), static_cast<int>(rows.size()) / kRow, kRow, elapsed};
 }
 
-Vec3 vector_at(const SiteCarrier& carrier, std::size_t i) {
-  return Eigen::Map<const Vec3>(carrier.states(i));
-}
+Vec3 vector_at(const SiteCarrier& carrier, std::size_t i) { return Vec3::from(carrier.states(i)); }
 
 TEST(SiteCarrier, BodiesAtRestChangeNoBit) {
   BodyMotion motion;
@@ -69,11 +65,11 @@ TEST(SiteCarrier, BodiesAtRestChangeNoBit) {
     EXPECT_EQ(carrier.states(0)[3], states[3]);
     EXPECT_EQ(carrier.states(0)[4], states[4]);
     if (i > 1) {
-      EXPECT_EQ(vector_at(carrier, 0), Vec3(Eigen::Map<Vec3>(states.data())));
+      EXPECT_EQ(vector_at(carrier, 0), Vec3(Vec3::from(states.data())));
     }
     std::copy_n(carrier.states(0), 5, states.begin());
   }
-  EXPECT_NEAR((Vec3(Eigen::Map<Vec3>(states.data())) - z).norm(), 0.0, 1e-15 * z.norm());
+  EXPECT_NEAR((Vec3(Vec3::from(states.data())) - z).norm(), 0.0, 1e-15 * z.norm());
 }
 
 TEST(SiteCarrier, TravelIsTheWayOfAAgainstB) {

@@ -12,7 +12,7 @@
 namespace volcontact::site_tangent_test {
 namespace {
 
-using Vec6 = Eigen::Matrix<double, 6, 1>;  // torque or turn, then force or displacement
+using Vec6 = Vector<6>;  // torque or turn, then force or displacement
 
 ContactLaws spring(double stiffness = 1e7) {
   return {make_normal("volume_spring", {{"stiffness", {stiffness}}}), nullptr, true};
@@ -37,15 +37,15 @@ ContactReport report_of(const ContactModel& model, const BodyMotion& motion,
 Vec6 wrench_at(const ContactReport& report, const BodyMotion& motion, const Vec3& point) {
   const Wrench w = report.wrench_on_A().about(point - motion.X_WA.translation);
   Vec6 out;
-  out << w.torque, w.force;
+  w.torque.to(out.data());
+  w.force.to(out.data() + 3);
   return out;
 }
 
 // A displaced by `d` and turned by `turn` about `c`.
 Pose moved(const Pose& X_WA, const Vec3& c, const Vec3& turn, const Vec3& d) {
   const double angle = turn.norm();
-  const Mat3 r =
-      angle > 0.0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Mat3::Identity();
+  const Mat3 r = angle > 0.0 ? rotation_about(turn / angle, angle) : Mat3::Identity();
   return {r * X_WA.rotation, r * (X_WA.translation - c) + c + d};
 }
 
@@ -96,11 +96,10 @@ Mat6 stiffness_of(const ContactModel& model, const BodyMotion& motion) {
 
 // Largest difference of the entries, each by the scale of its row and column.
 double difference(const Mat6& a, const Mat6& b) {
-  const double scale_force = b.bottomRightCorner<3, 3>().norm();
-  const double scale_torque = b.topLeftCorner<3, 3>().norm();
+  const double scale_force = b.block<3, 3>(3, 3).norm();
+  const double scale_torque = b.block<3, 3>(0, 0).norm();
   const double length = std::sqrt(scale_torque / scale_force);
-  Vec6 scale;
-  scale << length, length, length, 1.0, 1.0, 1.0;
+  const Vec6 scale({length, length, length, 1.0, 1.0, 1.0});
   double worst = 0.0;
   for (int i = 0; i < 6; ++i) {
     for (int k = 0; k < 6; ++k) {
@@ -113,8 +112,7 @@ double difference(const Mat6& a, const Mat6& b) {
 // A tilted world, so that no entry is zero by chance.
 BodyMotion placed(const Pose& X_BA, const Vec3& about = {0.3, -0.5, 0.2}) {
   BodyMotion motion;
-  motion.X_WB = {Eigen::AngleAxisd(about.norm(), about.normalized()).toRotationMatrix(),
-                 {0.4, -0.3, 0.7}};
+  motion.X_WB = {rotation_about(about.normalized(), about.norm()), {0.4, -0.3, 0.7}};
   motion.X_WA = motion.X_WB * X_BA;
   return motion;
 }
@@ -209,7 +207,7 @@ TEST(SiteTangent, IsWithinBoundsForEdgesAndCorners) {
     const Mat6 truth = stiffness_by_differences(model, motion, 1e-8);
     const Mat6 ours = stiffness_of(model, motion);
     EXPECT_NEAR(ours(5, 5) / truth(5, 5), 1.0, 1e-4);
-    const double ratio = ours.topLeftCorner<2, 2>().trace() / truth.topLeftCorner<2, 2>().trace();
+    const double ratio = ours.block<2, 2>(0, 0).trace() / truth.block<2, 2>(0, 0).trace();
     least = std::min(least, ratio);
     most = std::max(most, ratio);
   }
@@ -252,7 +250,7 @@ TEST(SiteTangent, HoldingFrictionIsInIt) {
   const double square = (0.05 * 0.05 + 0.03 * 0.03) / 3.0;
   EXPECT_NEAR(tangent.friction.lever * tangent.friction.lever, square, 1e-12);
   const Vec3 n = motion.X_WB.rotation.col(2);
-  const Mat3 about = tangent.stiffness_W().topLeftCorner<3, 3>();
+  const Mat3 about = tangent.stiffness_W().block<3, 3>(0, 0);
   EXPECT_NEAR(n.dot(about * n), 3e4 * square, 1e-7);
 }
 

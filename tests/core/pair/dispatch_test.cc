@@ -32,19 +32,19 @@ struct ParallelBoxes : EngineBase {
   template <typename A, typename B>
   static Answer run(const Question<A, B>& q, Calls& calls, Interference& out) noexcept {
     ++calls.count;
-    if (!q.X_AB.rotation.isIdentity(0.0)) return Answer::kBeyond;
+    if (!(q.X_AB.rotation == Mat3::Identity())) return Answer::kBeyond;
     const Aabb a = q.a.bounds(), b = q.b.bounds();
     const Vec3 low = a.min.cwiseMax(b.min + q.X_AB.translation);
     const Vec3 high = a.max.cwiseMin(b.max + q.X_AB.translation);
     out.sites.clear();
     out.total = VolumeMetrics{};
-    if ((low.array() >= high.array()).any()) return Answer::kGiven;
+    if (!low.less_than(high)) return Answer::kGiven;
     const Vec3 size = high - low;
     MomentSum sum;
     sum.volume = size.prod();
     sum.first = sum.volume * 0.5 * (low + high);
-    sum.second = sum.first * (0.5 * (low + high)).transpose();
-    sum.second.diagonal() += sum.volume / 12.0 * size.cwiseAbs2();
+    sum.second = outer(sum.first, 0.5 * (low + high)) +
+                 Mat3((sum.volume / 12.0 * size.cwiseAbs2()).asDiagonal());
     sum.area_vector = Vec3(-size.y() * size.z(), 0.0, 0.0);
     sum.area = sum.counter_area = size.y() * size.z();
     out.total = sum.metrics();
@@ -112,7 +112,7 @@ TEST(Dispatch, MakesTheMirrorImage) {
 }
 
 TEST(Dispatch, AsksTheNextWhereOneIsBeyond) {
-  const Pose turned{Mat3(Eigen::AngleAxisd(0.3, Vec3::UnitZ())), kShifted.translation};
+  const Pose turned{Mat3(rotation_about(Vec3::UnitZ(), 0.3)), kShifted.translation};
   const Interference out = asked(kBox, kBox, turned);
   EXPECT_EQ(out.engine, Engine::kOctree);
   EXPECT_EQ(out.total.volume,

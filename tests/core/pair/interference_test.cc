@@ -263,7 +263,7 @@ TEST(Interference, DepthIsHowFarATipReachesBelowAFace) {
   const Vec3 corner(0.1, 0.1, 0.1);
   const Mat3 R = test::turn(Vec3(1.0, 2.0, 3.0), 0.4);
   const Box tip({.half_sizes = corner});
-  const double reach = tip.support_height(-R.row(2).transpose());
+  const double reach = tip.support_height(-R.row(2));
   const Sphere ball({.radius = 0.1});
   for (const Shape& ground : {Shape(box), Shape(mesh)}) {
     for (const Shape& other : {Shape(tip), Shape(test::mesh_of(test::box_soup(corner, 3)))}) {

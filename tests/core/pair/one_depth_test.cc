@@ -85,7 +85,7 @@ TEST(OneDepth, APegAtTheEdgeOfAChamferedHole) {
       if (test::kSanitized && low != .0079) continue;
       for (const double aside : {.0003, .001}) {
         if (low - kCorner > 0.8 * aside) continue;
-        const Mat3 turn = Eigen::AngleAxisd(tilt, Vec3::UnitY()).toRotationMatrix();
+        const Mat3 turn = rotation_about(Vec3::UnitY(), tilt);
         const Pose X{turn, Vec3(aside, 0, low) + turn * Vec3(0, 0, kHalfPeg)};
         const VolumeMetrics octree = evaluated(block, peg, X, Engine::kOctree).total;
         const double expected = longest_column(X, octree.centroid, octree.normal());

@@ -88,8 +88,7 @@ inline std::vector<Edge> edges_of(const Planes& solid) {
       const Vec3 &n_i = solid[i].normal, &n_j = solid[j].normal;
       const Vec3 along = n_i.cross(n_j);
       if (along.norm() < 1e-9) continue;
-      Mat3 rows;
-      rows << n_i.transpose(), n_j.transpose(), along.transpose();
+      const Mat3 rows = Mat3::with_rows(n_i, n_j, along);
       const Vec3 o = rows.inverse() * Vec3(solid[i].offset, solid[j].offset, 0.0);
       Planes others;
       for (std::size_t k = 0; k < solid.size(); ++k) {
@@ -237,7 +236,7 @@ VolumeMetrics oracle(const A& a, const B& b, const Pose& X_AB) {
     const Vec3 x = p + middle * n - origin;
     sum.volume += weight * l;
     sum.first += weight * l * x;
-    sum.second += weight * l * (x * x.transpose() + l * l / 12.0 * n * n.transpose());
+    sum.second += weight * l * (outer(x, x) + l * l / 12.0 * outer(n, n));
     const double top_b = interval(planes_b, p, n).leave;
     const double bottom_a = interval(planes_a, p, n).enter;
     depth_moment += weight * l * ((top_b - bottom_a) - 0.5 * l);

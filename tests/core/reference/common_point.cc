@@ -22,7 +22,7 @@ bool find_point_behind_faces(const ReferenceSolid& a, const ReferenceSolid& b, d
     const Vec3 way = shape * g / std::sqrt(g.dot(shape * g));
     if (!way.allFinite()) return false;
     x -= 0.25 * way;
-    shape = 9.0 / 8.0 * (shape - 0.5 * way * way.transpose());
+    shape = 9.0 / 8.0 * (shape - 0.5 * outer(way, way));
   }
   return false;
 }
@@ -32,8 +32,9 @@ bool move_from_faces(const ReferenceSolid& a, const ReferenceSolid& b, Vec3& x) 
   constexpr int kRounds = 4;
   for (int round = 0; round < kRounds; ++round) {
     for (int axis = 0; axis < 3; ++axis) {
-      Mat3 r;  // of a frame with its z axis along the axis
-      r << Vec3::Unit((axis + 1) % 3), Vec3::Unit((axis + 2) % 3), Vec3::Unit(axis);
+      // Of a frame with its z axis along the axis.
+      const Mat3 r = Mat3::with_columns(Vec3::Unit((axis + 1) % 3), Vec3::Unit((axis + 2) % 3),
+                                        Vec3::Unit(axis));
       const Pose X_LW{r.transpose(), -(r.transpose() * x)};
       const ReferenceSpans spans =
           both(a.posed(X_LW).column(0.0, 0.0), b.posed(X_LW).column(0.0, 0.0));

@@ -128,8 +128,7 @@ Vec3 ImplicitMember::local_slope(const Vec3& p) const {
       return {p.x() * across, p.y() * across, -rise / steep};
     }
     case Kind::kBox: {
-      int axis = 0;
-      (p.cwiseAbs() - size).maxCoeff(&axis);
+      const int axis = (p.cwiseAbs() - size).largest();
       return std::copysign(1.0, p[axis]) * Vec3::Unit(axis);
     }
     case Kind::kPolytope: {

@@ -46,8 +46,9 @@ bool LineOracle::is_empty(const Vec3& middle_F, double reach) const {
 void LineOracle::find_cells() {
   // The box of both balls, in the frame of the lines.
   const Vec3 at_a = frame_.transpose() * a_.middle, at_b = frame_.transpose() * b_.middle;
-  const Vec3 low = (at_a.array() - a_.radius).max(at_b.array() - b_.radius);
-  const Vec3 high = (at_a.array() + a_.radius).min(at_b.array() + b_.radius);
+  const Vec3 reach_a = Vec3::Constant(a_.radius), reach_b = Vec3::Constant(b_.radius);
+  const Vec3 low = (at_a - reach_a).cwiseMax(at_b - reach_b);
+  const Vec3 high = (at_a + reach_a).cwiseMin(at_b + reach_b);
   if (!((high - low).minCoeff() > 0.0)) return;
   half_cell_ = 0.5 * (high - low);
   cells_.push_back({0.5 * (low + high)});

@@ -13,7 +13,7 @@ namespace {
 
 // 0: V. 1..3: int x. 4..9: int xx xy xz yy yz zz. 10: int n_z dS over A. 11..13: int x n_z dS.
 // 14, 15: int n_z^2 dS over A's surface inside B and over B's inside A. 16: of faces that are both.
-using Values = Eigen::Array<double, 17, 1>;
+using Values = Vector<17>;
 
 struct Sample {
   std::uint64_t signature = 0;  // of the faces that bound the overlap; 0: nothing there
@@ -374,7 +374,7 @@ class Columns {
     if (shared) sum[16] += slant;
     if (!of_a) return;
     sum[10] += sign;
-    sum.segment<3>(11) += sign * x.array();
+    for (int k = 0; k < 3; ++k) sum[11 + k] += sign * x[k];
   }
 
   ReferenceSolid a_, b_;
@@ -397,18 +397,17 @@ struct Direction {
 Direction integrate_along(int axis, const ReferenceSolid& a_F, const ReferenceSolid& b_F,
                           double range, const Fineness& fine) {
   // The axes of the lines' frame L in F, cyclic, so that z of L is the axis.
-  Mat3 R_FL;
-  R_FL << Vec3::Unit((axis + 1) % 3), Vec3::Unit((axis + 2) % 3), Vec3::Unit(axis);
+  Mat3 R_FL =
+      Mat3::with_columns(Vec3::Unit((axis + 1) % 3), Vec3::Unit((axis + 2) % 3), Vec3::Unit(axis));
   const Pose X_LF{R_FL.transpose(), Vec3::Zero()};
   const Values sum = Columns(a_F.posed(X_LF), b_F.posed(X_LF), range, fine).sum();
   Direction result;
   result.moments.volume = sum[0];
-  result.moments.first = R_FL * sum.segment<3>(1).matrix();
-  Mat3 second;
-  second << sum[4], sum[5], sum[6], sum[5], sum[7], sum[8], sum[6], sum[8], sum[9];
+  result.moments.first = R_FL * Vec3::from(sum.data() + 1);
+  Mat3 second = {sum[4], sum[5], sum[6], sum[5], sum[7], sum[8], sum[6], sum[8], sum[9]};
   result.moments.second = R_FL * second * R_FL.transpose();
   result.flux = sum[10];
-  result.first_flux = R_FL * sum.segment<3>(11).matrix();
+  result.first_flux = R_FL * Vec3::from(sum.data() + 11);
   result.area = sum[14];
   result.counter_area = sum[15];
   result.shared_area = sum[16];
@@ -473,7 +472,7 @@ MomentSum sums_of(const VolumeMetrics& m, double sign) {
   MomentSum sum;
   sum.volume = sign * m.volume;
   sum.first = sum.volume * m.centroid;
-  sum.second = sign * m.second_moment() + sum.first * m.centroid.transpose();
+  sum.second = sign * m.second_moment() + outer(sum.first, m.centroid);
   sum.area_vector = sign * m.area_vector;
   sum.area_moment = sign * m.area_moment;
   sum.area = sign * m.area;

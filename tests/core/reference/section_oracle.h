@@ -110,9 +110,8 @@ VolumeMetrics sections_below(const Body& body, const Pose& X_AB) {
   m.centroid = c + place(p_1 / volume, q_1 / volume);
   const double v_pp = double(pp - p_1 * p_1 / volume), v_qq = double(qq - q_1 * q_1 / volume),
                v_pq = double(pq - p_1 * q_1 / volume);
-  const Mat3 second = v_pp * e_p * e_p.transpose() + v_qq * e_q * e_q.transpose() +
-                      double(rr) * e_r * e_r.transpose() +
-                      v_pq * (e_p * e_q.transpose() + e_q * e_p.transpose());
+  const Mat3 second = v_pp * outer(e_p, e_p) + v_qq * outer(e_q, e_q) +
+                      double(rr) * outer(e_r, e_r) + v_pq * (outer(e_p, e_q) + outer(e_q, e_p));
   m.inertia = second.trace() * Mat3::Identity() - second;
   m.area = double(cut);
   m.area_vector = Vec3(0, 0, m.area);

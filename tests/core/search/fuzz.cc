@@ -307,13 +307,13 @@ const std::vector<Shape>& flat_solids() {
 FuzzReport fuzz(const FuzzPlan& plan) { return Search(plan).run(); }
 
 std::string literal(const Pose& pose) {
-  std::string text = "Pose{(Mat3() << ";
+  std::string text = "Pose{Mat3(";
   char number[40];
   for (int i = 0; i < 9; ++i) {
     std::snprintf(number, sizeof number, "%.17g%s", pose.rotation(i / 3, i % 3), i < 8 ? ", " : "");
     text += number;
   }
-  text += ").finished(), Vec3(";
+  text += "), Vec3(";
   for (int i = 0; i < 3; ++i) {
     std::snprintf(number, sizeof number, "%.17g%s", pose.translation[i], i < 2 ? ", " : ")}");
     text += number;

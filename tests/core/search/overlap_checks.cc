@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/search/overlap_checks.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+
+#include "volcontact/base/symmetric_eigen.h"
 
 namespace volcontact::test {
 namespace {
@@ -28,10 +29,8 @@ bool holds(const Example& e, const Vec3& p, double slack) {
 }
 
 bool is_inertia_of_a_body(const VolumeMetrics& m) {
-  Eigen::SelfAdjointEigenSolver<Mat3> solver;
-  solver.computeDirect(m.second_moment(), Eigen::EigenvaluesOnly);
   // Thin overlaps have one moment of next to nothing.
-  return solver.eigenvalues()[0] >= -1e-6 * m.inertia.trace();
+  return symmetric_eigen(m.second_moment()).values[0] >= -1e-6 * m.inertia.trace();
 }
 
 }  // namespace

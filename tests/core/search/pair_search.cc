@@ -34,9 +34,11 @@ class Hash {
     std::memcpy(&bits, &x, sizeof bits);
     for (int i = 0; i < 8; ++i) sum_ = (sum_ ^ (bits >> 8 * i & 0xffu)) * 0x100000001b3u;
   }
-  template <typename Matrix>
-  void add_all(const Matrix& m) {
-    for (int i = 0; i < m.size(); ++i) add(m.data()[i]);
+  void add_all(const Vec3& v) {
+    for (const double x : v) add(x);
+  }
+  void add_all(const Mat3& m) {
+    for (const Vec3& column : m.columns) add_all(column);
   }
   void add(const VolumeMetrics& m) {
     for (const double x : {m.volume, m.area, m.counter_area, m.depth_moment, m.depth,

@@ -6,6 +6,9 @@
 namespace volcontact::test {
 namespace {
 
+// To the nearest 5 cm.
+Vec3 on_lattice(const Vec3& p) { return 0.05 * (20.0 * p).rounded(); }
+
 constexpr std::uint64_t kPoses = 20;  // of a pair of composed solids
 
 /// Draws solids whose sizes now and then are those of `like_`, and poses that make features meet.
@@ -161,12 +164,12 @@ class Drawer {
     const bool on_grid = chance(0.2);
     while (points.size() < count) {
       Vec3 p = random_.direction().cwiseProduct(stretch);
-      if (on_grid) p = p.unaryExpr([](double x) { return 0.05 * std::round(20.0 * x); });
+      if (on_grid) p = on_lattice(p);
       points.push_back(p);
     }
     const auto flat = [&points] {
       Mat3 spread = Mat3::Zero();
-      for (const Vec3& p : points) spread += (p - points[0]) * (p - points[0]).transpose();
+      for (const Vec3& p : points) spread += outer(p - points[0], p - points[0]);
       return std::abs(spread.determinant()) < 1e-6 * std::pow(spread.trace(), 3);
     };
     if (!on_grid || !flat()) return points;
@@ -296,8 +299,8 @@ class Drawer {
     Mat3 r = Mat3::Identity();
     if (kind < 0.1) r = one_of({turn(Vec3::UnitX(), 0.25 * kPi), turn(Vec3::UnitX(), kPi / 3.0)});
     if (kind >= 0.1 && kind < 0.35) r = Vec3(1.0, -1.0, -1.0).asDiagonal();
-    if (kind >= 0.35 && kind < 0.5) r.row(1).swap(r.row(2)), r.row(2) *= -1.0;
-    if (kind >= 0.5 && kind < 0.6) r.row(0).swap(r.row(2)), r.row(2) *= -1.0;
+    if (kind >= 0.35 && kind < 0.5) r = Mat3(1, 0, 0, 0, 0, 1, 0, -1, 0);
+    if (kind >= 0.5 && kind < 0.6) r = Mat3(0, 0, 1, 0, 1, 0, -1, 0, 0);
     if (chance(0.5)) r = r * turn(Vec3::UnitZ(), random_.uniform(0.0, 2.0 * kPi));
     if (chance(0.1)) r = turn(Vec3::UnitZ(), random_.uniform(0.0, 2.0 * kPi)) * r;
     return tilted(r);
@@ -315,14 +318,13 @@ class Drawer {
     double along = za - zb + hair();
     if (chance(0.2)) along = one_of({za - rim, za + rim - zb, ra - zb, za - rb}) + hair();
     if (chance(0.15)) along = random_.uniform(-1.0, 1.0) * (std::abs(za) + std::abs(zb));
-    Vec3 way =
-        one_of({Vec3(1, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 0).normalized().eval()});
+    Vec3 way = one_of({Vec3(1, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 0).normalized()});
     if (chance(0.2)) way = turn(Vec3::UnitZ(), random_.uniform(0.0, 2.0 * kPi)) * way;
     return {special_rotation(), across * way + Vec3(0.0, 0.0, along)};
   }
   Pose grid_pose() {
     Vec3 at = random_.in_box(0.25);
-    at = at.unaryExpr([](double x) { return 0.05 * std::round(20.0 * x); });
+    at = on_lattice(at);
     if (chance(0.2)) at[static_cast<int>(pick(3))] += hair();
     Mat3 r = Mat3::Zero();
     const int first = static_cast<int>(pick(3)),

@@ -26,7 +26,7 @@ TEST(Torus, SignedDistanceHasTheSignOfTheQuartic) {
   for (const Torus& solid : kTori) {
     for (int i = 0; i < 2000; ++i) {
       const Vec3 p = random.in_box(0.8);
-      EXPECT_EQ(solid.signed_distance(p) <= 0.0, inside(solid, p)) << p.transpose();
+      EXPECT_EQ(solid.signed_distance(p) <= 0.0, inside(solid, p)) << p;
     }
   }
 }

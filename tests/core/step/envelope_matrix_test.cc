@@ -43,7 +43,7 @@ TEST(EnvelopeMatrix, SolvesAsTheWholeMatrix) {
     matrix.solve(one.data(), 0, n);
     matrix.solve<6>(right.data(), 0, n);
     EXPECT_LT((right - truth).norm(), 1e-13 * truth.norm());
-    EXPECT_LT((one - truth.row(2).transpose()).norm(), 1e-13 * truth.norm());
+    EXPECT_LT((one - truth.row(2)).norm(), 1e-13 * truth.norm());
   }
 }
 

@@ -34,7 +34,7 @@ class Rows final : public LinearConstraints {
 
   VectorXd forces(const VectorXd& x) const {
     VectorXd f = (-d_ * x).cwiseMax(0.0);
-    f.tail<3>() = -h_ * Vec3(x.tail<3>());
+    f.tail<3>() = -test::eigen(h_ * Vec3(x.tail<3>()));
     return f;
   }
 
@@ -45,7 +45,7 @@ class Rows final : public LinearConstraints {
     const VectorXd f = forces(x);
     for (const int i : rows) {
       set_response(i, f[i], i < one_sided_ && x[i] < 0.0 ? d_ : 0.0);
-      if (i == one_sided_) add_cone(i, 3, h_.data());
+      if (i == one_sided_) add_cone(i, 3, test::eigen(h_).data());
     }
   }
 
@@ -89,7 +89,7 @@ struct Problem {
     for (double& x : t) x = random.uniform(-10.0, 10.0);
     // Without curvature along one direction, as a cone along the way to its tip.
     const Vec3 flat = random.direction();
-    h = 30.0 * (Mat3::Identity() - flat * flat.transpose());
+    h = 30.0 * (Mat3::Identity() - outer(flat, flat));
     std::vector<DofEntry> entries;
     const int all[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
     bodies.mass(all, entries);

@@ -127,7 +127,7 @@ TEST_P(NoEnergyInParts, HoldsInEveryStep) {
         if (body == 0) return;
         const auto at = 6 * (body - 1);
         Eigen::Matrix<double, 6, 1> f;
-        f << wrench.force, wrench.torque;
+        f << test::eigen(wrench.force), test::eigen(wrench.torque);
         after.segment<6>(at) += bodies.step * (bodies.mobility(body) * f);
       };
       push(pair.a, pair.report.wrench_on_A());

@@ -58,8 +58,8 @@ void check_distance(const S& solid, const std::vector<Vec3>& surface, double spa
     double nearest = kInfinity;
     for (const Vec3& q : surface) nearest = std::min(nearest, (p - q).norm());
     const double distance = solid.signed_distance(p);
-    EXPECT_LE(std::abs(distance), nearest + 1e-12) << p.transpose();
-    EXPECT_GE(std::abs(distance), nearest - spacing) << p.transpose();
+    EXPECT_LE(std::abs(distance), nearest + 1e-12) << p;
+    EXPECT_GE(std::abs(distance), nearest - spacing) << p;
     if (distance < 0.0) ++inside;
   }
   EXPECT_GT(inside, kPoints / 50);
@@ -84,7 +84,7 @@ void check_gradient(const S& solid, double half_range) {
     }
     if (second.cwiseAbs().maxCoeff() > 1e-9) continue;
     ++smooth;
-    EXPECT_LT((g - difference).norm(), 1e-6) << p.transpose();
+    EXPECT_LT((g - difference).norm(), 1e-6) << p;
   }
   EXPECT_GT(smooth, 400);
 }
@@ -136,7 +136,7 @@ void check_own_metrics(const S& solid, double tolerance) {
       const Vec3 x = o + 0.5 * (span.enter + span.leave) * Vec3::UnitZ();
       sum.volume += weight;
       sum.first += weight * x;
-      sum.second += weight * x * x.transpose();
+      sum.second += weight * outer(x, x);
       sum.second(2, 2) += weight * length * length / 12.0;
     }
   }
@@ -165,7 +165,7 @@ void check_pieces(const S& solid, double half_range) {
       }
       inside |= in_piece;
     }
-    EXPECT_EQ(inside, solid.signed_distance(p) < 0.0) << p.transpose();
+    EXPECT_EQ(inside, solid.signed_distance(p) < 0.0) << p;
   }
 }
 

@@ -18,7 +18,7 @@ namespace testing {
 
 inline Pose at(double x, double y, double z) { return {Mat3::Identity(), Vec3(x, y, z)}; }
 inline Pose turned(const Vec3& axis, double angle, const Vec3& position) {
-  return {Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix(), position};
+  return {rotation_about(axis.normalized(), angle), position};
 }
 inline Csg box(double x, double y, double z, const Pose& X = {}) {
   return Csg(Box({.half_sizes = {x, y, z}}), X);

@@ -4,12 +4,26 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "volcontact/base/matrix.h"
+
 namespace volcontact::test {
 
 // For small matrices of any size. Eigen's own products and solvers of these, which are made for
 // large ones, take seconds to compile in every file.
 
 /// A B.
+/// The same in Eigen's types.
+template <int N>
+Eigen::Matrix<double, N, 1> eigen(const Vector<N>& v) {
+  return Eigen::Map<const Eigen::Matrix<double, N, 1>>(v.data());
+}
+template <int R, int C>
+Eigen::Matrix<double, R, C> eigen(const Matrix<R, C>& m) {
+  Eigen::Matrix<double, R, C> out;
+  m.to(out.data());
+  return out;
+}
+
 inline Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return a.lazyProduct(b);
 }

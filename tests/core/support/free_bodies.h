@@ -29,10 +29,10 @@ class FreeBodies final : public Mechanism {
     tree_of_.root.push_back(body);
     tree_of_.tree_of_body.push_back(body - 1);
     tree_of_.last_dof.push_back(first + 5);
-    Eigen::Matrix<double, 6, 6> m = Eigen::Matrix<double, 6, 6>::Zero();
-    m.topLeftCorner<3, 3>() = mass * Mat3::Identity();
-    m.bottomRightCorner<3, 3>() = inertia;
-    masses_.push_back(m);
+    Matrix<6, 6> m = Matrix<6, 6>::Zero();
+    m.set_block(0, 0, mass * Mat3::Identity());
+    m.set_block(3, 3, inertia);
+    masses_.push_back(eigen(m));
     origins_.insert(origins_.end(), centre.begin(), centre.end());
     twists_.insert(twists_.end(), twist.angular.begin(), twist.angular.end());
     twists_.insert(twists_.end(), twist.linear.begin(), twist.linear.end());

@@ -12,7 +12,7 @@ namespace volcontact::test {
 /// A pose of a solid with this rotation and the given share of its height below the plane.
 template <typename Solid>
 Pose immersed_by(const Solid& solid, const Mat3& rotation, double share, Random& random) {
-  const Vec3 up_B = rotation.row(2).transpose();
+  const Vec3 up_B = rotation.row(2);
   const double low = solid.support_height(-up_B), height = low + solid.support_height(up_B);
   const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
   return {rotation, Vec3(x, y, low - share * height)};
@@ -48,7 +48,7 @@ template <typename Solid>
 void expect_contained(const Solid& solid, const Pose& X, double surface) {
   const VolumeMetrics m = closed_form(HalfSpace(), solid, X);
   VolumeMetrics expected = transformed(solid.own_metrics(), X);
-  const Vec3 up_B = X.rotation.row(2).transpose();
+  const Vec3 up_B = X.rotation.row(2);
   expected.depth = solid.support_height(up_B) + solid.support_height(-up_B);
   expected.depth_moment = -expected.centroid.z() * expected.volume;
   expected.counter_area = surface;

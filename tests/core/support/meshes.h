@@ -150,12 +150,12 @@ inline Soup ring_soup(double inner, double outer, double half, int n) {
 }
 
 /// A prism along z over a polygon, counterclockwise; `cuts` are the triangles that it consists of.
-inline Soup prism_soup(const std::vector<Eigen::Vector2d>& polygon,
-                       const std::vector<Triangle>& cuts, double half) {
+inline Soup prism_soup(const std::vector<Vec2>& polygon, const std::vector<Triangle>& cuts,
+                       double half) {
   const int n = static_cast<int>(polygon.size());
   Soup soup;
   for (double z : {-half, half}) {
-    for (const Eigen::Vector2d& p : polygon) soup.vertices.emplace_back(p.x(), p.y(), z);
+    for (const Vec2& p : polygon) soup.vertices.emplace_back(p.x(), p.y(), z);
   }
   for (const Triangle& t : cuts) {
     soup.triangles.push_back({t[0], t[2], t[1]});
@@ -171,7 +171,7 @@ inline Soup prism_soup(const std::vector<Eigen::Vector2d>& polygon,
 
 /// A regular one with this many sides, its corners `radius` away from z; one is on x.
 inline Soup regular_prism_soup(int sides, double radius, double half) {
-  std::vector<Eigen::Vector2d> polygon;
+  std::vector<Vec2> polygon;
   std::vector<Triangle> cuts;
   for (int i = 0; i < sides; ++i) {
     const double angle = 2.0 * kPi * i / sides;
@@ -184,7 +184,7 @@ inline Soup regular_prism_soup(int sides, double radius, double half) {
 /// A channel along z, open towards y: 6 wide, 5 high, its walls 1 thick, as everything by `unit`;
 /// around its middle. It is made of three boxes.
 inline Soup channel_soup(double unit, double half) {
-  std::vector<Eigen::Vector2d> outline;
+  std::vector<Vec2> outline;
   for (const auto& [x, y] : {std::pair(-3.0, -2.5),
                              {3.0, -2.5},
                              {3.0, 2.5},

@@ -34,9 +34,13 @@ class Random {
   }
   Mat3 rotation() {
     for (;;) {
-      Eigen::Quaterniond q(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+      Vector<4> q;
+      for (int i = 4; i-- > 0;) q[i] = uniform(-1.0, 1.0);
       const double length = q.norm();
-      if (length > 0.1 && length < 1.0) return q.normalized().toRotationMatrix();
+      if (length > 0.1 && length < 1.0) {
+        q /= length;
+        return rotation_of(q[0], q[1], q[2], q[3]);
+      }
     }
   }
   Pose pose(double half_range) {
@@ -56,7 +60,7 @@ class Random {
 };
 
 inline Mat3 turn(const Vec3& axis, double angle) {
-  return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+  return rotation_about(axis.normalized(), angle);
 }
 
 /// The pose after a small motion of its frame, seen from outside: turned by `angle` about the

@@ -40,7 +40,7 @@ VolumeMetrics immersed(const VolumeMetrics& own, const Pose& X_AB, double surfac
 
 // Whether a box lies in another one; pose of its axes and centre in those of the outer one.
 bool lies_in(const Vec3& half, const Vec3& outer_half, const Mat3& R, const Vec3& p) {
-  return ((p.cwiseAbs() + R.cwiseAbs() * half).array() <= outer_half.array()).all();
+  return (p.cwiseAbs() + R.cwiseAbs() * half).at_most(outer_half);
 }
 
 // The point of A's bounds nearest to the middle of B: sums about the origin of A would lose digits
@@ -73,7 +73,7 @@ VolumeMetrics clip(const HalfSpace&, const Box& b, const Pose& X_AB, ClipScratch
 
 VolumeMetrics clip(const HalfSpace&, const ConvexPolytope& b, const Pose& X_AB,
                    ClipScratch& scratch) {
-  const Vec3 up_B = X_AB.rotation.row(2).transpose();
+  const Vec3 up_B = X_AB.rotation.row(2);
   const double height = X_AB.translation.z();
   const double depth = b.support_height(-up_B) - height;
   if (!(depth > 0.0)) return VolumeMetrics{};
@@ -102,7 +102,7 @@ VolumeMetrics clip(const Box& a, const Box& b, const Pose& X_AB, ClipScratch& sc
   if (half_a.minCoeff() <= 0.0 || half_b.minCoeff() <= 0.0) return VolumeMetrics{};
   const AlignedBox planes{half_a, nearest_in(a.bounds(), p_AB)};
   const PosedBox box{half_b, R_AB, p_AB - planes.origin};
-  const double rounding = rounding_at(box.center.lpNorm<1>() + half_b.sum());
+  const double rounding = rounding_at(box.center.cwiseAbs().sum() + half_b.sum());
   if (lies_in(half_b, half_a, R_AB, p_AB)) {
     return whole(b.own_metrics(), X_AB, surface_of(b), false, rounding);
   }
@@ -116,7 +116,7 @@ VolumeMetrics clip(const Box& a, const Box& b, const Pose& X_AB, ClipScratch& sc
     const Excess of_a(half_a, R_BA, -(R_BA * p_AB), half_b), of_b(half_b, R_AB, p_AB, half_a);
     if (of_a.count(rounding) < of_b.count(rounding)) {
       start(planes, scratch);
-      const double of_corners = rounding + rounding_at(planes.origin.lpNorm<1>());
+      const double of_corners = rounding + rounding_at(planes.origin.cwiseAbs().sum());
       if (!cut(box, of_a, of_corners, scratch.polytope)) return VolumeMetrics{};
       return Region(planes, box, of_corners, scratch).measure(planes.origin);
     }
@@ -131,8 +131,8 @@ VolumeMetrics clip(const Box& a, const ConvexPolytope& b, const Pose& X_AB, Clip
   if (a.half_sizes().minCoeff() <= 0.0) return VolumeMetrics{};
   const AlignedBox planes{a.half_sizes(), nearest_in(a.bounds(), p_AM)};
   const PosedPolytope polytope{b, X_AB.rotation, X_AB.translation - planes.origin};
-  const double rounding =
-      rounding_at((p_AM - planes.origin).lpNorm<1>() + bounds.center().lpNorm<1>() + half_b.sum());
+  const double rounding = rounding_at((p_AM - planes.origin).cwiseAbs().sum() +
+                                      bounds.center().cwiseAbs().sum() + half_b.sum());
   return clip_solids(planes, polytope, p_AM - planes.origin, rounding, scratch);
 }
 
@@ -145,8 +145,8 @@ VolumeMetrics clip(const ConvexPolytope& a, const ConvexPolytope& b, const Pose&
   const AlignedPolytope planes{a, nearest_in(bounds_a, p_AM)};
   const PosedPolytope polytope{b, X_AB.rotation, X_AB.translation - planes.origin};
   const double rounding =
-      rounding_at((p_AM - planes.origin).lpNorm<1>() + bounds_b.center().lpNorm<1>() +
-                  half_b.sum() + bounds_a.center().lpNorm<1>() + half_a.sum());
+      rounding_at((p_AM - planes.origin).cwiseAbs().sum() + bounds_b.center().cwiseAbs().sum() +
+                  half_b.sum() + bounds_a.center().cwiseAbs().sum() + half_a.sum());
   return clip_solids(planes, polytope, p_AM - planes.origin, rounding, scratch);
 }
 

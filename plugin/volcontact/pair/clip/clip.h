@@ -16,7 +16,7 @@ namespace volcontact {
 struct ClipScratch {
   CutPolytope polytope;
   ColumnEnergy columns;
-  std::vector<Eigen::Vector2d> outline;
+  std::vector<Vec2> outline;
   std::vector<int> neighbors;
   std::vector<Vec3> corners;
   std::vector<Vec3> part;

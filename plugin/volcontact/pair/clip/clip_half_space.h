@@ -69,7 +69,7 @@ class Lid {
 
   double area() const { return std::max(0.0, 0.5 * area2_); }
   // int x dS, from the middle axis through `origin`.
-  Eigen::Vector2d first(const Vec3& origin) const {
+  Vec2 first(const Vec3& origin) const {
     return {area() * (apex_.x() - origin.x()) + x_ / 6.0,
             area() * (apex_.y() - origin.y()) + y_ / 6.0};
   }
@@ -144,7 +144,7 @@ VolumeMetrics measure_below(std::span<const Vec3> corners, int faces, Loop&& loo
   m.depth_moment = std::max(0.0, -(m.centroid.z() + sum.origin.z()) * m.volume);
   m.centroid += moved;
   m.area_vector = Vec3(0.0, 0.0, sum.area);
-  const Eigen::Vector2d first = lid.first(-shift);
+  const Vec2 first = lid.first(-shift);
   m.area_moment = Vec3(first.y(), -first.x(), 0.0);
   m.depth = -sum.origin.z();
   return m;

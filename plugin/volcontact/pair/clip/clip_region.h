@@ -192,7 +192,7 @@ class Region {
   const double rounding_;
   const CutPolytope& polytope_;
   ColumnEnergy& columns_;
-  std::vector<Eigen::Vector2d>& outline_;
+  std::vector<Vec2>& outline_;
   std::vector<int>& neighbors_;
   std::span<FaceLoop> faces_;
   RegionSum sum_;

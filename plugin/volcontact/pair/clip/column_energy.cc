@@ -201,10 +201,7 @@ double ColumnEnergy::value() {
                                          static_cast<std::size_t>(top.count));
     if (top.overhang) list_reaches(outline, top.height, ceiling_, 1.0, face_reaches_);
     for (const Lower& bottom : lower_) {
-      if ((top.min.array() > bottom.max.array()).any() ||
-          (bottom.min.array() > top.max.array()).any()) {
-        continue;
-      }
+      if (top.min.exceeds(bottom.max) || bottom.min.exceeds(top.max)) continue;
       cut_cell(top, bottom);
       if (cell_.count < 3) continue;
       const std::span<const Point> cell(cell_.points, static_cast<std::size_t>(cell_.count));

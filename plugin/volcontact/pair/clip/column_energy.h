@@ -14,9 +14,7 @@ struct HeightPlane {
   double per_u = 0.0;
   double per_v = 0.0;
 
-  double operator()(const Eigen::Vector2d& p) const {
-    return at_origin + per_u * p.x() + per_v * p.y();
-  }
+  double operator()(const Vec2& p) const { return at_origin + per_u * p.x() + per_v * p.y(); }
   HeightPlane operator-(const HeightPlane& other) const {
     return {at_origin - other.at_origin, per_u - other.per_u, per_v - other.per_v};
   }
@@ -28,7 +26,7 @@ struct HeightPlane {
 /// overhang. Keeps its memory from one use to the next.
 class ColumnEnergy {
  public:
-  using Point = Eigen::Vector2d;
+  using Point = Vec2;
 
   /// Empties it, for faces with numbers below `face_count`.
   void start(int face_count);

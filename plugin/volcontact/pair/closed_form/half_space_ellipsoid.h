@@ -67,20 +67,20 @@ inline VolumeMetrics closed_form(const HalfSpace&, const Ellipsoid& b, const Pos
   const EllipsoidCap cap = ellipsoid_cap(a, reach, center.z());
   VolumeMetrics m = cap.metrics;
   if (!m.touching()) return m;
-  const Vec3 up = map.row(2).transpose() * (1.0 / reach);  // plane normal's image in the unit ball
-  const Vec3 axis = map * up;  // from the centre to the topmost point, in A
+  const Vec3 up = map.row(2) * (1.0 / reach);  // plane normal's image in the unit ball
+  const Vec3 axis = map * up;                  // from the centre to the topmost point, in A
   m.centroid = center - cap.offset * axis;
   if (cap.offset != 0.0) m.centroid.z() = -m.depth_moment / m.volume;
 
   // Second moments: lateral (map (1 - up up^T) map^T) + axial (axis axis^T). The first matrix has
   // no z entries; as products of the rows' parts across `up` it suffers no cancellation.
-  const Vec3 row_x = map.row(0).transpose().cross(up), row_y = map.row(1).transpose().cross(up);
+  const Vec3 row_x = map.row(0).cross(up), row_y = map.row(1).cross(up);
   const double xx = cap.axial * axis.x() * axis.x() + cap.lateral * row_x.squaredNorm();
   const double yy = cap.axial * axis.y() * axis.y() + cap.lateral * row_y.squaredNorm();
   const double xy = cap.axial * axis.x() * axis.y() + cap.lateral * row_x.dot(row_y);
   const double zz = cap.axial * axis.z() * axis.z();
   const double xz = cap.axial * axis.x() * axis.z(), yz = cap.axial * axis.y() * axis.z();
-  m.inertia << yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy;
+  m.inertia = {yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy};
 
   const Vec3 cut_center = center - (1.0 - cap.share) * axis;
   m.area_vector.z() = m.area;
@@ -105,7 +105,7 @@ inline VolumeMetrics closed_form(const Ellipsoid& b, const HalfSpace&, const Pos
   const double zz = cap.lateral * a.z() * a.z() + along * axis.z() * axis.z();
   const double xy = along * axis.x() * axis.y(), xz = along * axis.x() * axis.z(),
                yz = along * axis.y() * axis.z();
-  m.inertia << yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy;
+  m.inertia = {yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy};
   m.area_vector = -m.area * normal;
   m.area_moment = (cap.share - 1.0) * axis.cross(m.area_vector);
   std::swap(m.area, m.counter_area);

@@ -33,7 +33,7 @@ inline VolumeMetrics frustum_below(const Vec3& center, const Vec3& axis, double 
 /// Cone frustum B in half-space A, in A. Fully immersed as with the ball.
 inline VolumeMetrics closed_form(const HalfSpace&, const Frustum& b, const Pose& X_AB) noexcept {
   const auto& [bottom, top, half_length] = b.params();
-  const Vec3 axis = X_AB.rotation.col(2), down_B = -X_AB.rotation.row(2).transpose();
+  const Vec3 axis = X_AB.rotation.col(2), down_B = -X_AB.rotation.row(2);
   const double height = X_AB.translation.z();
   const double depth = b.support_height(down_B) - height;
   if (!(depth > 0.0) || !(half_length > 0.0)) return VolumeMetrics{};

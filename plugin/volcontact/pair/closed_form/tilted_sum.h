@@ -11,15 +11,14 @@ namespace volcontact {
 /// How the axis of a body of revolution stands to the half-space z <= 0 of A. Places in the plane
 /// through the axis and along z: q along the axis, p across it, upwards.
 struct Tilt {
-  double sine;              ///< of the angle between axis and z, >= 0
-  double cosine;            ///< z component of the axis
-  Eigen::Vector2d heading;  ///< horizontal part of the axis, unit length
+  double sine;    ///< of the angle between axis and z, >= 0
+  double cosine;  ///< z component of the axis
+  Vec2 heading;   ///< horizontal part of the axis, unit length
 
   explicit Tilt(const Vec3& axis)
       : sine(std::hypot(axis.x(), axis.y())),
         cosine(axis.z()),
-        heading(sine > 0.0 ? Eigen::Vector2d(axis.head<2>() / sine)
-                           : Eigen::Vector2d(Eigen::Vector2d::UnitX())) {}
+        heading(sine > 0.0 ? Vec2(axis.head<2>() / sine) : Vec2(Vec2::UnitX())) {}
 
   /// Along the heading, of a place (p, q).
   double forward(double p, double q) const { return sine * q - cosine * p; }
@@ -51,7 +50,7 @@ struct TiltedSum {
     const double fz = k * s * (v_qq - v_pp) + (s * s - k * k) * v_pq;
     const double xx = ff * ux * ux + rr * uy * uy, yy = ff * uy * uy + rr * ux * ux;
     const double xy = (ff - rr) * ux * uy, xz = fz * ux, yz = fz * uy;
-    m.inertia << yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy;
+    m.inertia = {yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy};
     m.area = cut_area;
     m.counter_area = side_area;
     m.area_vector.z() = cut_area;

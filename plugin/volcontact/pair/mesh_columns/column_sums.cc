@@ -130,8 +130,8 @@ class Summation {
     MomentSum& m = sum_.moments;
     m.volume = totals[0] / 3.0;
     m.first = Vec3(totals[1], totals[2], totals[3]) / 12.0;
-    m.second << totals[4], totals[7], totals[8], totals[7], totals[5], totals[9], totals[8],
-        totals[9], totals[6];
+    m.second = {totals[4], totals[7], totals[8], totals[7], totals[5],
+                totals[9], totals[8], totals[9], totals[6]};
     m.second /= 60.0;
     m.area_vector += Vec3(totals[11], totals[12], -totals[13]);
     m.area_moment += Vec3(totals[14], totals[15], totals[16]) / 3.0;

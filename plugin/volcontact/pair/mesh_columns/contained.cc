@@ -25,7 +25,7 @@ int winding_around(const SurfaceView& solid, const Vec3& p, CellScratch& scratch
 namespace {
 
 bool holds(const Aabb& bounds, const Vec3& p) {
-  return (p.array() >= bounds.min.array()).all() && (p.array() <= bounds.max.array()).all();
+  return bounds.min.at_most(p) && p.at_most(bounds.max);
 }
 
 // Adds the parts of one solid that lie inside of the other; returns their surface.

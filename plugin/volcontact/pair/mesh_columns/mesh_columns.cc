@@ -37,7 +37,7 @@ class Columns {
         scratch_(scratch),
         out_(out) {
     rounding_ = 4.0 * kEpsilon *
-                (size_of(a.bounds) + X_AB.translation.lpNorm<1>() +
+                (size_of(a.bounds) + X_AB.translation.cwiseAbs().sum() +
                  (b != nullptr ? size_of(b->bounds) : 0.0));
     out.total = VolumeMetrics{};
     out.sites.clear();
@@ -62,7 +62,7 @@ class Columns {
 
   void half_space() {
     const Pose& X_CA = X_BA_;
-    const Vec3 up_A = X_CA.rotation.row(2).transpose();
+    const Vec3 up_A = X_CA.rotation.row(2);
     const Vec3 middle = X_CA * a_.bounds.center();
     const double reach = a_.bounds.half_sizes().dot(up_A.cwiseAbs());
     if (middle.z() - reach >= 0.0) return;
@@ -76,7 +76,7 @@ class Columns {
   // The whole of A below the half-space's plane, where the depth still means something.
   void add_immersed() {
     VolumeMetrics m = a_.own;
-    const Vec3 up_A = X_BA_.rotation.row(2).transpose();
+    const Vec3 up_A = X_BA_.rotation.row(2);
     m.area = a_.surface_area;
     m.volume_error = rounding_ * m.area;
     m.status = Status::kContained;
@@ -232,7 +232,7 @@ class Columns {
       if (other.first == patch.first) continue;
       const Vec3 apart = X_CB * (0.5 * (other.low + other.high)) - middle;
       const Vec3 reach = X_CB.rotation.cwiseAbs() * (0.5 * (other.high - other.low)) + half;
-      if ((apart.cwiseAbs().array() > reach.array()).any()) continue;
+      if (apart.cwiseAbs().exceeds(reach)) continue;
       for (int k = other.first; k < other.last; ++k) {
         const TriangleContact& contact = scratch_.crossing.contacts[patches.order[k]];
         const Vec3 p = X_CB * contact.p;
@@ -240,9 +240,8 @@ class Columns {
           const Vec3 extent = contact.q - contact.p;
           const Vec3 away = p + X_CB.rotation * (0.5 * extent) - middle;
           const Vec3 far = half + X_CB.rotation.cwiseAbs() * (0.5 * extent);
-          if ((away.cwiseAbs().array() <= far.array()).all()) return true;
-        } else if (((p - middle).cwiseAbs().array() <= half.array()).all() &&
-                   is_on_cells(p, margin, own)) {
+          if (away.cwiseAbs().at_most(far)) return true;
+        } else if ((p - middle).cwiseAbs().at_most(half) && is_on_cells(p, margin, own)) {
           return true;
         }
       }
@@ -392,7 +391,7 @@ class Columns {
     // Where an edge of one body runs along an upright face of the other, whether there is a wall is
     // told by rounding. Columns a little aside see the face.
     for (const double aside : {0.0, kAside}) {
-      X_BC.rotation = X_BC.rotation * Eigen::AngleAxisd(aside, Vec3(0.8, 0.6, 0.0)).matrix();
+      X_BC.rotation = X_BC.rotation * rotation_about(Vec3(0.8, 0.6, 0.0), aside);
       const Pose X_CB = X_BC.inverse();
       const Pose X_CA = X_CB * X_BA_;
       if (!find_leaf_pairs(*a_.tree, X_CA, *b_->tree, X_CB, ColumnWindow{}, most_leaf_pairs_ / 2,
@@ -473,8 +472,8 @@ class Columns {
       const double volume = sum.moments.volume, doubt = error_of(sum);
       const Vec3& first = sum.moments.first;
       const Vec3 slack = (doubt + kCentroid * std::abs(volume)) * reach;
-      return volume >= -doubt && ((first - volume * common.max).array() <= slack.array()).all() &&
-             ((volume * common.min - first).array() <= slack.array()).all();
+      return volume >= -doubt && (first - volume * common.max).at_most(slack) &&
+             (volume * common.min - first).at_most(slack);
     });
   }
 

@@ -65,7 +65,7 @@ VolumeMetrics sampled_columns(const SurfaceView& a, const Pose& X_CA, const Surf
                               const Pose& X_CB, CellScratch& cells, SampledScratch& scratch) {
   const Aabb in_a = bounds_in(a, X_CA), in_b = bounds_in(b, X_CB);
   const Vec3 low = in_a.min.cwiseMax(in_b.min), high = in_a.max.cwiseMin(in_b.max);
-  if ((low.array() >= high.array()).any()) return VolumeMetrics{};
+  if (!low.less_than(high)) return VolumeMetrics{};
   const double dx = (high.x() - low.x()) / kAcross, dy = (high.y() - low.y()) / kAcross;
   Sums sums;
   double halves[2] = {0.0, 0.0};  // of the columns, as on a chessboard

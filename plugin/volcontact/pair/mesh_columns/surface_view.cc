@@ -94,12 +94,9 @@ bool coincide(const SurfaceView& a, const SurfaceView& b, const Pose& X_BA, doub
 bool bounds_apart(const Aabb& a, const Aabb& b, const Pose& X_AB) {
   const Vec3 p = X_AB * b.center() - a.center();
   const Vec3 half_a = a.half_sizes(), half_b = b.half_sizes();
-  if ((p.cwiseAbs().array() > (half_a + X_AB.rotation.cwiseAbs() * half_b).array()).any()) {
-    return true;
-  }
+  if (p.cwiseAbs().exceeds(half_a + X_AB.rotation.cwiseAbs() * half_b)) return true;
   const Vec3 q = X_AB.rotation.transpose() * p;
-  return (q.cwiseAbs().array() > (half_b + X_AB.rotation.transpose().cwiseAbs() * half_a).array())
-      .any();
+  return q.cwiseAbs().exceeds(half_b + X_AB.rotation.transpose().cwiseAbs() * half_a);
 }
 
 }  // namespace volcontact

@@ -200,8 +200,9 @@ void CellCut::enclose(Cell& cell) const {
     cell.content_high = cell.content_high.cwiseMax(p);
   }
   if (!(slack < kInfinity) || polytope_.size() == 0) slack = 2.0 * cell.half.maxCoeff();
-  cell.content_low = (cell.content_low.array() - slack).matrix().cwiseMax(-cell.half);
-  cell.content_high = (cell.content_high.array() + slack).matrix().cwiseMin(cell.half);
+  const Vec3 wider = Vec3::Constant(slack);
+  cell.content_low = (cell.content_low - wider).cwiseMax(-cell.half);
+  cell.content_high = (cell.content_high + wider).cwiseMin(cell.half);
 }
 
 // Halving an axis helps against a bend along it; a straight cylinder is never cut across.

@@ -32,9 +32,9 @@ struct CellCut::Columns {
   double bend_along = 0.0;  // second derivative along z, negative for some columns of a cone
 
   Columns(const Tangent& t, const Vec3& half_sizes) : tangent(t), half(half_sizes) {
-    Eigen::Index axis;
-    steep = t.slope.cwiseAbs().maxCoeff(&axis);
-    a = static_cast<int>(axis);
+    const Vec3 slopes = t.slope.cwiseAbs();
+    a = slopes.largest();
+    steep = slopes[a];
     b = (a + 1) % 3;
     c = (a + 2) % 3;
     sign = std::copysign(1.0, t.slope[a]);

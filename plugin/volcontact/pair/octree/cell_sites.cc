@@ -52,9 +52,8 @@ int Regions::sweep_axis() const {
     high = high.cwiseMax(this->high(i));
     sum += this->high(i) - this->low(i);
   }
-  Eigen::Index axis;
-  (high - low).cwiseQuotient(sum.cwiseMax(std::numeric_limits<double>::min())).maxCoeff(&axis);
-  return static_cast<int>(axis);
+  const Vec3 least = Vec3::Constant(std::numeric_limits<double>::min());
+  return (high - low).cwiseQuotient(sum.cwiseMax(least)).largest();
 }
 
 void Regions::join_neighbours(double slack) {
@@ -68,7 +67,9 @@ void Regions::join_neighbours(double slack) {
             [&](int i, int j) { return start(i) != start(j) ? start(i) < start(j) : i < j; });
   const auto touching = [&](int i, int j) {
     const Vec3 overlap = high(i).cwiseMin(high(j)) - low(i).cwiseMax(low(j));
-    return overlap.minCoeff() >= -slack && (overlap.array() > slack).count() >= 2;
+    const auto wide =
+        std::count_if(overlap.begin(), overlap.end(), [&](double x) { return x > slack; });
+    return overlap.minCoeff() >= -slack && wide >= 2;
   };
   for (auto i = s_.order.begin(); i != s_.order.end(); ++i) {
     const double end = high(*i)[axis] + slack;

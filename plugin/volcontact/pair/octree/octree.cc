@@ -22,7 +22,7 @@ OctreeScratch::Totals totals_of(const Cell& cell) {
   t.low = cell.low;
   t.high = cell.high;
   t.first = cell.sums.first + t.volume * c;
-  const Mat3 cross = c * cell.sums.first.transpose();
+  const Mat3 cross = outer(c, cell.sums.first);
   t.second = cell.sums.second + cross + cross.transpose() + outer(t.volume * c, c);
   t.surface = cell.sums.surface;
   for (CellSums::Surface& surface : t.surface) surface.moment += c.cross(surface.area_vector);

@@ -36,8 +36,7 @@ Frame frame_of(const VolumeMetrics& site) {
     normal = symmetric_eigen(covariance).vectors.col(0);
   }
   const Mat3 basis = basis_with_z(normal);
-  const Eigen::Matrix2d flat =
-      (basis.leftCols<2>().transpose() * covariance * basis.leftCols<2>()).eval();
+  const Mat2 flat = basis.leftCols<2>().transpose() * covariance * basis.leftCols<2>();
   const auto axes = symmetric_eigen(flat);
   const auto spread = [&](int i) { return kReach * std::sqrt(std::max(axes.values[i], 0.0)); };
   const Vec3 u = basis.leftCols<2>() * axes.vectors.col(1);

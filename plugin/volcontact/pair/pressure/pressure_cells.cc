@@ -134,7 +134,8 @@ PressureField cells_of(const A& a, const B& b, const Pose& X_AB, const Vec3& cen
   const auto solid_b = posed(b, X_AB.rotation, X_AB.translation - centroid);
   start(solid_b, scratch.clip);
   const Vec3 middle_b = X_AB * b.bounds().center() - centroid;
-  const double rounding = 4.0 * kEpsilon * (middle_b.lpNorm<1>() + b.bounds().half_sizes().sum());
+  const double rounding =
+      4.0 * kEpsilon * (middle_b.cwiseAbs().sum() + b.bounds().half_sizes().sum());
   if (!cut(solid_a, middle_b, solid_b.size(), rounding, scratch.clip.polytope)) return {};
   Field field(share_of_a, scratch);
   field.add_layers(solid_a, true);

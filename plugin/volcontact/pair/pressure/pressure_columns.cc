@@ -54,9 +54,10 @@ class ColumnField {
   void choose_frame(const VolumeMetrics& site) {
     const Mat3 spread = site.second_moment() / site.volume;
     t_ = site.normal();
-    if (t_.isZero(0.0)) t_ = direct_eigenvectors(spread).col(0);  // no direction: the shortest one
+    if (t_.isZero(0.0))
+      t_ = symmetric_eigen(spread).vectors.col(0);  // no direction: the shortest one
     const Mat3 basis = basis_with_z(t_);
-    const Eigen::Matrix2d across = basis.leftCols<2>().transpose() * spread * basis.leftCols<2>();
+    const Mat2 across = basis.leftCols<2>().transpose() * spread * basis.leftCols<2>();
     const double l00 = std::sqrt(across(0, 0)), l10 = across(1, 0) / l00;
     const double l11 = std::sqrt(std::max(0.0, across(1, 1) - l10 * l10));
     u_ = l00 * basis.col(0) + l10 * basis.col(1);

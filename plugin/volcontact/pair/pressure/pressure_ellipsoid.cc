@@ -11,8 +11,6 @@
 namespace volcontact {
 namespace {
 
-using Vec2 = Eigen::Vector2d;
-
 constexpr double kSmall = 0.1;        // sides of a triangle for a rule of degree 5, in unit balls
 constexpr double kPieceOfEdge = 1.5;  // as log of the distance from the disc's middle
 constexpr double kPieceOfArc = 1.0;   // [rad]

@@ -15,9 +15,7 @@ Aabb bounds_in(const Shape& solid, const Pose& X) {
   return {middle - reach, middle + reach};
 }
 
-bool apart(const Aabb& a, const Aabb& b) {
-  return ((a.min - b.max).array() > 0.0).any() || ((b.min - a.max).array() > 0.0).any();
-}
+bool apart(const Aabb& a, const Aabb& b) { return a.min.exceeds(b.max) || b.min.exceeds(a.max); }
 
 }  // namespace
 

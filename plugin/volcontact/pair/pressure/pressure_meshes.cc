@@ -90,7 +90,7 @@ class MeshField {
     finest_ = kInfinity;
     for (const VolumeMetrics& metrics : site.sites) {
       volume_ += metrics.volume;
-      const Vec3 spread = direct_eigenvalues(metrics.second_moment() / metrics.volume);
+      const Vec3 spread = symmetric_eigen(metrics.second_moment() / metrics.volume).values;
       finest_ = std::min(finest_, kFinest * std::sqrt(std::max(0.0, spread[1])));
     }
     reach_ = site.metrics().depth;

@@ -92,7 +92,7 @@ struct RegionSum {
     const double sxx = xx - first.x() * c.x(), syy = yy - first.y() * c.y(),
                  szz = zz - first.z() * c.z(), sxy = xy - first.x() * c.y(),
                  sxz = xz - first.x() * c.z(), syz = yz - first.y() * c.z();
-    m.inertia << syy + szz, -sxy, -sxz, -sxy, sxx + szz, -syz, -sxz, -syz, sxx + syy;
+    m.inertia = {syy + szz, -sxy, -sxz, -sxy, sxx + szz, -syz, -sxz, -syz, sxx + syy};
     m.area = area;
     m.counter_area = counter_area;
     return m;

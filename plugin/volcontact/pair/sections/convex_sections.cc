@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/sections/convex_sections.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,8 +12,6 @@
 
 namespace volcontact {
 namespace {
-
-using Vec2 = Eigen::Vector2d;
 
 constexpr double kClear = 0.02;       // |S| / area below which S gives no direction to look along
 constexpr double kSameCorner = 1e-7;  // squared distance of directions that count as one
@@ -36,15 +33,11 @@ constexpr double kApexRounding = 1e-15;  // of the wall of a cone, per distance 
 constexpr int kLeastArcs = 4;            // where no corners are known
 constexpr double kWidestAngle = 2.3;     // of an arc between corners [rad]
 
-// The shortest turn of one direction to another that is not opposite. Eigen's FromTwoVectors, in
-// the same bits, without the singular values that it needs for opposite ones: seconds to compile.
+// The shortest turn of one direction to another that is not opposite.
 Mat3 turn_between(const Vec3& from, const Vec3& to) {
-  const Vec3 v0 = from.normalized(), v1 = to.normalized();
-  const double s = std::sqrt((1.0 + v1.dot(v0)) * 2.0);
-  Eigen::Quaterniond turn;
-  turn.vec() = v0.cross(v1) * (1.0 / s);
-  turn.w() = s * 0.5;
-  return turn.toRotationMatrix();
+  const Vec3 v0 = from.normalized(), v1 = to.normalized(), across = v0.cross(v1);
+  const double cosine = v0.dot(v1);
+  return cosine * Mat3::Identity() + skew(across) + outer(across / (1.0 + cosine), across);
 }
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }

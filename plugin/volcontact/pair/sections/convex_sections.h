@@ -16,14 +16,14 @@ struct LinesScratch {
   /// A part of the rim of the overlap seen along the columns, as a quadratic arc through three
   /// places.
   struct Arc {
-    Eigen::Vector2d from, through, to;
+    Vec2 from, through, to;
     int depth;
   };
   SimdPath path = best_simd_path();
   LinesFaces faces;
   Sections sections;
   SectionBreaks breaks;
-  std::vector<Eigen::Vector2d> corners;
+  std::vector<Vec2> corners;
   std::vector<Arc> arcs;
 };
 

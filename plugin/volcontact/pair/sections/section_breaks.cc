@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/sections/section_breaks.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -49,8 +48,7 @@ class BreakSearch {
   BreakSearch(const FaceSet& faces, const SectionFrame& frame, double tolerance,
               SectionBreaks& breaks)
       : faces_(faces), frame_(frame), tolerance_(tolerance), breaks_(breaks) {
-    to_uv_ << frame.u, frame.v, frame.t;
-    to_uv_ = to_uv_.inverse().eval();
+    to_uv_ = Mat3::with_columns(frame.u, frame.v, frame.t).inverse();
     middle_ = frame.center;
     if (faces.has_bore) middle_ += frame.central ? frame.u + frame.t : frame.u;
   }
@@ -158,8 +156,7 @@ class BreakSearch {
   }
 
   void intersect(const Plane& p, const Plane& q, const Plane& s) {
-    Mat3 rows;
-    rows << p.normal.transpose(), q.normal.transpose(), s.normal.transpose();
+    Mat3 rows = Mat3::with_rows(p.normal, q.normal, s.normal);
     const double det = rows.determinant();
     if (!(std::abs(det) > 1e-9)) return;
     const Vec3 x = rows.inverse() * Vec3(p.offset, q.offset, s.offset);

@@ -9,10 +9,9 @@ namespace volcontact {
 
 /// Where a half-plane that turns about the axis of a set of sections meets something new.
 struct SectionBreaks {
-  std::vector<Eigen::Vector2d>
-      directions;    ///< (u, v) in the frame of the sections, unit length, any order
-  bool complete;     ///< false when there are too many faces to look for all
-  double low, high;  ///< least and greatest height of all places found
+  std::vector<Vec2> directions;  ///< (u, v) in the frame of the sections, unit length, any order
+  bool complete;                 ///< false when there are too many faces to look for all
+  double low, high;              ///< least and greatest height of all places found
 
   void clear();
 };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/surface_sweep/curve_family.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 

@@ -212,7 +212,7 @@ class SpanFinder {
       const SweepSpans::Span& span = out_.span[i];
       const double middle = 0.5 * (span.low.t + span.high.t);
       if (!std::isfinite(middle)) continue;
-      if (((curve_.at(middle).cwiseAbs() - solids_.half).array() > 0.0).any()) continue;
+      if (curve_.at(middle).cwiseAbs().exceeds(solids_.half)) continue;
       out_.span[kept++] = span;
     }
     out_.count = kept;

@@ -3,8 +3,6 @@
 
 #include <cmath>
 
-#include <Eigen/Dense>
-
 #include "volcontact/pair/surface_sweep/face_curve.h"
 
 namespace volcontact {

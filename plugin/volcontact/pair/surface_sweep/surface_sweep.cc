@@ -422,8 +422,8 @@ class SweepRun {
   // Regions with gaps are parts of one that was not seen to hang together, next to each other. Far
   // from the middle of the box a gap by rounding looks larger than it is.
   void join_open() {
-    for (ScratchRegion& region : s_.regions) region.box.setEmpty();
-    const auto add = [&](int strip, const Vec3& x) { region_of(root(strip)).box.extend(x); };
+    for (ScratchRegion& region : s_.regions) region.box = Aabb::none();
+    const auto add = [&](int strip, const Vec3& x) { region_of(root(strip)).box.add(x); };
     for (const SweepPlace& place : s_.surface.places) add(place.strip, place.x);
     for (const SweepTip& tip : s_.surface.tips) add(tip.strip, tip.x);
     const auto count = static_cast<int>(s_.regions.size());
@@ -437,7 +437,7 @@ class SweepRun {
       for (int i = 0; i < count; ++i) {
         for (int k = i + 1; k < count && s_.regions[i].is_open(i); ++k) {
           if (!s_.regions[k].is_open(k)) continue;
-          const double way = s_.regions[i].box.exteriorDistance(s_.regions[k].box);
+          const double way = s_.regions[i].box.distance(s_.regions[k].box);
           if (way < least) {
             least = way;
             one = i;
@@ -458,7 +458,7 @@ class SweepRun {
         region.flux[0].moment + region.flux[1].moment - outer(region.box.center(), gap);
     const double volume = moment.trace() / 3.0;
     const double open = (moment - volume * Mat3::Identity()).cwiseAbs().maxCoeff();
-    return open + gap.norm() * 0.5 * region.box.diagonal().norm() + region.error > kWorst * volume;
+    return open + gap.norm() * region.box.half_sizes().norm() + region.error > kWorst * volume;
   }
 
   void merge(int part, int whole) {
@@ -468,7 +468,7 @@ class SweepRun {
     }
     for (int k = 0; k < 2; ++k) to.flux[k] += from.flux[k];
     to.error += from.error;
-    to.box.extend(from.box);
+    to.box.add(from.box);
     from.part = false;
   }
 

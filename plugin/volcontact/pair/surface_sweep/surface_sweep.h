@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Geometry>
 #include <vector>
 
 #include "volcontact/pair/overlap.h"
@@ -30,7 +29,7 @@ struct SurfaceSweepScratch {
     int into = -1;      ///< the region it is counted with
     bool open = false;  ///< its surface has a gap
     bool part = false;  ///< no region of its own
-    Eigen::AlignedBox3d box;
+    Aabb box;
 
     bool is_open(int self) const { return open && into == self; }
   };

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/LU>
-
 #include "volcontact/pair/surface_sweep/sweep_patch.h"
 
 namespace volcontact {

@@ -135,8 +135,8 @@ class SweepSolids::PartWriter {
   void tube(int axis, double radius, const Vec3& center_M) {
     const double scale = 1.0 / radius;
     RoundFace round{Mat3::Zero(), X_ * center_M, owner_};
-    round.map.row(0) = scale * X_.rotation.col((axis + 1) % 3).transpose();
-    round.map.row(1) = scale * X_.rotation.col((axis + 2) % 3).transpose();
+    round.map.set_row(0, scale * X_.rotation.col((axis + 1) % 3));
+    round.map.set_row(1, scale * X_.rotation.col((axis + 2) % 3));
     add(Kind::kTube).round = round;
   }
   void ball(double radius, const Vec3& center_M) {

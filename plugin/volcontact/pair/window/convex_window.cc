@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/window/convex_window.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -399,7 +398,7 @@ class WindowSearch {
     }
     for (const RoundFace& round : faces_.active.rounds) {
       if (round.cone && (x - round.center).norm() <= distance) {  // the apex
-        faces_.near.push_back(-round.map.row(2).transpose().normalized());
+        faces_.near.push_back(-round.map.row(2).normalized());
         continue;
       }
       const Vec3 g = round.half_gradient(x);
@@ -454,7 +453,8 @@ class WindowSearch {
     const double length = strip_.norm(), depth = depth_of(c);
     if (depth > 0.0 && depth < kNearFace * length) {
       spread = basis_with_z(strip_ / length);
-      spread.leftCols<2>() *= depth / length;
+      spread.col(0) *= depth / length;
+      spread.col(1) *= depth / length;
       return true;
     }
     spread = Mat3::Identity();
@@ -484,9 +484,8 @@ class WindowSearch {
       // A ball of radius r has the chord ends r: from them 3/4 r and 3/5 r^2 are the moments of the
       // solid between the center and the ends.
       const Vec3 shift = 0.75 / s.total * Vec3(s.first[0], s.first[1], s.first[2]);
-      Mat3 second;
-      second << s.second[0], s.second[1], s.second[3], s.second[1], s.second[2], s.second[4],
-          s.second[3], s.second[4], s.second[5];
+      Mat3 second = {s.second[0], s.second[1], s.second[3], s.second[1], s.second[2],
+                     s.second[4], s.second[3], s.second[4], s.second[5]};
       second = 3.0 / s.total * second - outer(5.0 * shift, shift);
       const double largest = second.diagonal().maxCoeff();
       if (!(largest > 0.0)) return;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/window/overlap_window.h"
 
-#include <Eigen/LU>
-
 #include "volcontact/pair/convex/separation.h"
 
 namespace volcontact {
@@ -81,7 +79,7 @@ Vec3 middle_of(const CutPolytope& hull) {
 double size_of(const CutPolytope& hull) {
   const Vec3 middle = middle_of(hull);
   Mat3 spread = Mat3::Zero();
-  for (const Vec3& p : hull.points()) spread += (p - middle) * (p - middle).transpose();
+  for (const Vec3& p : hull.points()) spread += outer(p - middle, p - middle);
   return std::sqrt(std::max(0.0, (spread / hull.size()).determinant()));
 }
 

@@ -12,8 +12,9 @@ std::optional<Bore> as_tube(const Quadric& q) {
   const double h = 0.5 * q.hessian.trace();
   if (!(h > 0.0)) return std::nullopt;
   const Mat3 along = Mat3::Identity() - q.hessian / h;  // a a^T
-  int largest;
-  if (!(along.diagonal().maxCoeff(&largest) > 0.3)) return std::nullopt;
+  const Vec3 squares = along.diagonal();
+  const int largest = squares.largest();
+  if (!(squares[largest] > 0.3)) return std::nullopt;
   Bore bore;
   bore.axis = along.col(largest).normalized();
   if (!((along - outer(bore.axis, bore.axis)).norm() < kRoundTube)) return std::nullopt;

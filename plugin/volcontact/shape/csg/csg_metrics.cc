@@ -51,7 +51,7 @@ bool is_ball(const MemberFace& face) {
 bool is_about_axis(const MemberFace& face) {
   const Mat3& h = face.quadric.hessian;
   return face.kind == MemberFace::Kind::kCone ||
-         (h * face.X_FS.rotation.row(2).transpose()).norm() <= kSameFace * h.norm();
+         (h * face.X_FS.rotation.row(2)).norm() <= kSameFace * h.norm();
 }
 
 // What a round face cuts out of a body, where that is a ball, cylinder or frustum that touches no

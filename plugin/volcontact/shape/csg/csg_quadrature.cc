@@ -12,7 +12,7 @@ namespace volcontact {
 namespace {
 
 // 1, x, y, z, xx, xy, xz, yy, yz, zz.
-using Moments = Eigen::Matrix<double, 10, 1>;
+using Moments = Vector<10>;
 
 constexpr double kOuterTolerance = 2e-10, kInnerTolerance = 2e-11;  // of the volume's scale
 constexpr int kMostDepth = 40;
@@ -152,7 +152,7 @@ class LineSum {
   std::vector<double> z_ends() const {
     std::vector<double> ends;
     for (const Csg::Member& member : solid_.members()) {
-      const Vec3 e = member.X_SM.rotation.row(2).transpose();
+      const Vec3 e = member.X_SM.rotation.row(2);
       const double p = member.X_SM.translation.z();
       std::visit(
           [&](const auto& shape) {
@@ -174,13 +174,11 @@ class LineSum {
     for (const MemberFace* face : {&a, &b, &c}) {
       if (face->kind != MemberFace::Kind::kPlane) return;
     }
-    Mat3 normals;
-    normals << a.quadric.linear.transpose(), b.quadric.linear.transpose(),
-        c.quadric.linear.transpose();
+    const Mat3 normals = Mat3::with_rows(a.quadric.linear, b.quadric.linear, c.quadric.linear);
     const double volume = normals.determinant();
     if (std::abs(volume) < 1e-9) return;
     const Vec3 corner =
-        -normals.inverse() * Vec3(a.quadric.constant, b.quadric.constant, c.quadric.constant);
+        normals.inverse() * -Vec3(a.quadric.constant, b.quadric.constant, c.quadric.constant);
     if (on_surface(corner)) ends.push_back(corner.z());
   }
 
@@ -281,10 +279,8 @@ class LineSum {
     for (const RayInterval& span : spans_) {
       const double a = span.enter, b = span.leave, length = b - a;
       const double first = 0.5 * length * (a + b), second = length / 3.0 * (a * a + a * b + b * b);
-      Moments part;
-      part << length, first, length * y, length * z, second, first * y, first * z, length * y * y,
-          length * y * z, length * z * z;
-      sum += part;
+      sum += Moments({length, first, length * y, length * z, second, first * y, first * z,
+                      length * y * y, length * y * z, length * z * z});
     }
     return sum;
   }
@@ -365,8 +361,8 @@ VolumeMetrics csg_metrics_by_lines(const Csg& solid, double most_work) {
     const Moments m = LineSum(centered, most_work).all();
     MomentSum sum;
     sum.volume = m[0];
-    sum.first = m.segment<3>(1);
-    sum.second << m[4], m[5], m[6], m[5], m[7], m[8], m[6], m[8], m[9];
+    sum.first = Vec3::from(m.data() + 1);
+    sum.second = {m[4], m[5], m[6], m[5], m[7], m[8], m[6], m[8], m[9]};
     return transformed(sum.metrics(), X_CS.inverse());
   } catch (const WorkEnds&) {
     return transformed(metrics_by_lattice(centered, kLatticeShare * most_work), X_CS.inverse());

@@ -126,9 +126,10 @@ Split split(const PosedShape& body, const MemberFace& face, double size) {
     result.outside = body;
     return result;
   }
-  Eigen::Index axis;
-  const double along = plane.normal.cwiseAbs().maxCoeff(&axis);
-  const bool straight = (plane.normal.cwiseAbs() - along * Vec3::Unit(axis)).norm() <= kSameFace;
+  const Vec3 sizes = plane.normal.cwiseAbs();
+  const int axis = sizes.largest();
+  const double along = sizes[axis];
+  const bool straight = (sizes - along * Vec3::Unit(axis)).norm() <= kSameFace;
   if (const auto* box = std::get_if<Box>(&body.shape)) {
     if (straight) {
       split_box(*box, X_SM, static_cast<int>(axis), plane, result);

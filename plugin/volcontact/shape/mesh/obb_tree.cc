@@ -123,7 +123,7 @@ class TreeBuilder {
   // Returns where the second part begins; the end of the branch when there is none.
   int part(const Branch& branch, int way) {
     if (way == kByNormals) return part_by_normals(branch);
-    return halve(branch.first, branch.last, branch.box.axes.row(way).transpose());
+    return halve(branch.first, branch.last, branch.box.axes.row(way));
   }
 
   // Where no triangle looks in between: on both sides of a sharp edge.
@@ -241,8 +241,7 @@ class TreeBuilder {
       const bool used = lane < static_cast<int>(lanes.size());
       const Obb& box = branches_[lanes[used ? lane : 0]].box;
       ObbTree::Node& node = tree_.nodes[number];
-      int thinnest;
-      box.half.minCoeff(&thinnest);
+      const int thinnest = box.half.least();
       for (int k = 0; k < 3; ++k) {
         const int from = k == ObbTree::kFlatAxis ? thinnest
                          : k == thinnest         ? ObbTree::kFlatAxis

@@ -36,7 +36,7 @@ struct ObbTree {
   static constexpr double kRounding = 2e-6;
   /// How far its boxes may be off in a frame where the tree is moved by a translation [m].
   double slack(const Vec3& translation) const {
-    return kRounding * (size + translation.lpNorm<1>());
+    return kRounding * (size + translation.cwiseAbs().sum());
   }
 
   std::vector<Node> nodes;  ///< the root is the first

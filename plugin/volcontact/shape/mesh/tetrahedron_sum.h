@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Geometry>
-
 #include "volcontact/metrics/volume_metrics.h"
 
 namespace volcontact {

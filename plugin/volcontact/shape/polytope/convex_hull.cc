@@ -209,7 +209,7 @@ class Quickhull {
 // else a sum would not be exact. A coordinate above 1e-89 of the largest one keeps all its bits.
 std::vector<Vec3> scaled(const std::vector<Vec3>& points) {
   double largest = 0.0;
-  for (const Vec3& p : points) largest = std::max(largest, p.lpNorm<Eigen::Infinity>());
+  for (const Vec3& p : points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
   if (largest == 0.0) return points;
   constexpr int kFinest = 350;
   const int exponent = std::ilogb(largest);

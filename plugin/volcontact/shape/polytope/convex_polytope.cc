@@ -161,7 +161,7 @@ void check_size(const std::vector<Vec3>& points) {
   constexpr double kLeast = 1e-50, kMost = 1e50;
   double largest = 0.0;
   for (const Vec3& p : points) {
-    largest = std::max(largest, (p - points[0]).lpNorm<Eigen::Infinity>());
+    largest = std::max(largest, (p - points[0]).cwiseAbs().maxCoeff());
   }
   if (largest >= kLeast && largest <= kMost) return;
   std::ostringstream text;

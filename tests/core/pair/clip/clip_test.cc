@@ -369,8 +369,8 @@ TEST(Clip, ImmersedInAHalfSpaceIsTheWholeSolid) {
     EXPECT_LT((m.inertia - own.inertia).norm(), 1e-14);
     EXPECT_EQ(m.status, Status::kContained);
     EXPECT_NEAR(m.depth_moment, -own.centroid.z() * own.volume, 1e-13);
-    const double extent = solid.support_height(X.rotation.row(2).transpose()) +
-                          solid.support_height(-X.rotation.row(2).transpose());
+    const double extent =
+        solid.support_height(X.rotation.row(2)) + solid.support_height(-X.rotation.row(2));
     EXPECT_NEAR(m.depth, extent, 1e-13);
   }
 }
@@ -487,9 +487,8 @@ TEST(Clip, ASmallBoxInAFaceOfALargeOneIsAPrism) {
     for (int i = 0; i < 50; ++i) {
       // Upside down in the small box's frame: its upper face is in the block's lower one.
       const double tilt = most_tilt * random.uniform(-1.0, 1.0), turn = random.uniform(-3.0, 3.0);
-      const Mat3 R = (Eigen::AngleAxisd(tilt, Vec3::UnitX()) *
-                      Eigen::AngleAxisd(i % 5 == 0 ? 0.0 : turn, Vec3::UnitZ()))
-                         .toRotationMatrix();
+      const Mat3 R = rotation_about(Vec3::UnitX(), tilt) *
+                     rotation_about(Vec3::UnitZ(), i % 5 == 0 ? 0.0 : turn);
       const double depth = 0.012 + random.uniform(0.0, 0.02);
       const Vec3 normal = -R.col(2);  // out of the block's lower face
       const double d = depth * -normal.z();

@@ -28,7 +28,7 @@ VolumeMetrics expected_metrics(const Capsule& b, const Pose& X) {
   breaks.insert(breaks.end(), {h + r, -(h + r)});
   std::sort(breaks.begin(), breaks.end());
   VolumeMetrics m = test::sections_below(test::Revolution{breaks, radius, none, wall, none}, X);
-  m.depth = b.support_height(-X.rotation.row(2).transpose()) - X.translation.z();
+  m.depth = b.support_height(-X.rotation.row(2)) - X.translation.z();
   return m;
 }
 

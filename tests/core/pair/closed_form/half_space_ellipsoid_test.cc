@@ -20,7 +20,7 @@ Ellipsoid random_ellipsoid(Random& random) {
 // A pose with the given share of the height of the solid below the plane.
 Pose pose_at(const Ellipsoid& solid, double share, Random& random) {
   const Mat3 r = random.rotation();
-  const double reach = solid.support_height(r.row(2).transpose());
+  const double reach = solid.support_height(r.row(2));
   return {r, Vec3(random.uniform(-1, 1), random.uniform(-1, 1), reach * (1.0 - 2.0 * share))};
 }
 
@@ -31,10 +31,13 @@ VolumeMetrics slices(const Ellipsoid& solid, const Pose& X) {
   const Mat3 quadric = X.rotation *
                        Mat3(solid.semi_axes().cwiseAbs2().cwiseInverse().asDiagonal()) *
                        X.rotation.transpose();
-  const Eigen::Matrix2d inverse = quadric.topLeftCorner<2, 2>().inverse();
-  const Eigen::Vector2d lean = -(inverse * quadric.topRightCorner<2, 1>());  // of the centres
+  const Mat2 level_part = quadric.block<2, 2>(0, 0);
+  const Mat2 inverse =
+      Mat2(level_part(1, 1), -level_part(0, 1), -level_part(1, 0), level_part(0, 0)) /
+      level_part.determinant();
+  const Vec2 lean = -(inverse * quadric.col(2).head<2>());  // of the centres
   const double full = kPi * std::sqrt(inverse.determinant());
-  const double top = solid.support_height(X.rotation.row(2).transpose());
+  const double top = solid.support_height(X.rotation.row(2));
   const double z_0 = X.translation.z(), to = std::min(-z_0, top);  // from the centre
   constexpr double kNodes[] = {0.0, 0.538469310105683091, 0.906179845938663993};
   constexpr double kWeights[] = {0.568888888888888889, 0.478628670499366468, 0.236926885056189088};
@@ -48,10 +51,10 @@ VolumeMetrics slices(const Ellipsoid& solid, const Pose& X) {
     Vec3 p(lean.x() * z, lean.y() * z, z);
     p += X.translation;
     Mat3 spread = Mat3::Zero();
-    spread.topLeftCorner<2, 2>() = 0.25 * level * inverse;
+    spread.set_block(0, 0, 0.25 * level * inverse);
     sum.volume += dv;
     sum.first += dv * p;
-    sum.second += dv * (p * p.transpose() + spread);
+    sum.second += dv * (outer(p, p) + spread);
     depth_moment -= dv * p.z();
   }
   const double cut = full * (1.0 - z_0 * z_0 / (top * top));
@@ -198,7 +201,7 @@ TEST(HalfSpaceEllipsoid, InItsOwnFrameIsTheMirrorImage) {
   for (int i = 0; i < 200; ++i) {
     const Ellipsoid solid = random_ellipsoid(random);
     const Mat3 r = random.rotation();
-    const double reach = solid.support_height(r.row(2).transpose());
+    const double reach = solid.support_height(r.row(2));
     const double share = i % 10 == 0 ? 1.2 : random.log_uniform(1e-6, 0.999);
     const Pose X{r,
                  Vec3(random.uniform(-1, 1), random.uniform(-1, 1), reach * (1.0 - 2.0 * share))};

@@ -34,7 +34,7 @@ VolumeMetrics expected_metrics(const Frustum& b, const Pose& X) {
     const double c = reach > 0.0 ? std::clamp(height / reach, -1.0, 1.0) : 1.0;
     m.counter_area += r * r * (std::acos(c) - c * std::sqrt(1.0 - c * c));
   }
-  m.depth = b.support_height(-X.rotation.row(2).transpose()) - X.translation.z();
+  m.depth = b.support_height(-X.rotation.row(2)) - X.translation.z();
   return m;
 }
 

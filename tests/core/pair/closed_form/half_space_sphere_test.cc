@@ -117,7 +117,7 @@ TEST(HalfSpaceSphere, InItsOwnFrameIsTheMirrorImage) {
   for (int i = 0; i < 200; ++i) {
     const Sphere solid = Sphere({.radius = random.uniform(0.1, 1.0)});
     const Mat3 r = random.rotation();
-    const double reach = solid.support_height(r.row(2).transpose());
+    const double reach = solid.support_height(r.row(2));
     const double share = i % 10 == 0 ? 1.2 : random.log_uniform(1e-6, 0.999);
     const Pose X{r,
                  Vec3(random.uniform(-1, 1), random.uniform(-1, 1), reach * (1.0 - 2.0 * share))};

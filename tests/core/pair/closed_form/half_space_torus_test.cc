@@ -30,7 +30,7 @@ VolumeMetrics expected_metrics(const Torus& b, const Pose& X) {
   breaks.insert(breaks.end(), {r, -r});
   std::sort(breaks.begin(), breaks.end());
   VolumeMetrics m = test::sections_below(test::Revolution{breaks, outer, inner, slant, slant}, X);
-  m.depth = b.support_height(-X.rotation.row(2).transpose()) - X.translation.z();
+  m.depth = b.support_height(-X.rotation.row(2)) - X.translation.z();
   return m;
 }
 

@@ -42,9 +42,8 @@ TEST(SphereSphere, EqualsTheStackOfDiscs) {
     VolumeMetrics expected;
     expected.volume = static_cast<double>(sum.volume);
     expected.centroid = (plane + static_cast<double>(sum.first / sum.volume)) * axis;
-    expected.inertia =
-        static_cast<double>(sum.axial_second() + sum.lateral) * Mat3::Identity() +
-        static_cast<double>(sum.lateral - sum.axial_second()) * axis * axis.transpose();
+    expected.inertia = static_cast<double>(sum.axial_second() + sum.lateral) * Mat3::Identity() +
+                       static_cast<double>(sum.lateral - sum.axial_second()) * outer(axis, axis);
     expected.area_vector = kPi * (r_a - plane) * (r_a + plane) * axis;
     expected.area = 2.0 * kPi * r_a * (r_a - plane);  // Archimedes' hat-box
     expected.counter_area = 2.0 * kPi * r_b * (r_b - (distance - plane));

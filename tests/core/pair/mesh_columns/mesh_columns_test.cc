@@ -81,7 +81,7 @@ TEST(Columns, ShallowBoxesHaveTheDepthOfTheBoxes) {
   Random random(2);
   for (int i = 0; i < 50; ++i) {
     Pose X_AB = random.pose(0.3);
-    const double reach = box.support_height(-X_AB.rotation.row(2).transpose());
+    const double reach = box.support_height(-X_AB.rotation.row(2));
     X_AB.translation.z() = 1.0 + reach - 0.01;
     EXPECT_TRUE(test::same(evaluated(Shape(ground), mesh, X_AB).total,
                            evaluated(ground, box, X_AB).total, {1e-9, 1.0}));
@@ -539,8 +539,7 @@ TEST(Columns, EveryInstructionSetMakesTheSameBits) {
 // Flush faces on all sides: one of the regions shows nothing but walls to the columns.
 TEST(Columns, ARegionOfWallsAloneHasNoDepthAndIsFinite) {
   const Mesh block = mesh_of(box_soup(Vec3(0.35, 0.3, 0.25), 8));
-  Mat3 turned;
-  turned << 0, -1, 0, 0, 0, 1, -1, 0, 0;
+  Mat3 turned = {0, -1, 0, 0, 0, 1, -1, 0, 0};
   const Pose X_AB{turned, Vec3(0.0, -0.099999999999999978, 0.15000000000000002)};
   const Interference out = evaluated(block, Box({.half_sizes = Vec3(0.4, 0.3, 0.2)}), X_AB);
   ASSERT_TRUE(out.total.touching());

@@ -18,6 +18,13 @@ namespace {
 
 using namespace testing;  // the solids
 
+// Of a matrix that is one but for the digits it was written with.
+Mat3 nearest_rotation(const Mat3& r) {
+  Mat3 out = r;
+  for (int i = 0; i < 3; ++i) out = 0.5 * out * (3.0 * Mat3::Identity() - out.transpose() * out);
+  return out;
+}
+
 Interference octree(const Csg& a, const Csg& b, double tolerance = 1e-2) {
   static OctreeScratch scratch;
   Interference out;
@@ -89,9 +96,9 @@ TEST(OctreeCsg, PartsOfASolidWithinTheOtherCountOnce) {
 // A cell longer than the bore is wide: its columns leave the solid and enter it again.
 TEST(OctreeCsg, TheFarSideOfABoreCounts) {
   Pose X;
-  X.rotation << 0.893878, -0.362873, -0.263259, 0.436683, 0.571886, 0.694446, -0.101442, -0.73571,
-      0.669657;
-  X.rotation = Eigen::Quaterniond(X.rotation).normalized().toRotationMatrix();
+  X.rotation = Mat3(0.893878, -0.362873, -0.263259, 0.436683, 0.571886, 0.694446, -0.101442,
+                    -0.73571, 0.669657);
+  X.rotation = nearest_rotation(X.rotation);
   X.translation = Vec3(0.130462, 0.0564184, 0.101759);
   const Csg rod = tube(.06, .15, X);
   const Csg boss = box(.3, .2, .05) + tube(.05, .1, at(.1, 0, .15));
@@ -106,18 +113,14 @@ TEST(OctreeCsg, TheFarSideOfABoreCounts) {
 TEST(OctreeCsg, CentroidsAreThoseOfTheIntersection) {
   const Csg block = box(.4, .4, .25) - tube(.15, .5) - tube(.25, .2, at(0, 0, .3));
   Pose X;
-  X.rotation = Eigen::Quaterniond((Mat3() << 0.16985641245, -0.87781283998, 0.4478765646,
-                                   -0.5725983011, 0.28197799277, 0.76981789871, -0.80204737063,
-                                   -0.38721186651, -0.45473837061)
-                                      .finished())
-                   .normalized();
+  X.rotation = nearest_rotation(Mat3(0.16985641245, -0.87781283998, 0.4478765646, -0.5725983011,
+                                     0.28197799277, 0.76981789871, -0.80204737063, -0.38721186651,
+                                     -0.45473837061));
   X.translation = Vec3(0.1147465486, 0.1784027458, 0.0561218447);
   Pose Y;
-  Y.rotation = Eigen::Quaterniond((Mat3() << -0.64673649140, -0.32451233726, -0.69023449179,
-                                   0.75869042589, -0.18088870225, -0.62583393570, 0.07823521174,
-                                   -0.92842394432, 0.36319172798)
-                                      .finished())
-                   .normalized();
+  Y.rotation = nearest_rotation(Mat3(-0.64673649140, -0.32451233726, -0.69023449179, 0.75869042589,
+                                     -0.18088870225, -0.62583393570, 0.07823521174, -0.92842394432,
+                                     0.36319172798));
   Y.translation = Vec3(-0.5330758238, -0.0137593497, -0.0872666454);
   const Csg pill = capsule(.2, .3), egg(Ellipsoid({.semi_axes = Vec3(.5, .35, .2)}));
   const std::pair<Csg, Csg> cases[] = {{pill, block.posed(X)}, {egg, block.posed(Y)}};
@@ -179,10 +182,10 @@ TEST(OctreeCsg, ASmallSiteLiesInBothSolids) {
   const Csg cup = box(.3, .25, .2) - tube(.1, .2, at(0, 0, .2));
   const Box bar({.half_sizes = {.2, .05, .1}});
   Pose X;
-  X.rotation << .62767394429504275, .75279892414022065, .19829069435157615, -.026869566377383192,
-      .27551457860380679, -.96092129926412728, -.77801249736478861, .59781727709233501,
-      .19316070292404619;
-  X.translation << -.088525436917326228, .22520823238336474, -.11092734681562799;
+  X.rotation = Mat3(.62767394429504275, .75279892414022065, .19829069435157615,
+                    -.026869566377383192, .27551457860380679, -.96092129926412728,
+                    -.77801249736478861, .59781727709233501, .19316070292404619);
+  X.translation = {-.088525436917326228, .22520823238336474, -.11092734681562799};
   for (const double shift : {0.0, 1e-4, -1e-4, 1e-3}) {
     X.translation.x() += shift;
     static OctreeScratch scratch;

@@ -15,8 +15,10 @@ namespace {
 Pose random_pose(std::mt19937& random, double reach) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> number(-reach, reach);
-  const Eigen::Quaterniond q(normal(random), normal(random), normal(random), normal(random));
-  return {q.normalized().toRotationMatrix(), {number(random), number(random), number(random)}};
+  Vector<4> q;
+  for (int i = 4; i-- > 0;) q[i] = normal(random);
+  q.normalize();
+  return {rotation_of(q[0], q[1], q[2], q[3]), {number(random), number(random), number(random)}};
 }
 
 // Bodies of a few tenths of a metre.
@@ -41,17 +43,17 @@ double columns(const Shape& a, const Shape& b, const Pose& X_AB, int n) {
   return std::visit(
       [&](const auto& solid_a, const auto& solid_b) {
         const Aabb box = solid_b.bounds();
-        Eigen::Vector2d low = box.min.head<2>(), high = box.max.head<2>();
+        Vec2 low = box.min.head<2>(), high = box.max.head<2>();
         double volume = 0.0;
         if constexpr (ConvexSolid<std::decay_t<decltype(solid_a)>> &&
                       ConvexSolid<std::decay_t<decltype(solid_b)>>) {
           for (int i = 0; i < 2; ++i) {  // the window of a in b's frame
-            const Vec3 axis = X_BA.rotation.row(i).transpose();
+            const Vec3 axis = X_BA.rotation.row(i);
             low[i] = std::max(low[i], X_BA.translation[i] - solid_a.support_height(-axis));
             high[i] = std::min(high[i], X_BA.translation[i] + solid_a.support_height(axis));
             if (!(low[i] < high[i])) return 0.0;
           }
-          const Eigen::Vector2d step = (high - low) / n;
+          const Vec2 step = (high - low) / n;
           const Vec3 direction_A = X_AB.rotation.col(2);
           for (int i = 0; i < n; ++i) {
             for (int j = 0; j < n; ++j) {

@@ -134,8 +134,7 @@ TEST(PressureField, HalfSpaceCarriesAllOfIt) {
 TEST(PressureField, FaceThatCarriesAllOfItIsAHalfSpace) {
   // A small box with its corner in the top of a large one; the small one is rigid.
   const Shape table = Box({.half_sizes = {1.0, 1.0, 0.5}});
-  Pose X{Eigen::AngleAxisd(0.7, Vec3(1.0, 2.0, 0.5).normalized()).toRotationMatrix(),
-         Vec3(0.1, -0.2, 0.6)};
+  Pose X{rotation_about(Vec3(1.0, 2.0, 0.5).normalized(), 0.7), Vec3(0.1, -0.2, 0.6)};
   const PressureField field = field_of(table, kBox, X, 1.0);
   X.translation.z() -= 0.5;
   const PressureField floor = field_of(kFloor, kBox, X);
@@ -204,7 +203,7 @@ TEST(PressureField, SaysWhyItDoesNotTakeAPair) {
   // A solid of the user's meets a box through the octree alone.
   struct Cube {
     Aabb bounds() const { return {Vec3::Constant(-0.1), Vec3::Constant(0.1)}; }
-    double signed_distance(const Vec3& p) const { return p.lpNorm<Eigen::Infinity>() - 0.1; }
+    double signed_distance(const Vec3& p) const { return p.cwiseAbs().maxCoeff() - 0.1; }
   };
   const Shape cube = SignedDistance(Cube{});
   EXPECT_NE(why_no_pressure_field(kBox, cube).find("octree"), std::string::npos);

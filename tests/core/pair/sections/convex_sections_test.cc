@@ -351,8 +351,7 @@ TEST(Lines, HalfAConeLiesBelowTheFaceThatHoldsItsAxis) {
   const double r = 0.2, h = 0.15;
   const Shape box = Box({.half_sizes = {0.3, 0.25, 0.2}}),
               cone = Frustum({.bottom_radius = r, .top_radius = 0.0, .half_length = h});
-  Mat3 R;
-  R << 0, 0, 1, 0, 1, 0, -1, 0, 0;  // the axis along x
+  Mat3 R = {0, 0, 1, 0, 1, 0, -1, 0, 0};  // the axis along x
   for (double off : {0.0, 1e-12, -1e-12, 1e-7}) {
     // The rim touches the face y = 0.25.
     const Pose X{R, {0.0, 0.05 + off, 0.2}};
@@ -445,17 +444,15 @@ TEST(Lines, AFlatConeDiscIsPushedAlongTheAxis) {
 
 // The part of a convex polygon, given by its corners in order, within a disc about the origin: for
 // every edge the triangle to the origin where it is inside, and sectors where it is not.
-double area_in_disc(const std::vector<Eigen::Vector2d>& polygon, double r) {
-  const auto cross = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return a.x() * b.y() - a.y() * b.x();
-  };
-  const auto sector = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+double area_in_disc(const std::vector<Vec2>& polygon, double r) {
+  const auto cross = [](const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); };
+  const auto sector = [&](const Vec2& a, const Vec2& b) {
     return 0.5 * r * r * std::atan2(cross(a, b), a.dot(b));
   };
   double area = 0.0;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Eigen::Vector2d& p = polygon[i];
-    const Eigen::Vector2d d = polygon[(i + 1) % polygon.size()] - p;
+    const Vec2& p = polygon[i];
+    const Vec2 d = polygon[(i + 1) % polygon.size()] - p;
     const double a = d.squaredNorm(), b = p.dot(d), square = b * b - a * (p.squaredNorm() - r * r);
     if (!(a > 0.0)) continue;
     const double root = std::sqrt(std::max(square, 0.0));
@@ -478,7 +475,7 @@ double volume_in_cylinder(const ConvexPolytope& polytope, const Cylinder& cylind
   constexpr int kSections = 4000;
   const Pose X_CP = X_PC.inverse();
   const double half = cylinder.half_length();
-  std::vector<Eigen::Vector2d> polygon, cut;
+  std::vector<Vec2> polygon, cut;
   double sum = 0.0;
   for (int i = 0; i < kSections; ++i) {
     const double z = half * (2.0 * (i + 0.5) / kSections - 1.0);
@@ -486,10 +483,10 @@ double volume_in_cylinder(const ConvexPolytope& polytope, const Cylinder& cylind
     for (const ConvexPolytope::Face& face : polytope.faces()) {
       const Vec3 n = X_CP.rotation * face.normal;
       const double offset = face.offset + n.dot(X_CP.translation) - n.z() * z;
-      const auto beyond = [&](const Eigen::Vector2d& p) { return n.head<2>().dot(p) - offset; };
+      const auto beyond = [&](const Vec2& p) { return n.head<2>().dot(p) - offset; };
       cut.clear();
       for (std::size_t k = 0; k < polygon.size(); ++k) {
-        const Eigen::Vector2d &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
+        const Vec2 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
         const double f = beyond(p), g = beyond(q);
         if (f <= 0.0) cut.push_back(p);
         if ((f <= 0.0) != (g <= 0.0)) cut.push_back(p + f / (f - g) * (q - p));

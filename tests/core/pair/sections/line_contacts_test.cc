@@ -26,7 +26,7 @@ TEST(LineContacts, OfAnEdgeAreAPrism) {
                                   : Shape(Cylinder({.radius = r, .half_length = h}));
     const double toward = i % 3 == 0 ? 0.0 : turn, reach = r + std::hypot(p, q) - depth;
     const double back = toward + kPi - std::atan2(q, p);
-    const Pose X{Eigen::AngleAxisd(back, Vec3::UnitZ()).toRotationMatrix(),
+    const Pose X{rotation_about(Vec3::UnitZ(), back),
                  {reach * std::cos(toward), reach * std::sin(toward), lift}};
     const Shape box(Box({.half_sizes = {p, q, half}}));
     const double length = std::min(h, lift + half) - std::max(-h, lift - half);
@@ -66,7 +66,7 @@ TEST(LineContacts, OfCylindersAreAsDeepAsTheyAre) {
     const double r1 = random.uniform(0.02, 0.1), r2 = random.uniform(0.02, 0.06),
                  h = random.uniform(0.02, 0.06), depth = 0.1 * random.log_uniform(1e-8, 1e-4);
     const double turn = random.uniform(0.0, 6.0), reach = r1 + r2 - depth;
-    const Pose X{Eigen::AngleAxisd(random.uniform(0.0, 6.0), Vec3::UnitZ()).toRotationMatrix(),
+    const Pose X{rotation_about(Vec3::UnitZ(), random.uniform(0.0, 6.0)),
                  {reach * std::cos(turn), reach * std::sin(turn), random.uniform(-0.01, 0.01)}};
     const Interference out = test::evaluated(Cylinder({.radius = r1, .half_length = 0.2}),
                                              Cylinder({.radius = r2, .half_length = h}), X);

@@ -69,7 +69,7 @@ TEST(CurveFamily, TheRangeHoldsTheBox) {
         for (int i = 0; i < 2000; ++i) {
           const double u = all.low() + (all.high() - all.low()) * random.uniform();
           const Vec3 x = all.curve(u).at(random.uniform(-1.0, 6.0));
-          if (((x.cwiseAbs() - half).array() > 0.0).any()) continue;
+          if (x.cwiseAbs().exceeds(half)) continue;
           ++inside;
           double u_here, t_here;
           family.locate(x, u_here, t_here);

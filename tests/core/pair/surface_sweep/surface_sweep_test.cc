@@ -77,7 +77,7 @@ TEST(Shell, DepthMomentOfACapsuleAcrossAnEdge) {
     Mat3 basis = basis_with_z(m.normal());
     const Mat3 seen = basis.transpose() * m.second_moment() * basis / m.volume;
     const double turn = 0.5 * std::atan2(2.0 * seen(0, 1), seen(0, 0) - seen(1, 1));
-    basis = basis * Eigen::AngleAxisd(turn, Vec3::UnitZ()).toRotationMatrix();
+    basis = basis * rotation_about(Vec3::UnitZ(), turn);
     double step[2], expected = 0.0;
     for (int j = 0; j < 2; ++j) {
       const Vec3 e = basis.col(j);

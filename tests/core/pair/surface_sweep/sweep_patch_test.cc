@@ -46,7 +46,7 @@ TEST(SweepPatch, FluxesAreTheMomentsOfTheSolid) {
     EXPECT_LE((sum.moment - V * Mat3::Identity()).norm(), 1e-7 * V) << name_of(shape);
     EXPECT_LE(sum.normal.norm(), 1e-7 * sum.area) << name_of(shape);
     EXPECT_LE((sum.first - V * own.centroid).norm(), 1e-7 * V) << name_of(shape);
-    const Mat3 second = own.second_moment() + V * own.centroid * own.centroid.transpose();
+    const Mat3 second = own.second_moment() + V * outer(own.centroid, own.centroid);
     EXPECT_LE((sum.second - second).norm(), 1e-6 * second.norm()) << name_of(shape);
   }
 }

@@ -43,8 +43,7 @@ struct Case {
 Case random_case(test::Random& random) {
   Case c{
       random.log_uniform(2e-5, 1e-3), random.log_uniform(2e-5, 1e-3), random.uniform() < 0.5, {}};
-  c.X.rotation =
-      Eigen::AngleAxisd(random.log_uniform(1e-5, 0.2), random.direction()).toRotationMatrix();
+  c.X.rotation = rotation_about(random.direction(), random.log_uniform(1e-5, 0.2));
   c.X.translation = random.log_uniform(1e-6, 0.02) * random.direction();
   return c;
 }

@@ -76,8 +76,8 @@ Case random_case(test::Random& random, double lean, double depth, double nearest
   const double at = random.uniform(0.0, 2.0 * kPi), far = random.uniform(nearest, 0.6);
   const double to = random.uniform(0.0, 2.0 * kPi);
   Case c{random.uniform() < 0.5, {}};
-  c.X.rotation = Eigen::AngleAxisd(lean, Vec3(std::cos(to), std::sin(to), 0)).toRotationMatrix() *
-                 Eigen::AngleAxisd(random.uniform(0.0, 6.0), Vec3::UnitZ()).toRotationMatrix();
+  c.X.rotation = rotation_about(Vec3(std::cos(to), std::sin(to), 0), lean) *
+                 rotation_about(Vec3::UnitZ(), random.uniform(0.0, 6.0));
   c.X.translation = Vec3(far * std::cos(at), far * std::sin(at), 0.0);
   c.X.translation.z() = kEnd + kThick - depth;
   return c;
@@ -142,8 +142,8 @@ TEST(ThinLayer, APinOnTheEdgeOfALongSheet) {
   for (int i = 0; i < test::cases(2000, 200); ++i) {
     const double lean = random.log_uniform(1e-10, 1e-7), to = random.uniform(0.0, 2.0 * kPi);
     Case c{true, {}, Vec3(0.3, random.log_uniform(2e-4, 1e-2), kThick), kLength};
-    c.X.rotation = Eigen::AngleAxisd(lean, Vec3(std::cos(to), std::sin(to), 0)).toRotationMatrix() *
-                   Eigen::AngleAxisd(random.uniform(0.0, 6.0), Vec3::UnitZ()).toRotationMatrix();
+    c.X.rotation = rotation_about(Vec3(std::cos(to), std::sin(to), 0), lean) *
+                   rotation_about(Vec3::UnitZ(), random.uniform(0.0, 6.0));
     // This place of the sheet's face is in the plane of the pin's end, off its middle.
     const Vec3 place(0.9 * random.uniform(-c.plate.x(), c.plate.x()),
                      c.plate.y() - random.uniform(0.0, kPin), -c.plate.z());

@@ -25,7 +25,10 @@ Csg random_member(Random& random) {
   const auto size = [&] { return on_grid(0.1, 0.3, random); };
   Pose X;
   X.translation.z() = place();
-  if (random.uniform() < 0.5) X.translation.head<2>() = Eigen::Vector2d(place(), place());
+  if (random.uniform() < 0.5) {
+    X.translation.x() = place();
+    X.translation.y() = place();
+  }
   const double turned = random.uniform();
   if (turned < 0.25) X.rotation = random.rotation();
   if (turned > 0.7) X.rotation = test::turn(Vec3::UnitX() + Vec3::UnitY(), kPi);

@@ -43,7 +43,7 @@ TEST(Csg, EveryPointOfTheSolidIsInOnePieceAndNoOtherPointInAny) {
         pieces += std::all_of(list.begin(i), list.end(i),
                               [&p](const Quadric& face) { return face(p) <= 0.0; });
       }
-      EXPECT_EQ(pieces, distance(named.solid, p) < 0.0) << named.name << ": " << p.transpose();
+      EXPECT_EQ(pieces, distance(named.solid, p) < 0.0) << named.name << ": " << p;
     }
   }
 }
@@ -69,7 +69,7 @@ TEST(Csg, FacesOfPiecesAreSurfaceOrSeamAllOver) {
             const Vec3 outward = (face->linear + face->hessian * x).normalized();
             const double beyond = distance(named.solid, x + 1e-6 * outward);
             if (std::abs(beyond) < 1e-8) continue;
-            EXPECT_EQ(face->seam, beyond < 0.0) << named.name << ": " << x.transpose();
+            EXPECT_EQ(face->seam, beyond < 0.0) << named.name << ": " << x;
             ++checked;
           }
         }
@@ -91,7 +91,7 @@ TEST(Csg, CarvedPiecesHoldTheSolidAndTheirSeamsLieBetweenThem) {
       if (std::abs(distance(named.solid, p)) < 1e-9) continue;
       int holding = 0;
       for (const CarvedPiece& piece : pieces) holding += holds(piece, p);
-      EXPECT_EQ(holding, distance(named.solid, p) < 0.0) << named.name << ": " << p.transpose();
+      EXPECT_EQ(holding, distance(named.solid, p) < 0.0) << named.name << ": " << p;
       const Vec3 d = Vec3(number(random), number(random), number(random)).normalized();
       for (const CarvedPiece& piece : pieces) {
         for (const Seam& seam : piece.seams) {
@@ -99,7 +99,7 @@ TEST(Csg, CarvedPiecesHoldTheSolidAndTheirSeamsLieBetweenThem) {
           if (!holds(piece, x - 1e-9 * seam.normal)) continue;
           const double beyond = distance(named.solid, x + 1e-6 * seam.normal);
           if (std::abs(beyond) < 1e-8) continue;
-          EXPECT_EQ(seam.is_surface(x), beyond > 0.0) << named.name << ": " << x.transpose();
+          EXPECT_EQ(seam.is_surface(x), beyond > 0.0) << named.name << ": " << x;
         }
       }
     }

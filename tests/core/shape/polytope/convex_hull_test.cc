@@ -100,7 +100,7 @@ TEST(ConvexHull, OfTetrahedraWithATinyCoordinate) {
     for (int i = 0; i < 300; ++i) {
       std::vector<Vec3> points;
       for (int k = 0; k < 4; ++k) {
-        points.push_back((7.0 * random.in_box(1.0)).array().round().matrix() / 7.0);
+        points.push_back((7.0 * random.in_box(1.0)).rounded() / 7.0);
       }
       points[i % 4][i % 3] = tiny;
       const Vec3 a = points[0];

@@ -158,7 +158,10 @@ TEST(ConvexPolytope, MeshVerticesInSinglePrecisionAreFine) {
   Random random(6);
   const Mat3 r = random.rotation();
   std::vector<Vec3> points = box_corners(Vec3(0.3, 0.2, 0.1));
-  for (Vec3& p : points) p = (r * p).cast<float>().cast<double>();
+  for (Vec3& p : points) {
+    p = r * p;
+    for (double& x : p) x = static_cast<float>(x);
+  }
   const ConvexPolytope solid(points);
   EXPECT_NEAR(solid.own_metrics().volume, 0.048, 1e-7);
   for (const Vec3& p : points) EXPECT_LE(solid.signed_distance(p), 1e-15);

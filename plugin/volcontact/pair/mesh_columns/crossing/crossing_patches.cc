@@ -82,8 +82,8 @@ double bulge(const ContactPatch& patch) {
 }
 
 bool near(const ContactPatch& a, const ContactPatch& b) {
-  const double reach = std::max(bulge(a), bulge(b));
-  return ((a.low - b.high).array() <= reach).all() && ((b.low - a.high).array() <= reach).all();
+  const Vec3 reach = Vec3::Constant(std::max(bulge(a), bulge(b)));
+  return (a.low - b.high).at_most(reach) && (b.low - a.high).at_most(reach);
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ class FaceCut {
   double level(const Vec3& x, Vec3& gradient) const { return round_level(s_, x, gradient); }
   // From the middle of a capsule.
   double along_axis(const Vec3& x) const {
-    return Vec3::Map(s_.axis).dot(x - Vec3::Map(s_.center));
+    return Vec3::from(s_.axis).dot(x - Vec3::from(s_.center));
   }
 
   // Leaves what is not above, where `height` is negative.
@@ -230,9 +230,10 @@ class FaceCut {
   }
   // In the frame in which the round face is that of a ball, tube or cone of unit size.
   Vec3 scaled(const Vec3& d) const {
-    const Vec3 axis = Vec3::Map(s_.axis);
+    const Vec3 axis = Vec3::from(s_.axis);
     const Vec3 x = in_tube_ ? Vec3(d - axis.dot(d) * axis) : d;
-    return {Vec3::Map(s_.map[0]).dot(x), Vec3::Map(s_.map[1]).dot(x), Vec3::Map(s_.map[2]).dot(x)};
+    return {Vec3::from(s_.map[0]).dot(x), Vec3::from(s_.map[1]).dot(x),
+            Vec3::from(s_.map[2]).dot(x)};
   }
 
   // An arc does not leave the triangle: what is found beyond is the far side of a section that is

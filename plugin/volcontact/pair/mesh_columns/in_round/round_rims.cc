@@ -26,7 +26,7 @@ class RimImage {
         excess_(excess),
         up_(up),
         n_(s.plane_normal(k)),
-        center_(Vec3::Map(s.rim_center[k])),
+        center_(Vec3::from(s.rim_center[k])),
         square_(s.rim_radius[k] * s.rim_radius[k]),
         speed_(-n_.dot(up)),
         offset_(s.offset[k]) {}

@@ -95,11 +95,11 @@ bool round_solid_of(const ConvexView& b, const Pose& X_QB, FaceSet& faces, Round
 }
 
 RayInterval round_interval(const RoundSolid& s, const Vec3& o, const Vec3& d) {
-  const Vec3 from = o - Vec3::Map(s.center);
+  const Vec3 from = o - Vec3::from(s.center);
   if (s.cone) return in_cone(mapped(s, from), mapped(s, d));
   if (s.half_length == 0.0) return in_unit_ball(mapped(s, from), mapped(s, d));
   // A capsule: the hull of its tube and its balls.
-  const Vec3 axis = Vec3::Map(s.axis);
+  const Vec3 axis = Vec3::from(s.axis);
   RayInterval hull;
   const auto join = [&hull](const RayInterval& part) {
     if (part.empty()) return;
@@ -122,9 +122,9 @@ RayInterval round_interval(const RoundSolid& s, const Vec3& o, const Vec3& d) {
 }
 
 double round_level(const RoundSolid& s, const Vec3& x, Vec3& gradient) {
-  Vec3 from = x - Vec3::Map(s.center);
+  Vec3 from = x - Vec3::from(s.center);
   if (s.half_length > 0.0) {
-    const Vec3 axis = Vec3::Map(s.axis);
+    const Vec3 axis = Vec3::from(s.axis);
     from -= std::clamp(axis.dot(from), -s.half_length, s.half_length) * axis;
   }
   Vec3 y = mapped(s, from);
@@ -138,9 +138,9 @@ double round_level(const RoundSolid& s, const Vec3& x, Vec3& gradient) {
 }
 
 double least_round_level(const RoundSolid& s, const Vec3 (&corner)[3], const Vec3& normal) {
-  const Vec3 center = Vec3::Map(s.center);
+  const Vec3 center = Vec3::from(s.center);
   const double height = std::abs(normal.dot(corner[0] - center));
-  const Mat3 map = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(s.map[0]);
+  const Mat3 map = Mat3::from_rows(s.map[0]);
   if (s.cone) {
     // At every height above the tip, how near the plane comes to the axis.
     const Vec3 n = map.transpose().inverse() * normal;
@@ -171,7 +171,7 @@ double least_round_level(const RoundSolid& s, const Vec3 (&corner)[3], const Vec
       reach = std::max(reach, std::abs(s.axis_direction.dot(p - center)));
     }
   }
-  const double radius = 1.0 / map.rowwise().norm().maxCoeff();
+  const double radius = 1.0 / row_lengths(map).maxCoeff();
   const double across = s.half_length > 0.0 ? 1.0 : std::sqrt(std::max(0.0, 1.0 - lean * lean));
   const double nearest = std::max(0.0, height - std::abs(lean) * reach);
   return across > 0.0 ? nearest / (radius * across) - 1.0 : -1.0;

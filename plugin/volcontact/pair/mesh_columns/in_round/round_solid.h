@@ -28,7 +28,7 @@ struct RoundSolid {
   double wall_level =
       0.0;  ///< convex(x) above this is on the round face or outside, but for rounding
 
-  Vec3 plane_normal(int k) const { return Vec3::Map(normal[k]); }
+  Vec3 plane_normal(int k) const { return Vec3::from(normal[k]); }
   /// Height of x over plane face k, negative inside.
   double over_plane(int k, const Vec3& x) const { return plane_normal(k).dot(x) - offset[k]; }
 };

@@ -161,7 +161,7 @@ class Star {
     round_level(solid_, end, normal);
     normal = normal.stableNormalized();
     // The tube of a capsule and its balls: -1, -2 and -3.
-    const double along = Vec3::Map(solid_.axis).dot(end - Vec3::Map(solid_.center));
+    const double along = Vec3::from(solid_.axis).dot(end - Vec3::from(solid_.center));
     if (solid_.half_length > 0.0 && std::abs(along) > solid_.half_length) {
       plane = along > 0.0 ? -2 : -3;
     }

@@ -22,7 +22,7 @@ constexpr double kPlacesOnWall[] = {0.5, 0.1, 0.9, 0.3, 0.7};  // of its length
 constexpr double kAlongAxis = 0.5;  // share of the area vector: a face is pressed, not the wall
 
 bool holds(const Aabb& bounds, const Vec3& p) {
-  return (p.array() >= bounds.min.array()).all() && (p.array() <= bounds.max.array()).all();
+  return bounds.min.at_most(p) && p.at_most(bounds.max);
 }
 
 class ComposedColumns {

@@ -137,7 +137,7 @@ class RadialPatches {
       const SurfacePlane& plane = solid_.planes[k];
       for (int i = 0; i < outline.count; ++i) {
         const Vec3& p = outline.corner[i];
-        const double slack = kOnPlane * (std::abs(plane.offset) + p.lpNorm<1>());
+        const double slack = kOnPlane * (std::abs(plane.offset) + p.cwiseAbs().sum());
         if (over(plane, p) >= -slack && in_solid(p)) return true;
       }
     }

@@ -37,7 +37,7 @@ BodyInBore::BodyInBore(const ConvexView& body, const Pose& X, Owner owner, const
     for (const Rim& rim : faces.rims) add(rim.center, rim.radius_u.norm());
   } else if (faces.planes.empty() && faces.rounds.size() == 1) {  // a ball or an ellipsoid
     const RoundFace& round = faces.rounds[0];
-    add(round.center, 1.0 / round.map.rowwise().norm().minCoeff());
+    add(round.center, 1.0 / row_lengths(round.map).minCoeff());
   }
 }
 

@@ -295,7 +295,7 @@ class BoreRun {
     const double tolerance = 1e-9 * frame_.u.norm();
     find_breaks(s_.faces.active, frame_, tolerance, s_.breaks);
     breaks_.clear();
-    for (const Eigen::Vector2d& d : s_.breaks.directions) {
+    for (const Vec2& d : s_.breaks.directions) {
       const double angle = std::atan2(d.y(), d.x());
       for (double turned : {angle - 2.0 * kPi, angle, angle + 2.0 * kPi}) {
         if (turned > low + kSameAngle && turned < high - kSameAngle) breaks_.push_back(turned);

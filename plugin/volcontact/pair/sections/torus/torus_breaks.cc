@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/sections/torus/torus_breaks.h"
 
-#include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -113,7 +111,7 @@ class TorusBreaks {
   // The same of a cone or tube, where a plane along the axis touches it in a line. Behind that
   // plane a section is next to nothing; before it, it grows like the root of the angle.
   void swing(const RoundFace& face) {
-    const Vec3 row = face.map.row(2).transpose();
+    const Vec3 row = face.map.row(2);
     if (face.cone) {
       const double slope = row.norm(), cosine = 1.0 / std::sqrt(1.0 + slope * slope);
       const Vec3 axis = row / slope;

@@ -54,7 +54,7 @@ void TorusSection::set(const FaceSet& faces, double major_radius, double minor_r
   faces_.minor = minor_radius;
   for (std::size_t i = 0; i < faces.rounds.size(); ++i) {
     const RoundFace& round = faces.rounds[i];
-    const Vec3 row = round.map.row(2).transpose();
+    const Vec3 row = round.map.row(2);
     faces_.nappes[i] = {round.cone, -row.dot(round.center), row.x(), row.y(), row.z()};
   }
   SectionFaces& sections = faces_.sections;

@@ -302,7 +302,7 @@ class TorusSectionsRun {
     MomentSum sum;
     sum.volume = m[0];
     sum.first = Vec3(m[1], m[2], m[3]);
-    sum.second << m[4], m[5], m[7], m[5], m[6], m[8], m[7], m[8], m[9];
+    sum.second = {m[4], m[5], m[7], m[5], m[6], m[8], m[7], m[8], m[9]};
     set_surface(sum);
     shorten_vector(sum);
     VolumeMetrics metrics = sum.metrics();

@@ -23,9 +23,8 @@ using Corners = std::array<Vec3, 3>;
 
 // Where the line through p and q passes through a triangle, if between p and q.
 std::optional<Vec3> meeting(const Vec3& p, const Vec3& q, const Corners& t) {
-  Mat3 sides;
-  sides << t[1] - t[0], t[2] - t[0], p - q;
-  const Vec3 s = sides.fullPivLu().solve(p - t[0]);
+  const Mat3 sides = Mat3::with_columns(t[1] - t[0], t[2] - t[0], p - q);
+  const Vec3 s = sides.inverse() * (p - t[0]);
   if (s.minCoeff() < 0.0 || s[0] + s[1] > 1.0 || s[2] > 1.0) return std::nullopt;
   return p + s[2] * (q - p);
 }
@@ -132,7 +131,7 @@ TEST(Crossing, TrianglesThatTouchAreContactsWithinTheirBounds) {
   ASSERT_FALSE(scratch.contacts.empty());
   for (const TriangleContact& contact : scratch.contacts) {
     EXPECT_FALSE(contact.proper);
-    EXPECT_TRUE((contact.p.array() <= contact.q.array()).all());
+    EXPECT_TRUE(contact.p.at_most(contact.q));
     EXPECT_NEAR(contact.p.z(), 1.0, 1e-12);
   }
   ASSERT_TRUE(

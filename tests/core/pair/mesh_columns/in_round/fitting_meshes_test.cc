@@ -22,7 +22,7 @@ using test::Soup;
 Soup regular_prism(int n, double r, double half, double taper = 1.0) {
   Soup soup = test::regular_prism_soup(n, r, half);
   for (Vec3& v : soup.vertices) {
-    if (v.z() > 0.0) v.head<2>() *= taper;
+    if (v.z() > 0.0) v = {taper * v.x(), taper * v.y(), v.z()};
   }
   return soup;
 }

@@ -111,8 +111,7 @@ TEST(TangentFaces, AConeLiesOnAFace) {
     const double volume = kPi * 0.5 / 3.0 * (0.3 * 0.3 + 0.3 * top + top * top);
     const Vec3 normal = Vec3(0.5, 0.0, 0.3 - top).normalized();
     const Vec3 on_wall(0.5 * (0.3 + top), 0.0, 0.0);
-    Mat3 turned;
-    turned << normal, Vec3::UnitY(), normal.cross(Vec3::UnitY());
+    const Mat3 turned = Mat3::with_columns(normal, Vec3::UnitY(), normal.cross(Vec3::UnitY()));
     for (const double off : {0.0, 1e-15, -1e-15, 1e-12}) {
       const Pose X_CB{turned, on_wall - (1.0 - off) * normal};
       const Shape mesh = mesh_of(box_soup(Vec3(1.0, 1.0, 1.0), 2));

@@ -255,9 +255,9 @@ TEST(ComposedColumns, RimsMakeNoSteps) {
   const Csg block = solids::box(.4, .4, .25) - solids::tube(.15, .5) -
                     solids::tube(.25, .2, solids::at(0, 0, .3));
   Pose X_AB;
-  X_AB.rotation << -0.96530409964414177, 0.21508810072440673, -0.14807128059478747,
-      -0.19299459742893238, -0.96961990640229434, -0.15030077335679348, -0.17590076910990796,
-      -0.11650899551182019, 0.97748891215776457;
+  X_AB.rotation = Mat3(-0.96530409964414177, 0.21508810072440673, -0.14807128059478747,
+                       -0.19299459742893238, -0.96961990640229434, -0.15030077335679348,
+                       -0.17590076910990796, -0.11650899551182019, 0.97748891215776457);
   std::vector<double> volumes;
   const int kSteps = test::cases(12, 3);
   for (int k = -kSteps; k <= kSteps; ++k) {
@@ -362,9 +362,9 @@ TEST(ComposedColumns, ASumIsJudgedByItsOwnVolume) {
   const Csg b = solids::tube(0.33689015789923504, half) -
                 solids::tube(0.25, half, solids::at(0, 0, 0.065968669041942235));
   Pose X;
-  X.rotation << 0.40478901456709881, 0.91441011241444459, 0.0, 0.91441011241444459,
-      -0.40478901456709881, 0.0, 0.0, 0.0, -1.0;
-  X.translation << -0.31425607419828133, -0.12140056968091492, -0.084339269778138382;
+  X.rotation = Mat3(0.40478901456709881, 0.91441011241444459, 0.0, 0.91441011241444459,
+                    -0.40478901456709881, 0.0, 0.0, 0.0, -1.0);
+  X.translation = {-0.31425607419828133, -0.12140056968091492, -0.084339269778138382};
   const VolumeMetrics m = evaluated(a, b, X).total;
   const Vec3 expected(-0.065344614, -0.057523054, -0.040730388);  // to 4e-7
   const double gyration = std::sqrt(m.second_moment().trace() / m.volume);

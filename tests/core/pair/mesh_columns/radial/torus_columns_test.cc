@@ -160,7 +160,7 @@ TEST(TorusColumns, TheCircleThroughEdges) {
   for (int i = 0; i < test::cases(100, 25); ++i) {
     const double turn = random.uniform(0.0, 6.0), c = std::cos(turn), s = std::sin(turn);
     Pose X;  // the axis of the ring is normal to the plane, to the last bit
-    X.rotation << s, c, 0, 0, 0, 1, c, -s, 0;
+    X.rotation = Mat3(s, c, 0, 0, 0, 1, c, -s, 0);
     X.translation = Vec3(random.uniform(-0.3, 0.3), 0.0, random.uniform(-0.3, 0.3));
     if (i % 3 == 0) X.translation.z() = -0.24 + 3e-12;
     const Interference out = evaluated(mesh, ring, X);

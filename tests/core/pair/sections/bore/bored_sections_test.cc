@@ -314,7 +314,7 @@ TEST(BoredLines, CornersThatReachPastALobe) {
       const Cylinder::Params size{.radius = .2, .half_length = .1};
       const Cylinder rod(size);
       Pose X = at(end + .1, 0, .05);
-      X.rotation << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+      X.rotation = Mat3(0, 0, 1, 1, 0, 0, 0, 1, 0);
       X.rotation = X.rotation * test::turn(Vec3::UnitX(), tilt);
       const VolumeMetrics exact = by_lines_along_x(size, X, .2, .3);
       const Interference out = evaluated(cup, rod, X);
@@ -334,7 +334,7 @@ TEST(BoredLines, ABallCutByFacesAlongTheBore) {
   const double slab = 2.0 * kPi * (r * r * half - half * half * half / 3.0);
   const double core = 4.0 / 3.0 * kPi * (r * r * r - high * high * high);
   for (const double turn : {0.0, 0.6, 2.5}) {
-    const Pose X{Eigen::AngleAxisd(turn, Vec3::UnitY()).toRotationMatrix(), Vec3::Zero()};
+    const Pose X{rotation_about(Vec3::UnitY(), turn), Vec3::Zero()};
     for (const bool ball_first : {false, true}) {
       const Interference out =
           ball_first ? evaluated(ball, block, X) : evaluated(block, ball, X.inverse());
@@ -376,8 +376,7 @@ TEST(BoredLines, ABallOnTheAxisOfAChamferedHole) {
   const Shape ball = Sphere({.radius = radius});
   for (int axis = 0; axis < 3; ++axis) {
     for (int quarter = 0; quarter < 8; ++quarter) {
-      const Pose X{Eigen::AngleAxisd(0.25 * kPi * quarter, Vec3::Unit(axis)).toRotationMatrix(),
-                   {0.0, 0.0, half}};
+      const Pose X{rotation_about(Vec3::Unit(axis), 0.25 * kPi * quarter), {0.0, 0.0, half}};
       for (const VolumeMetrics& m :
            {evaluated(block, ball, X).total, evaluated(ball, block, X.inverse()).total}) {
         EXPECT_NEAR(m.volume, expected, m.volume_error + 1e-6 * expected) << axis << " " << quarter;
@@ -409,11 +408,11 @@ TEST(BoredLines, ACapsuleAcrossABore) {
     }
   }
   expected *= 2.0 * kPi / kSteps * (reach - bore) / kSteps;
-  Mat3 across;  // the capsule's axis across that of the pipe
-  across << Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitY();
+  // the capsule's axis across that of the pipe
+  Mat3 across = Mat3::with_columns(Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitY());
   for (const double off : {0.0, 1e-10, 1e-6}) {
     for (const double turn : {0.0, 0.3, 0.5 * kPi}) {
-      const Mat3 round = Eigen::AngleAxisd(turn, Vec3::UnitZ()).toRotationMatrix();
+      const Mat3 round = rotation_about(Vec3::UnitZ(), turn);
       const Pose X{round * across, {off, 0.0, 0.06}};
       for (const VolumeMetrics& m :
            {evaluated(pipe, capsule, X).total, evaluated(capsule, pipe, X.inverse()).total}) {
@@ -430,8 +429,7 @@ TEST(BoredLines, AnEndWithTwoCornersAtTheWall) {
       Csg(Csg::Operation::kDifference, Csg(Box({.half_sizes = {0.47, 0.62, 0.205}})),
           Csg(Cylinder({.radius = 0.4, .half_length = 0.51})));
   const Shape cone = Frustum({.bottom_radius = 0.25, .top_radius = 0.05, .half_length = 0.25});
-  Mat3 across;
-  across << -Vec3::UnitZ(), Vec3::UnitY(), Vec3::UnitX();
+  Mat3 across = Mat3::with_columns(-Vec3::UnitZ(), Vec3::UnitY(), Vec3::UnitX());
   static OctreeScratch scratch;
   for (const double beyond : {0.0, 1e-4, -1e-4, -1e-3}) {
     const Pose X{across.transpose(), {0.045, 0.0, -0.15 - beyond}};

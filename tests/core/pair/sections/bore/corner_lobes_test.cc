@@ -27,16 +27,15 @@ void expect_the_difference(const Box& block, const Cylinder& bore, const Shape& 
   const VolumeMetrics all = evaluated(block, solid, X, Engine::kAuto, 1e-6).total;
   const VolumeMetrics cut = evaluated(within, solid, X, Engine::kAuto, 1e-6).total;
   const double doubt = m.volume_error + all.volume_error + cut.volume_error;
-  EXPECT_NEAR(m.volume, all.volume - cut.volume, doubt + 1e-6 * all.volume)
-      << X.translation.transpose();
+  EXPECT_NEAR(m.volume, all.volume - cut.volume, doubt + 1e-6 * all.volume) << X.translation;
 }
 
 // As the random search found them: both orders alike wrong, and one of them.
 TEST(CornerLobes, ABarAcrossACounterboreHasTwo) {
   Pose X;
-  X.rotation << -0.73887609130601584, -0.67384131789045421, 0, 0.47647776532402025,
-      -0.52246429461909449, -0.70710678118654746, 0.4764777653240202, -0.52246429461909438,
-      0.70710678118654757;
+  X.rotation =
+      Mat3(-0.73887609130601584, -0.67384131789045421, 0, 0.47647776532402025, -0.52246429461909449,
+           -0.70710678118654746, 0.4764777653240202, -0.52246429461909438, 0.70710678118654757);
   X.translation = Vec3(0.0, 0.0, -0.3999999999145139 + 0.0592595676864);
   const double half = 0.5 * (0.15 + 0.03148086462718191);
   expect_the_difference(Box({.half_sizes = Vec3(0.31494049679878333, 0.46494049679878335, half)}),
@@ -47,9 +46,9 @@ TEST(CornerLobes, ABarAcrossACounterboreHasTwo) {
 // Two corners between two places: the curve bends at both of them.
 TEST(CornerLobes, ARimThatLeavesAFaceHasOne) {
   Pose X;
-  X.rotation << -0.7175692032051646, 0.1339598876377063, 0.6834831286254236, -0.43765016337304852,
-      0.67666790137017174, -0.5921004017519591, -0.54180879755781775, -0.72399951640825044,
-      -0.42692848011062745;
+  X.rotation = Mat3(-0.7175692032051646, 0.1339598876377063, 0.6834831286254236,
+                    -0.43765016337304852, 0.67666790137017174, -0.5921004017519591,
+                    -0.54180879755781775, -0.72399951640825044, -0.42692848011062745);
   X.translation = Vec3(-0.23511808110027529, 0.553045070529929, -0.32827318856586341);
   expect_the_difference(
       Box({.half_sizes = Vec3(0.66878710616658532, 0.7687871061665853, 0.38953901186701345)}),

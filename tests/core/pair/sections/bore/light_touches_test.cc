@@ -88,7 +88,7 @@ TEST(LightTouches, OfTheWallOfAWideBoreAreAllThere) {
     if (const auto* box = std::get_if<Box>(&first.solid)) {
       to_wall -= std::atan2(box->half_sizes().y(), box->half_sizes().x());
     }
-    const Pose X{Eigen::AngleAxisd(to_wall, Vec3::UnitZ()).toRotationMatrix(), at};
+    const Pose X{rotation_about(Vec3::UnitZ(), to_wall), at};
     for (const bool mirrored : {false, true}) {
       const Interference out = mirrored ? test::evaluated(first.solid, block, X.inverse())
                                         : test::evaluated(block, first.solid, X);

@@ -44,8 +44,7 @@ TEST(PlatesAlongTheAxis, NoneIsMissed) {
     const double other = radius * random.uniform(0.5, 1.0), side = i % 4 < 2 ? 1.0 : -1.0;
     const double lean = i % 5 == 0 ? 0.0 : random.log_uniform(1e-13, 1e-8) * side;
     const double off = i % 7 < 4 ? 0.0 : random.log_uniform(1e-16, 1e-12) * (i % 7 == 4 ? 1 : -1);
-    Mat3 upright;
-    upright << Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitY();
+    Mat3 upright = Mat3::with_columns(Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitY());
     const Mat3 lying = test::turn(Vec3::UnitZ(), random.uniform(0.0, 2.0 * kPi)) *
                        test::turn(Vec3::UnitX(), lean) * upright *
                        test::turn(Vec3::UnitZ(), random.uniform(0.0, 2.0 * kPi));

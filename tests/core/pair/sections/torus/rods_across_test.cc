@@ -22,8 +22,7 @@ struct Cone {
     return tip_radius + share * (base_radius - tip_radius);
   }
   Pose pose() const {
-    Mat3 R;
-    R << 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0;
+    Mat3 R = {1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0};
     return {R, Vec3(0.0, tip - half_length, 0.0)};
   }
 };

@@ -55,7 +55,7 @@ TEST(ThinPlatesAtTheEquator, VolumeIsAsGoodAsItClaims) {
     for (const VolumeMetrics& m :
          {evaluated(body, ring, X).total, evaluated(ring, body, X.inverse()).total}) {
       EXPECT_NEAR(m.volume, expected, m.volume_error + doubt)
-          << i << ": " << R << " " << r << " " << axes.transpose() << " " << depth << " " << tilt;
+          << i << ": " << R << " " << r << " " << axes << " " << depth << " " << tilt;
     }
   }
 }

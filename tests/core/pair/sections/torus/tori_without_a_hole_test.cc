@@ -20,8 +20,7 @@ constexpr double kBy[] = {1.0, 1.0 + 1e-15, 1.0 + 1e-12, 1.0 + 1e-9, 1.0 + 1e-4}
 
 // A frame with its z axis in the plane of the face z = 0 of a body, but for `lean`.
 Mat3 lying(double turn, double spin, double lean) {
-  Mat3 upright;
-  upright << Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitY();
+  Mat3 upright = Mat3::with_columns(Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitY());
   return test::turn(Vec3::UnitZ(), turn) * test::turn(Vec3::UnitX(), lean) * upright *
          test::turn(Vec3::UnitZ(), spin);
 }

@@ -98,7 +98,7 @@ TEST(TorusBreaks, ARimThatIsInTheTubeForAShortWhileIsSeen) {
 
 TEST(TorusBreaks, TheRimOfATubeIsFollowed) {
   // A tube along x with its end at x = 0.3: its rim, of radius 0.05, lies in the ring all round.
-  const Pose X{Eigen::AngleAxisd(0.5 * kPi, Vec3::UnitY()).toRotationMatrix(), {0.8, 0.0, 0.0}};
+  const Pose X{rotation_about(Vec3::UnitY(), 0.5 * kPi), {0.8, 0.0, 0.0}};
   FaceSet faces;
   FaceWriter(faces, X, Owner::kB).write(Cylinder({.radius = 0.05, .half_length = 0.5}));
   const std::vector<double> found = breaks(faces);

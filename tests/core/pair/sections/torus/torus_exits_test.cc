@@ -34,8 +34,8 @@ double volume_outside(double major, double minor, double wall) {
 }
 
 Pose across(double turn) {
-  const Mat3 about_z = Eigen::AngleAxisd(turn, Vec3::UnitZ()).toRotationMatrix();
-  const Mat3 to_x = Eigen::AngleAxisd(0.5 * kPi, Vec3::UnitY()).toRotationMatrix();
+  const Mat3 about_z = rotation_about(Vec3::UnitZ(), turn);
+  const Mat3 to_x = rotation_about(Vec3::UnitY(), 0.5 * kPi);
   return {about_z * to_x, Vec3::Zero()};
 }
 

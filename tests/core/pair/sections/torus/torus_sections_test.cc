@@ -232,8 +232,7 @@ TEST(TorusSections, EveryPathHasTheSameBits) {
 
 // int rho dA over the part of a disc about m that lies towards a chord in the direction d, seen
 // from m under the half angle a.
-double moment_of_segment(const Eigen::Vector2d& m, double radius, const Eigen::Vector2d& d,
-                         double cosine) {
+double moment_of_segment(const Vec2& m, double radius, const Vec2& d, double cosine) {
   const double a = std::acos(std::clamp(cosine, -1.0, 1.0)), sine = std::sin(a);
   return m.x() * radius * radius * (a - sine * std::cos(a)) +
          d.x() * 2.0 / 3.0 * radius * radius * radius * sine * sine * sine;
@@ -249,11 +248,11 @@ double ring_and_ball(double major, double minor, double radius, const Vec3& cent
     const double angle = kPi * (i + 0.5) / kHalfPlanes, off = across * std::sin(angle);
     const double square = radius * radius - off * off;
     if (!(square > 0.0)) continue;
-    const Eigen::Vector2d tube(major, 0.0), ball(across * std::cos(angle), center.z());
-    const Eigen::Vector2d way = ball - tube;
+    const Vec2 tube(major, 0.0), ball(across * std::cos(angle), center.z());
+    const Vec2 way = ball - tube;
     const double s = std::sqrt(square), d = way.norm();
     if (d >= minor + s) continue;
-    const Eigen::Vector2d e = way / d;
+    const Vec2 e = way / d;
     sum += moment_of_segment(tube, minor, e, (d * d + minor * minor - s * s) / (2.0 * d * minor)) +
            moment_of_segment(ball, s, -e, (d * d - minor * minor + s * s) / (2.0 * d * s));
   }
@@ -272,8 +271,8 @@ TEST(TorusSections, ABallSharesSegmentsOfDiscsWithTheRing) {
     const Pose X{random.rotation(), center};
     for (const VolumeMetrics& m :
          {evaluated(kRing, ball, X).total, evaluated(ball, kRing, X.inverse()).total}) {
-      EXPECT_NEAR(m.volume, expected, m.volume_error + 1e-7 * expected) << center.transpose();
-      EXPECT_NEAR(m.volume, expected, 1e-3 * expected) << center.transpose();
+      EXPECT_NEAR(m.volume, expected, m.volume_error + 1e-7 * expected) << center;
+      EXPECT_NEAR(m.volume, expected, 1e-3 * expected) << center;
     }
   }
 }
@@ -330,7 +329,7 @@ TEST(TorusSections, AWholeTurnIsAsGoodAsItClaims) {
          {evaluated(c.ring, ball, X).total, evaluated(ball, c.ring, X.inverse()).total}) {
       EXPECT_LE(std::abs(m.volume - expected), m.volume_error + 2e-5 * expected)
           << "ring " << c.ring.major_radius() << " " << c.ring.minor_radius() << ", ball "
-          << c.radius << " at " << c.at.transpose() << ": " << m.volume << " for " << expected;
+          << c.radius << " at " << c.at << ": " << m.volume << " for " << expected;
     }
   }
 }
@@ -346,10 +345,10 @@ TEST(TorusSections, AThinDiscThroughTheAxis) {
   const Shape plate = Cylinder({.radius = disc, .half_length = half});
   for (int turn = 0; turn < 24; ++turn) {
     for (int own = 0; own < 24; ++own) {
-      const Mat3 round = Eigen::AngleAxisd(2.0 * kPi * turn / 24, Vec3::UnitZ()).toRotationMatrix();
-      Mat3 upright;  // the disc's axis across that of the ring
-      upright << Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitY();
-      const Mat3 spin = Eigen::AngleAxisd(2.0 * kPi * own / 24, Vec3::UnitZ()).toRotationMatrix();
+      const Mat3 round = rotation_about(Vec3::UnitZ(), 2.0 * kPi * turn / 24);
+      // the disc's axis across that of the ring
+      Mat3 upright = Mat3::with_columns(Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitY());
+      const Mat3 spin = rotation_about(Vec3::UnitZ(), 2.0 * kPi * own / 24);
       const Pose X{round * upright * spin, round * Vec3(x, 0.0, z)};
       const VolumeMetrics m = evaluated(ring, plate, X).total;
       EXPECT_NEAR(m.volume, 2.0 * half * common, 2e-5 * m.volume) << turn << " " << own;
@@ -364,8 +363,8 @@ TEST(TorusSections, AFaceThroughTheAxisOfAPlateIsWhereItIs) {
   for (const double half : {1e-4, 1e-5, 1e-6, 1e-7}) {
     const Shape plate = Cylinder({.radius = 0.5, .half_length = half});
     for (const double angle : {0.0, 0.3, 2.0}) {
-      Mat3 upright;  // the disc's axis across that of the ring
-      upright << Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitY();
+      // the disc's axis across that of the ring
+      Mat3 upright = Mat3::with_columns(Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitY());
       const Mat3 R = test::turn(Vec3::UnitZ(), angle) * upright;
       for (const double from : {0.0, 1e-12, 1e-9, -1e-9}) {
         const Pose X{R, (half + from) * R.col(2)};
@@ -386,8 +385,8 @@ TEST(TorusSections, AConeWhoseEndHoldsTheAxis) {
     const Shape cone = Frustum({.bottom_radius = 0.283, .top_radius = top, .half_length = 0.2698});
     for (const double off : {0.0, 1e-7, 1e-3}) {
       if (test::kSanitized && off != 1e-7) continue;
-      Mat3 R;  // the cone's axis across that of the ring
-      R << -0.922, 0.0, 0.387, 0.387, 0.0, 0.922, 0.0, 1.0, 0.0;
+      // the cone's axis across that of the ring
+      Mat3 R = {-0.922, 0.0, 0.387, 0.387, 0.0, 0.922, 0.0, 1.0, 0.0};
       R.col(0).normalize();
       R.col(2) = R.col(0).cross(R.col(1));
       const Pose X{R, Vec3(-0.2698 * R.col(2)) + Vec3(0.0, 0.0, off)};
@@ -418,10 +417,9 @@ TEST(TorusSections, ACornerInTheTubeIsNotMissed) {
                       {-0.1644, -0.0274, -0.1005},
                       {-0.069256148499206208, -0.042289816502973004, -0.22744525700886276},
                       {-0.0383, -0.0761, 0.0455}});
-  Mat3 R;
-  R << 0.22102619235636844, 0.73736177258757007, -0.63831421621248718, 0.92538930711318512,
-      -0.36519372440609876, -0.10143063607698144, -0.30789941957240585, -0.56827032298098978,
-      -0.76306407820448241;
+  Mat3 R = {0.22102619235636844,  0.73736177258757007,  -0.63831421621248718,
+            0.92538930711318512,  -0.36519372440609876, -0.10143063607698144,
+            -0.30789941957240585, -0.56827032298098978, -0.76306407820448241};
   int seen = 0;
   for (const double deeper : {-1e-3, -3e-4, -1e-4, 0.0, 1e-4, 3e-4, 1e-3}) {
     const Vec3 way = Vec3(-0.0363301, -0.0381294, -0.244551).normalized();
