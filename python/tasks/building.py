@@ -5,14 +5,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tasks.shell import BUILD, ROOT, TOOLS, locked, newer, run
+from tasks.shell import BUILD, ROOT, locked, newer, run
 
 CORE = BUILD / "core"
 _WITHOUT_RELEASE = {
     "VOLCONTACT_MUJOCO": "OFF",
     "VOLCONTACT_PYTHON": "OFF",
     "VOLCONTACT_WARNINGS_AS_ERRORS": "ON",
-    "Eigen3_ROOT": str(TOOLS / "eigen"),
 }
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tasks.building import build, configure
-from tasks.shell import BUILD, ROOT, TOOLS, VENVS, Stopped, run, say, stop
+from tasks.shell import BUILD, ROOT, VENVS, Stopped, run, say, stop
 from tasks.system import need_system
 
 
@@ -79,7 +79,6 @@ def _configure(machine: str, **settings: str) -> None:
         BUILD / "cross" / machine,
         CMAKE_BUILD_TYPE="Release",
         CMAKE_TOOLCHAIN_FILE=f"{_toolchain(machine)}",
-        Eigen3_ROOT=f"{TOOLS / 'eigen'}",
         VOLCONTACT_CGAL="OFF",
         VOLCONTACT_MUJOCO="OFF",
         **settings,

@@ -15,7 +15,7 @@ from tasks.building import CORE, build, build_core, configure
 from tasks.cgal import NoCgal, build_cgal, link_cgal
 from tasks.environments import BASELINE, Environment, NoPython, furnish, prepared
 from tasks.fmi_sim import NoFmiSim, build_fmi_sim
-from tasks.shell import BUILD, JOBS, RESULTS, ROOT, TOOLS, run, stop
+from tasks.shell import BUILD, JOBS, RESULTS, ROOT, run, stop
 from tasks.sites import build_site
 from tasks.stages import Stages
 from tasks.system import need_system, use_compiler_cache, wish_system
@@ -162,7 +162,6 @@ def _ctest_on_system() -> None:
         VOLCONTACT_MUJOCO="ON",
         VOLCONTACT_PYTHON="OFF",
         VOLCONTACT_CORE=str(CORE),
-        Eigen3_ROOT=str(TOOLS / "eigen"),
         VOLCONTACT_TESTS="ON",
     )
     build(tree, "volcontact_adaptor_tests")
