@@ -2,16 +2,11 @@
 #include "arrays.h"
 
 #include <sstream>
+#include <string>
 
 #include "volcontact/base/check.h"
 
 namespace volcontact::python {
-
-std::string text_of(const Vec3& vector) {
-  std::ostringstream text;
-  text << vector.x() << ' ' << vector.y() << ' ' << vector.z();
-  return text.str();
-}
 
 Pose pose_from(const std::optional<Matrix4>& matrix, const char* name) {
   if (!matrix) return {};

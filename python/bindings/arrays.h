@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <string>
 
 #include "volcontact/base/types.h"
 
@@ -86,9 +85,6 @@ namespace volcontact::python {
 
 using Matrix4 = Matrix<4, 4>;
 using Vector6 = Vector<6>;
-
-/// Its numbers with spaces between.
-std::string text_of(const Vec3& vector);
 
 /// Pose from a 4x4 matrix, the identity when none is given. Throws std::invalid_argument naming the
 /// argument when it is not finite, not a rotation or has another last row.

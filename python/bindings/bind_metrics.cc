@@ -48,8 +48,8 @@ void bind_metrics(nb::module_& m) {
           "'ok', 'contained', 'approximate', 'unbounded' or 'invalid'")
       .def("__repr__", [](const VolumeMetrics& self) {
         std::ostringstream text;
-        text << "<volume " << self.volume << " m^3, centroid (" << text_of(self.centroid)
-             << ") m, area vector (" << text_of(self.area_vector) << ") m^2, "
+        text << "<volume " << self.volume << " m^3, centroid (" << self.centroid
+             << ") m, area vector (" << self.area_vector << ") m^2, "
              << to_string(self.status) << ">";
         return text.str();
       });

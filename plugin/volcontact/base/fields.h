@@ -69,8 +69,8 @@ struct Field {
 
   constexpr int size() const { return scalar ? 1 : 3; }
   /// The numbers of the parameter.
-  double* of(Params& params) const { return scalar ? &(params.*scalar) : (params.*vector).data(); }
-  double get(const Params& params, int i = 0) const { return of(const_cast<Params&>(params))[i]; }
+  auto* of(auto& params) const { return scalar ? &(params.*scalar) : (params.*vector).data(); }
+  double get(const Params& params, int i = 0) const { return of(params)[i]; }
   void set(Params& params, int i, double value) const { of(params)[i] = value; }
 };
 

@@ -155,7 +155,7 @@ struct Vector {
     return largest > 0.0 && std::isfinite(largest) ? largest * (*this / largest).norm() : largest;
   }
   VOLCONTACT_INLINE void normalize() & { *this = normalized(); }
-  /// The same where the square of a length would overflow, or be lost.
+  /// As normalized(), where the square of the length would overflow, or be lost.
   Vector stableNormalized() const {
     const double largest = cwiseAbs().maxCoeff();
     const double square = (*this / largest).squaredNorm();
