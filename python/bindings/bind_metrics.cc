@@ -49,8 +49,8 @@ void bind_metrics(nb::module_& m) {
       .def("__repr__", [](const VolumeMetrics& self) {
         std::ostringstream text;
         text << "<volume " << self.volume << " m^3, centroid (" << self.centroid
-             << ") m, area vector (" << self.area_vector << ") m^2, "
-             << to_string(self.status) << ">";
+             << ") m, area vector (" << self.area_vector << ") m^2, " << to_string(self.status)
+             << ">";
         return text.str();
       });
 }
