@@ -48,39 +48,43 @@ struct ContactEquations {
 
  private:
   // A matrix that was factored, of this C.
-  struct Factored {
+  struct ByDofs {
     std::vector<Slope> slopes;
     bool is_valid = false;
-  };
-  // L of one place: lower triangular, and its diagonal.
-  struct Root {
-    Mat3 normal;
-    Vec3 friction;
-  };
-  struct ByDofs : Factored {
     EnvelopeMatrix matrix;
   };
-  template <int K>
-  struct ByForces : Factored {
-    BlockMatrix<K> matrix;
-    std::vector<Root> roots;  // by places
-    std::vector<int> active;  // the places where C is not zero
+  // 1 + h L' Lambda L, where the first three coordinates of all places, n, are eliminated first:
+  // friction, which has the others, s, changes from solution to solution, and what is left is then
+  // 1 + Ls' R Ls, R = h Lambda_ss - V W, with G U of n, W = h G^-1 Ln' Lambda_ns and
+  // V = h Lambda_sn Ln U^-1.
+  struct ByForces {
+    bool is_valid = false;
+    std::vector<Mat3> slopes;  // C of n, by places
+    std::vector<int> pressed;  // the places where it is not zero, and there
+    std::vector<Mat3> roots;   // Ln
+    BlockMatrix<3> normal;
+    std::vector<int> rubbed;             // the places that R is of
+    std::vector<Mat3> W, V, R;           // by pairs of the two, those of a rubbed place together
+    std::vector<Vec3> whole, frictions;  // of h Lambda_ss the diagonal; C of s that was factored
+    std::vector<Vec3> friction_roots;    // Ls
+    BlockMatrix<3> friction;
   };
 
   bool has_friction() const;
-  bool is_of_slopes(const Factored& factored) const;
   void add_slope(const ContactSpace& space, int place, double step, EnvelopeMatrix& matrix) const;
   void factor(ContactSpace& space, double step, ByDofs& out) const;
-  template <int K>
-  void factor(const ContactSpace& space, double step, ByForces<K>& out) const;
-  template <int K>
-  void solve_blocks(const ContactSpace& space, double step, ByForces<K>& by,
-                    std::vector<double>& force);
+  bool is_of_normal_slopes() const;
+  void factor_normal(const ContactSpace& space, double step);
+  bool knows_all_that_rub() const;
+  bool is_of_frictions() const;
+  void respond_to_friction(const ContactSpace& space, double step);
+  void factor_friction();
+  void take_off(const ContactSpace& space, double step, std::vector<double>& force);
 
   // Without and with friction: one of the two comes back as it was, under other constants.
   ByDofs normal_by_dofs_, by_dofs_;
-  ByForces<3> normal_by_forces_;  // by the first three coordinates of each place alone
-  ByForces<kRows> by_forces_;
+  ByForces by_;
+  std::vector<Vec3> pressing_, rubbing_;  // the right sides of n and of s
   std::vector<double> right_, response_;
 };
 

@@ -197,7 +197,7 @@ void ContactSpace::build_mobility() {
 
 // The form of less work, counted in multiplications and weighed as measured.
 void ContactSpace::choose_form() {
-  constexpr double kBlocks = 32.0, kPairs = 200.0, kOther = 2.0;
+  constexpr double kBlocks = 8.0, kPairs = 60.0, kOther = 1.0;
   double by_dofs = 0.0;
   for (std::size_t i = 0; i < envelope_.size(); ++i) {
     const double width = static_cast<double>(i) + 1.0 - envelope_[i];

@@ -170,13 +170,15 @@ void StepMatrix::widen_envelope() {
       const int i = column.support[k];
       if (column.values[k] != 0.0) first = std::min(first, converts_ ? tree_of_[index(i)] : i);
     }
+    int tree = -1;  // the last one; the numbers of each stand together
     for (const int i : column.support) {
       if (!converts_) {
         envelope_[index(i)] = std::min(envelope_[index(i)], first);
         continue;
       }
-      for (std::size_t k = index(tree_of_[index(i)]);
-           k < dofs_.size() && tree_of_[k] == tree_of_[index(i)]; ++k) {
+      if (tree_of_[index(i)] == tree) continue;
+      tree = tree_of_[index(i)];
+      for (std::size_t k = index(tree); k < dofs_.size() && tree_of_[k] == tree; ++k) {
         envelope_[k] = std::min(envelope_[k], first);
       }
     }

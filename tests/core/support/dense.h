@@ -11,8 +11,7 @@ namespace volcontact::test {
 // For small matrices of any size. Eigen's own products and solvers of these, which are made for
 // large ones, take seconds to compile in every file.
 
-/// A B.
-/// The same in Eigen's types.
+/// A vector or matrix of ours in Eigen's types.
 template <int N>
 Eigen::Matrix<double, N, 1> eigen(const Vector<N>& v) {
   return Eigen::Map<const Eigen::Matrix<double, N, 1>>(v.data());
@@ -24,6 +23,7 @@ Eigen::Matrix<double, R, C> eigen(const Matrix<R, C>& m) {
   return out;
 }
 
+/// A B.
 inline Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return a.lazyProduct(b);
 }
