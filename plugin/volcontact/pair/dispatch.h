@@ -75,7 +75,8 @@ struct Service {
   Engine word = Engine::kAuto;
   unsigned asked_as = 0;   ///< bit i: takes part where the engine number i is asked for
   bool is_mirror = false;  ///< the engine serves the two in the other order
-  bool by_formula = false, one_site = false, exact = false, has_bounds = false;  ///< EngineBase
+  bool by_formula = false, one_site = false, exact = false;  ///< see EngineBase
+  bool some_poses = false, has_bounds = false;
   bool (*reaches)(const Shape& a, const Shape& b) = nullptr;  ///< null: all solids of these types
   Answer (*run)(const Asked& asked, Scratch& scratch, Interference& out) = nullptr;
 
@@ -126,10 +127,10 @@ class Dispatch<TypeList<Engines...>> {
     });
   }
 
-  /// The word of the first engine that kAuto asks; kAuto where there is none.
+  /// The word of the first engine that kAuto asks at any pose; kAuto where there is none.
   static Engine first(const Shape& a, const Shape& b) {
     for (const Service& service : services_of(a, b)) {
-      if (service.takes_part(Engine::kAuto, a, b)) return service.word;
+      if (!service.some_poses && service.takes_part(Engine::kAuto, a, b)) return service.word;
     }
     return Engine::kAuto;
   }
@@ -192,6 +193,7 @@ class Dispatch<TypeList<Engines...>> {
                     .by_formula = E::kByFormula,
                     .one_site = E::kOneSite,
                     .exact = E::kExact,
+                    .some_poses = E::kSomePoses,
                     .has_bounds = E::kHasBounds};
     for (const Engine asked : kEngines) {
       if (takes_part<E, A, B>(asked)) service.asked_as |= 1u << static_cast<unsigned>(asked);
@@ -202,7 +204,9 @@ class Dispatch<TypeList<Engines...>> {
   }
   template <typename E, typename A, typename B>
   static constexpr bool takes_part(Engine asked) {
-    if (asked != Engine::kAuto) return asked == E::kWord || E::stands_in_for(asked);
+    if (asked != Engine::kAuto) {
+      return !E::kSomePoses && (asked == E::kWord || E::stands_in_for(asked));
+    }
     return E::template in_auto<A, B>();
   }
 

@@ -45,6 +45,8 @@ struct EngineBase {
   /// Exact to rounding. What is no number here, or was cut short by the budget, is given to another
   /// engine, but not to one with bounds: nothing better would follow.
   static constexpr bool kExact = false;
+  /// Answers at some poses alone, and is asked by kAuto alone: the pair is not said to be of it.
+  static constexpr bool kSomePoses = false;
   /// Bounds its own error, serves all, and comes last.
   static constexpr bool kHasBounds = false;
 

@@ -191,6 +191,30 @@ void ContactEquations::solve_for_forces(const ContactSpace& space, double step,
   space.move_by_delassus(force.data(), response_.data());
   take_off(space, step, force);
   space.move_by_delassus(force.data(), velocity.data());
+  keep_to_slopes(velocity);
+}
+
+// y = L' u': where contact is stiff this knows u' far better than its forces do, whose rounding it
+// is that moves what is light.
+void ContactEquations::keep_to_slopes(std::vector<double>& velocity) const {
+  for (std::size_t i = 0; i < by_.pressed.size(); ++i) {
+    double* const u = &velocity[size(kRows * by_.pressed[i])];
+    const Mat3& root = by_.roots[i];
+    Vec3 left = pressing_[i] - root.transposed_times(Vec3::from(u));
+    for (int k = 2; k >= 0; --k) {
+      for (int j = k + 1; j < 3; ++j) left[k] -= root(j, k) * left[j];
+      left[k] = root(k, k) > 0.0 ? left[k] / root(k, k) : 0.0;
+    }
+    (Vec3::from(u) + left).to(u);
+  }
+  if (!has_friction()) return;
+  for (std::size_t j = 0; j < by_.rubbed.size(); ++j) {
+    double* const u = &velocity[size(kRows * by_.rubbed[j] + 3)];
+    for (int k = 0; k < 3; ++k) {
+      const double root = by_.friction_roots[j][k];
+      if (root > 0.0) u[k] = rubbing_[j][k] / root;
+    }
+  }
 }
 
 // Adds h J' C J of one place to the matrix.

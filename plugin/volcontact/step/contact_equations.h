@@ -34,9 +34,10 @@ struct ContactEquations {
   /// factored once.
   void forget();
 
-  /// Writes f and u'. In the form of less work: for the forces,
-  /// (1 + h L' Lambda L) y = L' (u_free + h Lambda e), f = e - L y, or for the velocities,
-  /// (H + h J' C J) dv = h (t + J' (e - C u)).
+  /// Writes f and u', with f = e - C u' to rounding; the motion that f makes, which the space
+  /// knows, may be off by more. In the form of less work: for the forces, (1 + h L' Lambda L) y =
+  /// L' (u_free + h Lambda e), f = e - L y, or for the velocities, (H + h J' C J) dv = h (t + J' (e
+  /// - C u)).
   void solve(ContactSpace& space, double step, std::vector<double>& force,
              std::vector<double>& velocity);
 
@@ -79,6 +80,7 @@ struct ContactEquations {
   bool is_of_frictions() const;
   void respond_to_friction(const ContactSpace& space, double step);
   void factor_friction();
+  void keep_to_slopes(std::vector<double>& velocity) const;
   void take_off(const ContactSpace& space, double step, std::vector<double>& force);
 
   // Without and with friction: one of the two comes back as it was, under other constants.

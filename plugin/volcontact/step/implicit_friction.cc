@@ -168,17 +168,14 @@ ImplicitStep::Load ImplicitStep::load(std::size_t i) const {
           std::hypot(f[3], f[4], slope.lever > 0.0 ? f[5] / slope.lever : 0.0)};
 }
 
-// Shortens what friction was solved to hold to what it can hold. Returns whether it held more.
-bool ImplicitStep::bound_friction() {
-  bool changed = false;
+// Shortens what friction was solved to hold to what it can hold.
+void ImplicitStep::bound_friction() {
   for (std::size_t i = 0; i < island_.size(); ++i) {
     const double share = site(i).held_share;
     if (share == 1.0) continue;
-    changed = true;
     double* f = &force_[i * size(kRows)];
     for (int k = 3; k < kRows; ++k) f[k] *= share;
   }
-  return changed;
 }
 
 // Makes dampers of what friction cannot hold, so weak that it can, and solves again. Leaves the

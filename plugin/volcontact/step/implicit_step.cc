@@ -184,9 +184,13 @@ void ImplicitStep::solve_contacts(FrictionBound bound, double step) {
     if (is_settled()) break;
   }
   if (rubs) damp_friction(step);
-  const bool cut = rubs && bound == FrictionBound::kCut && bound_friction();
-  // By the forces the last solution has their motion, by the velocities the forces of its motion.
-  if (cut || space_.prefers_dofs()) space_.move(force_, velocity_);
+  if (rubs && bound == FrictionBound::kCut) bound_friction();
+  // The solution has the forces of its motion; what counts is the motion of its forces.
+  if (space_.prefers_dofs()) {
+    space_.move(force_, velocity_);
+  } else {
+    space_.move_by_delassus(force_.data(), velocity_.data());
+  }
 }
 
 void ImplicitStep::solve_island(ImplicitParts parts, double step, double resting) {

@@ -157,7 +157,7 @@ class ImplicitStep {
   void set_friction_of(Site& site, std::size_t i, double step);
   void set_damper(Site& site, double normal_force, const Vec3& along, double spin,
                   double speed) const;
-  bool bound_friction();
+  void bound_friction();
   void damp_friction(double step);
   struct Load {
     double strength = 0.0, viscous = 0.0;  // of the friction law

@@ -339,7 +339,8 @@ TEST(Lines, AConeWithItsAxisInAFaceAndItsRimOnAnotherIsCutInHalf) {
   const Frustum cone({.bottom_radius = 0.02, .top_radius = 0.0, .half_length = 0.18});
   for (const double z : {0.0, 7e-11, 0.3}) {
     const Pose X_AB{Vec3(-1.0, 1.0, -1.0).asDiagonal(), Vec3(half.x(), half.y() - 0.02, z)};
-    const VolumeMetrics m = test::evaluated(Box({.half_sizes = half}), cone, X_AB).total;
+    const VolumeMetrics m =
+        test::evaluated(Box({.half_sizes = half}), cone, X_AB, Engine::kLines).total;
     const double expected = 0.5 * cone.own_metrics().volume;
     EXPECT_NEAR(m.volume, expected, 1e-4 * expected);
   }
@@ -355,7 +356,7 @@ TEST(Lines, HalfAConeLiesBelowTheFaceThatHoldsItsAxis) {
   for (double off : {0.0, 1e-12, -1e-12, 1e-7}) {
     // The rim touches the face y = 0.25.
     const Pose X{R, {0.0, 0.05 + off, 0.2}};
-    const Interference out = test::evaluated(box, cone, X);
+    const Interference out = test::evaluated(box, cone, X, Engine::kLines);
     EXPECT_EQ(out.engine, Engine::kLines);
     const double expected = 0.5 * kPi * r * r * 2.0 * h / 3.0;
     EXPECT_NEAR(out.total.volume, expected, 1e-4 * expected) << off;
@@ -512,8 +513,9 @@ TEST(Lines, APolytopeOfDozensOfFacesNearlyInOnePlaneHasSectionsOfPolygons) {
     const Pose X{random.rotation(), random.in_box(0.2)};
     const double expected = volume_in_cylinder(polytope, cylinder, X);
     if (!(expected > 1e-6)) continue;
-    for (const VolumeMetrics& m : {test::evaluated(polytope, cylinder, X).total,
-                                   test::evaluated(cylinder, polytope, X.inverse()).total}) {
+    for (const VolumeMetrics& m :
+         {test::evaluated(polytope, cylinder, X, Engine::kLines).total,
+          test::evaluated(cylinder, polytope, X.inverse(), Engine::kLines).total}) {
       EXPECT_NEAR(m.volume, expected, m.volume_error + 1e-5 * expected) << i;
       EXPECT_NEAR(m.volume, expected, 1e-3 * expected) << i;
     }
@@ -540,7 +542,8 @@ TEST(Lines, FacesThroughTheOriginOfBothFrames) {
   for (const double off : {0.0, 1e-15, -1e-15, 1e-10}) {
     const Pose X{Mat3::Identity(), Vec3::Constant(off)};
     for (const VolumeMetrics& m :
-         {test::evaluated(wedge, cone, X).total, test::evaluated(cone, wedge, X.inverse()).total}) {
+         {test::evaluated(wedge, cone, X, Engine::kLines).total,
+          test::evaluated(cone, wedge, X.inverse(), Engine::kLines).total}) {
       EXPECT_NEAR(m.volume, bounded.total.volume, bounded.total.volume_error) << off;
     }
   }

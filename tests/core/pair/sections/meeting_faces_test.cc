@@ -66,7 +66,8 @@ void check(double slope, double height, double radius, double half, double cente
                                  : Shape(Ellipsoid({.semi_axes = {radius, radius, half}}));
   const Mat3 about_z = test::turn(Vec3::UnitZ(), random.uniform(0.0, 2.0 * kPi));
   const Pose X{about_z, Vec3(0.0, 0.0, center - 0.5 * height)};
-  for (const VolumeMetrics& m : {evaluated(a, b, X).total, evaluated(b, a, X.inverse()).total}) {
+  for (const VolumeMetrics& m : {evaluated(a, b, X, Engine::kLines).total,
+                                 evaluated(b, a, X.inverse(), Engine::kLines).total}) {
     EXPECT_NEAR(m.volume, expected, m.volume_error + 1e-12 * expected)
         << "slope " << slope << ", height " << height << ", radius " << radius << ", half " << half
         << ", center " << center;

@@ -38,8 +38,8 @@ TEST(SlightTapers, OfARodAlongAFace) {
     };
     const double expected = cut(radius);
     const double slack = cut(radius * (1.0 + std::abs(taper))) - expected + 1e-9 * expected;
-    for (const VolumeMetrics& m :
-         {evaluated(plate, rod, X).total, evaluated(rod, plate, X.inverse()).total}) {
+    for (const VolumeMetrics& m : {evaluated(plate, rod, X, Engine::kLines).total,
+                                   evaluated(rod, plate, X.inverse(), Engine::kLines).total}) {
       EXPECT_NEAR(m.volume, expected, m.volume_error + slack)
           << i << ": taper " << taper << ", depth " << depth;
       EXPECT_NEAR(m.volume, expected, 1e-4 * expected + slack) << i << ": taper " << taper;
