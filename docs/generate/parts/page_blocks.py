@@ -77,9 +77,9 @@ TIMED = {
 
 @functools.cache
 def chosen() -> dict[tuple[str, str], str]:
-    """Which engine `auto` takes for a pair of solids that overlap, in this order."""
+    """Which engine `auto` takes for a pair of solids that overlap over edges, in this order."""
     X_AB = np.eye(4)
-    X_AB[:3, 3] = 0.03, 0.04, 0.05
+    X_AB[:3, 3] = 0.03, 0.06, 0.05
     engines = {}
     for a, solid in SOLIDS.items():
         for b, other in SOLIDS.items():
