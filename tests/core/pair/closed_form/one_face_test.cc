@@ -75,7 +75,7 @@ struct FaceAlong {
 template <typename B>
 void expect_right(const Shape& round, const B& planar, std::uint64_t seed) {
   test::Random random(seed);
-  const int runs = std::holds_alternative<Torus>(round) ? 12 : 90;  // cells take long with it
+  const int runs = std::holds_alternative<Torus>(round) ? 24 : 90;  // cells take long with it
   int by_formula = 0, others = 0;
   for (int i = 0; i < runs; ++i) {
     const Pose X_AB = near_a_side(random, i % 6).inverse();
