@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
+#include <type_traits>
 
 #include "volcontact/pair/closed_form/closed_form.h"
 #include "volcontact/shape/box.h"
@@ -88,14 +91,12 @@ struct OneFace : EngineBase {
     return (std::is_same_v<B, Box> || std::is_same_v<B, ConvexPolytope>) &&
            (ClosedForm::serves<A, HalfSpace>() || ClosedForm::serves<HalfSpace, A>());
   }
-  template <typename A>
-  static bool reaches(const A&, const Box&) noexcept {
-    return true;
-  }
   /// Of many small faces more than one are met as a rule.
-  template <typename A>
-  static bool reaches(const A&, const ConvexPolytope& b) noexcept {
-    return b.faces().size() <= 64;
+  template <typename A, typename B>
+  static bool reaches(const A&, const B& b) noexcept {
+    constexpr std::size_t kMostFaces = 64;
+    if constexpr (std::is_same_v<B, ConvexPolytope>) return b.faces().size() <= kMostFaces;
+    return true;
   }
   template <typename A, typename B>
   static Answer run(const Question<A, B>& q, Interference& out) {
@@ -114,6 +115,8 @@ struct OneFace : EngineBase {
       const VolumeMetrics in_face = closed_form(half_space, q.a, X_AH.inverse());
       if (in_face.touching()) out.total = reversed(transformed(in_face, X_AH));
     }
+    // What is within but for rounding has no normal in B, and no depth either.
+    if (out.total.status == Status::kContained) return Answer::kBeyond;
     if (out.total.touching()) out.sites.push_back(out.total);
     return Answer::kGiven;
   }

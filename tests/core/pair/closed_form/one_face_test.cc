@@ -159,6 +159,21 @@ TEST(OneFace, WithinTheSolidIsLeftToOthers) {
   EXPECT_NE(out.engine, Engine::kClosedForm);
 }
 
+// Against a face from inside, out of it by less than rounding or not at all.
+TEST(OneFace, WhatTouchesAFaceFromInsideIsContained) {
+  for (const auto& [name, solid] : round_solids()) {
+    const double reach =
+        std::visit([](const auto& s) { return s.support_height(Vec3::UnitZ()); }, solid);
+    const double whole = std::visit([](const auto& s) { return s.own_metrics().volume; }, solid);
+    for (const double out : {-1e-16, 0.0, 1e-17, 3e-17, 1e-16}) {
+      const Pose X_BA{Mat3::Identity(), Vec3(0.0, 0.0, 0.2 - reach + out)};
+      const Interference m = test::evaluated(solid, kBox, X_BA.inverse());
+      EXPECT_TRUE(m.total.status != Status::kContained || m.engine != Engine::kClosedForm) << name;
+      EXPECT_NEAR(m.total.volume, whole, 1e-3 * whole);
+    }
+  }
+}
+
 TEST(OneFace, IsAskedByAutoAlone) {
   const Shape ball = Sphere({.radius = 0.05}), box = kBox;
   const Pose X_BA{Mat3::Identity(), Vec3(0.0, 0.0, 0.24)};
