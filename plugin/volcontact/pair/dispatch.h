@@ -7,6 +7,7 @@
 #include <span>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "volcontact/base/type_list.h"
@@ -171,7 +172,8 @@ class Dispatch<TypeList<Engines...>> {
   // Whether E looks at the types of solids alone.
   template <typename E, typename A, typename B>
   static constexpr bool kReachesAll =
-      requires { requires& E::template reaches<A, B> == &EngineBase::template reaches<A, B>; };
+      std::is_same_v<decltype(E::reaches(std::declval<const A&>(), std::declval<const B&>())),
+                     std::true_type>;
 
   static Services services_of(const Shape& a, const Shape& b) {
     static constexpr auto kTables = tables(Shapes{});

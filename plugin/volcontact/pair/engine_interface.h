@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <type_traits>
+
 #include "volcontact/pair/overlap.h"
 #include "volcontact/shape/shapes.h"
 
@@ -60,10 +62,10 @@ struct EngineBase {
     static_cast<void>(asked);
     return false;
   }
-  /// Whether it serves these very solids, of types that it serves.
+  /// Whether it serves these very solids, of types that it serves; a bool where it has to look.
   template <typename A, typename B>
-  static bool reaches(const A&, const B&) noexcept {
-    return true;
+  static std::true_type reaches(const A&, const B&) noexcept {
+    return {};
   }
 };
 
