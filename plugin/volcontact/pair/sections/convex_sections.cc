@@ -19,11 +19,13 @@ constexpr int kMaxRecenterings = 24;  // from a far corner of a thin overlap
 constexpr double kRoundRim = 2.0;     // longest by shortest way to the rim; then one step is enough
 constexpr double kMostTurn = 0.5;  // of the columns towards the normal of the rim; more: no normal
 constexpr double kMostInStrip = 1.3;  // the same where the first direction is known roughly
-constexpr double kAligned = 0.1;     // a turn after which the next one would be too small to matter
-constexpr double kUpright = 1e-4;    // of a face to the columns: the sine of its lean
-constexpr double kLargestCap = 0.1;  // of V, as a cap that stands out unseen
-constexpr int kClimbs = 4;           // to where a solid is farthest out of a face
-constexpr double kWhole = 0.999;     // share of a solid in the overlap, that is all of it
+constexpr double kAligned = 0.1;   // a turn after which the next one would be too small to matter
+constexpr double kLeaning = 0.02;  // of the columns to the normal; with more they are turned
+constexpr double kAboutUpright = 0.9;  // cosine of columns and a normal that they follow
+constexpr double kUpright = 1e-4;      // of a face to the columns: the sine of its lean
+constexpr double kLargestCap = 0.1;    // of V, as a cap that stands out unseen
+constexpr int kClimbs = 4;             // to where a solid is farthest out of a face
+constexpr double kWhole = 0.999;       // share of a solid in the overlap, that is all of it
 // Of the smaller solid. An overlap of 1e-9 is not to be missed, and from a far corner of a thin one
 // the window sees a small part of it.
 constexpr double kLeastSeen = 1e-12;
@@ -63,15 +65,9 @@ class LinesRun {
         break;
     }
     choose_frame();
-    s_.sections.choose_rule(options_.tolerance);
-    s_.sections.set(s_.faces.active, s_.faces.idle, frame_);
-    recenter();
-    find_breaks(s_.faces.active, frame_, tolerance(), s_.breaks);
-    const bool smooth = s_.breaks.complete && s_.breaks.directions.empty();
-    if (!smooth || !integrate_smooth()) integrate_arcs();
-    if (is_open(options_.tolerance)) look_closer(smooth);
-    look_at_unseen();
-    return metrics();
+    integrate();
+    const VolumeMetrics found = metrics();
+    return leans(found) ? upright(found) : found;
   }
 
   // The surface that was found is not closed, so part of it was overlooked, and so may be a part of
@@ -105,6 +101,44 @@ class LinesRun {
   bool is_open(double tolerance) const {
     return window_.kind == LinesWindow::Kind::kOverlap &&
            open_ > tolerance * s_.sections.total().moments[0];
+  }
+
+  void integrate() {
+    target_ = outer_rule::kTarget;
+    depth_ = outer_rule::kMaxDepth;
+    least_depth_ = 0;
+    s_.sections.choose_rule(options_.tolerance);
+    s_.sections.set(s_.faces.active, s_.faces.idle, frame_);
+    recenter();
+    find_breaks(s_.faces.active, frame_, tolerance(), s_.breaks);
+    const bool smooth = s_.breaks.complete && s_.breaks.directions.empty();
+    if (!smooth || !integrate_smooth()) integrate_arcs();
+    if (is_open(options_.tolerance)) look_closer(smooth);
+    look_at_unseen();
+  }
+
+  // Whether the columns lean so much that depths along them are not those along the normal.
+  bool leans(const VolumeMetrics& found) const {
+    return found.touching() && found.status != Status::kContained &&
+           found.area_vector.norm() > kClear * found.area &&
+           (found.normal() - frame_.t).norm() > kLeaning;
+  }
+
+  // Once more, with columns along the normal that was found: what the rim tells of it is not enough
+  // of a deep overlap. The depths are those of the second turn; the rest is that of the first one
+  // where only this one closes the surface.
+  VolumeMetrics upright(VolumeMetrics found) {
+    const double open = open_;
+    frame_ = round_frame(window_.center, window_.spread, squared(found.normal()));
+    along_normal_ = false;
+    integrate();
+    const VolumeMetrics turned = metrics();
+    if (!turned.touching()) return found;
+    if (open_ <= open || !is_open(options_.tolerance)) return turned;
+    open_ = open;
+    found.depth = turned.depth;
+    found.depth_moment = turned.depth_moment;
+    return found;
   }
 
   // Once more, with more columns in between.
@@ -423,6 +457,21 @@ class LinesRun {
     s_.arcs.push_back({arc.through, middles[1] * rho[4], arc.to, arc.depth + 1});
   }
 
+  // The extent along n, which is about t, over places of which some are about the farthest.
+  double extent(const Vec3& n) const {
+    const SectionSums& sums = s_.sections.total();
+    const auto at = [&](const SectionSums::Place& p) {
+      return n.dot(p.x * frame_.u + p.y * frame_.v + p.h * frame_.t);
+    };
+    double low = std::min(at(sums.low), at(sums.high)),
+           high = std::max(at(sums.low), at(sums.high));
+    for (const Vec3& place : s_.breaks.places) {
+      low = std::min(low, n.dot(place));
+      high = std::max(high, n.dot(place));
+    }
+    return high - low;
+  }
+
   VolumeMetrics metrics() const {
     const SectionSums& sums = s_.sections.total();
     VolumeMetrics result = moments_of(s_.sections, s_.faces.active, frame_).metrics();
@@ -436,7 +485,8 @@ class LinesRun {
       if (result.volume > kWhole * own.volume) return whole(own, result);
     }
     result.depth_moment = sums.depth_moment;
-    result.depth = std::max(sums.high, s_.breaks.high) - std::min(sums.low, s_.breaks.low);
+    const Vec3 n = result.normal();
+    result.depth = extent(n.dot(frame_.t) > kAboutUpright ? squared(n) : frame_.t);
     // Of the pose, and of places that are worked out from it.
     const double rounding = (std::numeric_limits<double>::epsilon() * reach() + off_faces()) *
                             std::max(result.area, result.counter_area);
@@ -455,10 +505,10 @@ class LinesRun {
   SectionFrame frame_;
   bool along_normal_ = false;  // the columns are to follow the normal, which is yet to be found
   double error_ = 0.0;
-  double open_ = 0.0;  // how far the surface is from closed
-  double target_ = outer_rule::kTarget;
-  int depth_ = outer_rule::kMaxDepth, least_depth_ = 0;
-  double volume_scale_ = 0.0;  // least V, as known so far
+  double open_ = 0.0;                // how far the surface is from closed
+  double target_ = 0.0;              // of an arc, per tolerance
+  int depth_ = 0, least_depth_ = 0;  // how often an arc is halved, at most and at least
+  double volume_scale_ = 0.0;        // least V, as known so far
 };
 
 }  // namespace

@@ -41,8 +41,8 @@ void Sections::clear(SectionSums& sums, std::vector<SectionSums::OnPlane>& plane
   sums.depth_moment = 0.0;
   sums.bore = {};
   std::fill_n(sums.rounds, faces_.round_count, SectionSums::OnRound{});
-  sums.low = kFar;
-  sums.high = -kFar;
+  sums.low = {0.0, 0.0, kFar};
+  sums.high = {0.0, 0.0, -kFar};
   planes.assign(faces_.active_planes, SectionSums::OnPlane{});
   sums.planes = planes.data();
 }
@@ -62,8 +62,8 @@ void Sections::accept_batch() {
   total_.bore.yy += batch_.bore.yy;
   total_.bore.xh += batch_.bore.xh;
   total_.bore.yh += batch_.bore.yh;
-  total_.low = std::min(total_.low, batch_.low);
-  total_.high = std::max(total_.high, batch_.high);
+  if (batch_.low.h < total_.low.h) total_.low = batch_.low;
+  if (batch_.high.h > total_.high.h) total_.high = batch_.high;
   for (int i = 0; i < faces_.active_planes; ++i) {
     for (int k = 0; k < 4; ++k) total_.planes[i].sums[k] += batch_.planes[i].sums[k];
   }

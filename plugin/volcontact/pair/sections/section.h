@@ -116,7 +116,11 @@ struct SectionSums {
     double depth;             ///< the largest: of rho - 1, times h in central sections
   };
   OnBore bore;
-  double low, high;  ///< least and largest height seen
+  /// Of the places seen, one of the least height and one of the largest.
+  struct Place {
+    double x, y, h;
+  };
+  Place low, high;
   OnRound rounds[SectionFaces::kMaxRounds];
   OnPlane* planes;  ///< as many as there are active planes
 };

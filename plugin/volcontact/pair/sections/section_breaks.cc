@@ -318,10 +318,7 @@ class BreakSearch {
   }
 
   void note(const Vec3& x, Use use) {
-    const Vec3 y = to_uv_ * x;
-    const double height = frame_.central ? 1.0 / y.z() : y.z();
-    breaks_.low = std::min(breaks_.low, height);
-    breaks_.high = std::max(breaks_.high, height);
+    breaks_.places.push_back(x);
     if (use == kTop) return;
     note_direction(x);
   }
@@ -355,8 +352,7 @@ class BreakSearch {
 void SectionBreaks::clear() {
   directions.clear();
   complete = true;
-  low = std::numeric_limits<double>::infinity();
-  high = -low;
+  places.clear();
 }
 
 void find_breaks(const FaceSet& faces, const SectionFrame& frame, double tolerance,

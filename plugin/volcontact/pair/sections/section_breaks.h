@@ -11,7 +11,7 @@ namespace volcontact {
 struct SectionBreaks {
   std::vector<Vec2> directions;  ///< (u, v) in the frame of the sections, unit length, any order
   bool complete;                 ///< false when there are too many faces to look for all
-  double low, high;              ///< least and greatest height of all places found
+  std::vector<Vec3> places;      ///< corners and tops, from the center of the sections
 
   void clear();
 };

@@ -433,7 +433,8 @@ class BoreRun {
     const double share = share_of_bore(s_.sections, s_.faces.active, frame_);
     const double across = bore_.wall_normal(side_u_).dot(frame_.u);
     const double length = frame_.t.norm();
-    const double height = frame_.central ? 1.0 / sums.low - 1.0 / sums.high : sums.high - sums.low;
+    const double low = sums.low.h, high = sums.high.h;
+    const double height = frame_.central ? 1.0 / low - 1.0 / high : high - low;
     m.depth_moment = share * across * depth_along_normal(sums.bore, across) +
                      (1.0 - share) * length * sums.depth_moment;
     m.depth = share * across * sums.bore.depth + (1.0 - share) * length * height;
