@@ -103,14 +103,14 @@ VolumeMetrics metrics_of(const OctreeTask& task, OctreeScratch& s, LeafRange lea
   const OctreeScratch::ColumnSum columns =
       sum_columns(task, s, leaves, n, side, t.volume, metrics.volume_error);
   metrics.depth_moment = columns.moment;
-  // The ends of an overlap are known better than the columns between them. But one that is neither
-  // convex nor on a plane may reach around what it lies on.
-  if (!(task.a.convex && task.b.convex) && metrics.flatness() < kPlanePatch) {
-    metrics.depth = columns.depth;
-    return metrics;
+  metrics.depth = columns.depth;
+  // The ends of an overlap are known better than the columns between them, where the leaves show
+  // them. But one that is neither convex nor on a plane may reach around what it lies on.
+  if ((task.a.convex && task.b.convex) || metrics.flatness() >= kPlanePatch) {
+    const double extent = farthest(task, s, leaves, metrics.centroid, n) +
+                          farthest(task, s, leaves, metrics.centroid, -n);
+    if (std::isfinite(extent)) metrics.depth = std::max(metrics.depth, extent);
   }
-  const double depth = farthest(task, s, leaves, n) + farthest(task, s, leaves, -n);
-  metrics.depth = std::isfinite(depth) ? std::max(0.0, depth) : 0.0;
   return metrics;
 }
 

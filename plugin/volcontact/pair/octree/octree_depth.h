@@ -19,7 +19,8 @@ OctreeScratch::ColumnSum sum_columns(const OctreeTask& task, OctreeScratch& scra
                                      LeafRange leaves, const Vec3& n, double first_side,
                                      double volume, double volume_error);
 
-/// Largest height e . x of the overlap over the origin of W.
-double farthest(const OctreeTask& task, OctreeScratch& scratch, LeafRange leaves, const Vec3& e);
+/// Largest height e . x of the overlap over the origin of W; `inside` is a place within it.
+double farthest(const OctreeTask& task, OctreeScratch& scratch, LeafRange leaves,
+                const Vec3& inside, const Vec3& e);
 
 }  // namespace volcontact

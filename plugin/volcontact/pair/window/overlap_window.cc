@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volcontact/pair/window/overlap_window.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "volcontact/pair/convex/separation.h"
 
 namespace volcontact {
@@ -10,6 +13,9 @@ constexpr int kMostCuts = 48;
 constexpr int kRound = 4;            // cuts between two looks at the progress
 constexpr double kWorthwhile = 0.7;  // a round must shrink the hull to less than this
 constexpr double kPreferred = 0.9;   // a later frame must beat an earlier one by this much
+constexpr double kLeastCut = 1e-9;   // at a corner, of its way to the solid: less is rounding
+constexpr int kMostHeightCuts = 64;
+constexpr double kHeightKnown = 1e-5;  // of a height over a place within
 
 // Numbers of the hull's faces: below 6 those of the first bounding box, then who cut.
 constexpr int kCutByA = 6, kCutByB = 7;
@@ -45,23 +51,25 @@ bool cut_by_bounds(const Posed& posed, CutPolytope& hull) {
   return true;
 }
 
+// Which part of the way from p to another place lies before the solid; 0 where it does not meet it.
+double way_outside(const Posed& posed, const Vec3& p_H, const Vec3& to_H) {
+  const Vec3 d_S = posed.X_SH.rotation * (to_H - p_H);
+  if (!(d_S.squaredNorm() > 0.0)) return 0.0;
+  const RayInterval span = posed.view->ray(posed.view->solid, posed.X_SH * p_H, d_S);
+  return !span.empty() && std::isfinite(span.enter) ? std::max(span.enter, 0.0) : 0.0;
+}
+
 // A supporting plane of the solid that cuts off the outside point p. Taken where the line from p to
 // the middle of the hull enters the solid, which in a shallow contact is near the rim of the
 // overlap.
 Plane cutting_plane(const Posed& posed, const Vec3& p_H, const Vec3& middle_H) {
   const SolidView& view = *posed.view;
   const Vec3 p_S = posed.X_SH * p_H;
-  const Vec3 d_S = posed.X_SH.rotation * (middle_H - p_H);
-  Vec3 at_S = p_S;
-  if (d_S.squaredNorm() > 0.0) {
-    const RayInterval span = view.ray(view.solid, p_S, d_S);
-    if (!span.empty() && span.enter > 0.0 && std::isfinite(span.enter)) {
-      at_S = p_S + span.enter * d_S;
-    }
-  }
+  const Vec3 at_S = posed.X_SH * (p_H + way_outside(posed, p_H, middle_H) * (middle_H - p_H));
   Vec3 normal_S = view.gradient(view.solid, at_S);
   double offset = view.support_height(view.solid, normal_S);
-  if (!(normal_S.dot(p_S) > offset)) {  // an edge: the entry point's normal is not unique
+  // At an edge the entry point's normal is not unique.
+  if (!(normal_S.dot(p_S) - offset > kLeastCut * (p_S - at_S).norm())) {
     normal_S = view.gradient(view.solid, p_S);
     offset = view.support_height(view.solid, normal_S);
   }
@@ -217,6 +225,31 @@ OverlapWindow find_window(const SolidView& a, const SolidView& b, const Pose& X_
   const Pose X_WH = X_HW.inverse();
   for (Vec3& p : hull_W.points()) p = X_WH * p;
   return window;
+}
+
+double overlap_height(const SolidView& a, const SolidView& b, const OverlapWindow& window,
+                      const CutPolytope& hull_W, const Vec3& inside_W, const Vec3& e,
+                      CutPolytope& scratch) {
+  const Posed solids[2] = {{&a, window.X_AW, kCutByA}, {&b, window.X_BW, kCutByB}};
+  const double base = e.dot(inside_W);
+  double height = base;
+  scratch = hull_W;
+  for (int cuts = 0; cuts < kMostHeightCuts && scratch.size() > 0; ++cuts) {
+    Vec3 corner = scratch.points()[0];
+    for (const Vec3& p : scratch.points()) {
+      if (e.dot(p) > e.dot(corner)) corner = p;
+    }
+    const double way[2] = {way_outside(solids[0], corner, inside_W),
+                           way_outside(solids[1], corner, inside_W)};
+    const int outside_of = way[0] >= way[1] ? 0 : 1;
+    const double highest = e.dot(corner);
+    height = std::max(height, highest - way[outside_of] * (highest - base));
+    if (!(highest - height > kHeightKnown * (height - base))) break;
+    const Plane plane = cutting_plane(solids[outside_of], corner, inside_W);
+    const auto over = [&](const Vec3& p) { return plane.normal.dot(p) - plane.offset; };
+    if (!(over(corner) > 0.0) || !scratch.cut(over, outside_of, 0.0)) break;
+  }
+  return height;
 }
 
 }  // namespace volcontact

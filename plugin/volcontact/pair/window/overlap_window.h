@@ -21,4 +21,12 @@ struct OverlapWindow {
 OverlapWindow find_window(const SolidView& a, const SolidView& b, const Pose& X_AB,
                           CutPolytope& hull_W, CutPolytope& scratch);
 
+/// The greatest height e . x of the overlap of two convex solids, both in W, from their window and
+/// its hull: to 1e-5 of the height over `inside_W`, a place within both. Kelley's cutting planes,
+/// each laid where the way from that place to the hull's highest corner leaves a solid, as in A. F.
+/// Veinott, "The supporting hyperplane method for unimodal programming", 1967.
+double overlap_height(const SolidView& a, const SolidView& b, const OverlapWindow& window,
+                      const CutPolytope& hull_W, const Vec3& inside_W, const Vec3& e,
+                      CutPolytope& scratch);
+
 }  // namespace volcontact
