@@ -22,8 +22,6 @@ constexpr int kMostSteps = 60;              // in search of one
 constexpr double kStraightArc = 0.5 * kPi;  // the longest for one Gauss rule [rad]
 constexpr double kRounding = 1e-15;         // of fluxes, per size
 
-constexpr double kLineNode = 0.38729833462074169;  // of the rule with three nodes, from the middle
-
 class FaceSweep {
  public:
   FaceSweep(const SweepSolids& solids, int face, const CurveFamily& family, double target,
@@ -332,31 +330,27 @@ class FaceSweep {
   void add_span(const SweepSpans::Span& span, double u, double weight, int strip, SweepFlux& sum) {
     const FaceCurve curve = family_.curve(u);
     const double low = span.low.t, length = span.high.t - low;
-    const auto add = [&](double t, double share, bool place, bool flux) {
+    const auto add = [&](double t, double share) {
       const Vec3 x = curve.at(t);
       const Vec3 n = span.side * weight * share * length * family_.element(u, t, x);
-      if (place) surface_.places.push_back({x, n, strip});
-      if (flux) sum.add(x, n);
+      surface_.places.push_back({x, n, strip});
+      sum.add(x, n);
     };
     surface_.tips.push_back({curve.at(low), strip});
     surface_.tips.push_back({curve.at(span.high.t), strip});
-    // Degree 5: the terms are of degree 4 at most, and so is the square of a column where the
-    // overlap is a cap.
-    const bool line = !curve.circle;
-    add(low + 0.5 * length, 4.0 / 9.0, true, line);
-    add(low + (0.5 - kLineNode) * length, 5.0 / 18.0, true, line);
-    add(low + (0.5 + kLineNode) * length, 5.0 / 18.0, true, line);
-    if (line) return;
-    if (span.low.face < 0 && span.high.face < 0) {  // all round: even steps are exact
+    const bool all_round = curve.circle && span.low.face < 0 && span.high.face < 0;
+    if (all_round) {  // even steps are exact
       constexpr int kSteps = 12;
-      for (int i = 0; i < kSteps; ++i) add(2.0 * kPi * i / kSteps, 1.0 / kSteps, false, true);
+      for (int i = 0; i < kSteps; ++i) add(2.0 * kPi * i / kSteps, 1.0 / kSteps);
       return;
     }
-    const int parts = std::max(1, static_cast<int>(std::ceil(length / kStraightArc)));
+    // On a line three nodes were enough for the fluxes, but not for columns, whose length has
+    // kinks.
+    const int parts =
+        curve.circle ? std::max(1, static_cast<int>(std::ceil(length / kStraightArc))) : 1;
     for (int i = 0; i < parts; ++i) {
       for (int k = 0; k < LegendreTable::kCount; ++k) {
-        add(low + length * (i + OuterRule::kNodes[k]) / parts, OuterRule::kWeights[k] / parts,
-            false, true);
+        add(low + length * (i + OuterRule::kNodes[k]) / parts, OuterRule::kWeights[k] / parts);
       }
     }
   }
