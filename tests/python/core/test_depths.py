@@ -154,3 +154,20 @@ def test_a_capsule_deep_over_the_edge_of_a_box() -> None:
         for engine in ("lines", "octree", "surface_sweep")
     ]
     assert max(depths) == pytest.approx(min(depths), rel=5e-3)
+
+
+def test_a_disc_that_leans_in_a_face() -> None:
+    """The columns stood upright on the end of the frustum, and its rim had no highest place."""
+    box, frustum = vc.Box([0.05, 0.03, 0.03]), vc.Frustum(0.02, 0.04, 0.02)
+    X_AB = np.eye(4)
+    X_AB[:3, :3] = [
+        [0.002221499175920516, 0.9999896382269795, 0.003973459460767104],
+        [0.0006202130755920687, -0.0039748462965607245, 0.9999919079335893],
+        [0.9999973401350389, -0.002219016807888663, -0.0006290367668572439],
+    ]
+    X_AB[:3, 3] = [0.0, -0.05, -0.01]
+    found = vc.interference(box, frustum, X_AB, engine="lines")
+    hull_b = manifold3d.Manifold.cylinder(0.04, 0.02, 0.04, 2000, True).transform(X_AB[:3])
+    overlap = Facets(manifold3d.Manifold.cube([0.1, 0.06, 0.06], True) ^ hull_b)
+    extent = float(np.ptp(overlap.points @ np.asarray(found.normal)))
+    assert found.depth == pytest.approx(extent, rel=2e-3)

@@ -13,14 +13,15 @@
 namespace volcontact {
 namespace {
 
-constexpr double kClear = 0.02;       // |S| / area below which S gives no direction to look along
+constexpr double kClear = 0.02;       // flatness below which S gives no direction to look along
 constexpr double kSameCorner = 1e-7;  // squared distance of directions that count as one
 constexpr int kMaxRecenterings = 24;  // from a far corner of a thin overlap
 constexpr double kRoundRim = 2.0;     // longest by shortest way to the rim; then one step is enough
 constexpr double kMostTurn = 0.5;  // of the columns towards the normal of the rim; more: no normal
 constexpr double kMostInStrip = 1.3;  // the same where the first direction is known roughly
-constexpr double kAligned = 0.1;   // a turn after which the next one would be too small to matter
-constexpr double kLeaning = 0.02;  // of the columns to the normal; with more they are turned
+constexpr double kAligned = 0.1;    // a turn after which the next one would be too small to matter
+constexpr double kLeaning = 0.02;   // of the columns to the normal; with more they are turned
+constexpr double kSameWay = 1e-12;  // of a normal and the columns along it
 constexpr double kAboutUpright = 0.9;  // cosine of columns and a normal that they follow
 constexpr double kUpright = 1e-4;      // of a face to the columns: the sine of its lean
 constexpr double kLargestCap = 0.1;    // of V, as a cap that stands out unseen
@@ -119,8 +120,7 @@ class LinesRun {
 
   // Whether the columns lean so much that depths along them are not those along the normal.
   bool leans(const VolumeMetrics& found) const {
-    return found.touching() && found.status != Status::kContained &&
-           found.area_vector.norm() > kClear * found.area &&
+    return found.touching() && found.status != Status::kContained && found.flatness() > kClear &&
            (found.normal() - frame_.t).norm() > kLeaning;
   }
 
@@ -459,6 +459,9 @@ class LinesRun {
 
   // The extent along n, which is about t, over places of which some are about the farthest.
   double extent(const Vec3& n) const {
+    if ((n - frame_.t).norm() > kSameWay) {
+      find_tops(s_.faces.active, frame_, n, tolerance(), s_.breaks);
+    }
     const SectionSums& sums = s_.sections.total();
     const auto at = [&](const SectionSums::Place& p) {
       return n.dot(p.x * frame_.u + p.y * frame_.v + p.h * frame_.t);

@@ -84,6 +84,15 @@ class BreakSearch {
     if (faces_.has_bore) follow_bore_rims();
   }
 
+  void find_tops(const Vec3& n) {
+    const Mat3 basis = basis_with_z(n);
+    for (int r = 0; r < static_cast<int>(faces_.rounds.size()); ++r) {
+      intersect(polar(r, basis.col(0)), polar(r, basis.col(1)), r, kTop);
+      if (!breaks_.complete) continue;
+      for (int i = 0; i < static_cast<int>(faces_.planes.size()); ++i) find_tops(i, r, n);
+    }
+  }
+
  private:
   enum Use { kCorner, kTouch, kTop };
   static constexpr int kBore = -2;  // stands for the index of a round face
@@ -101,8 +110,12 @@ class BreakSearch {
     return {normal, normal.dot(f.center - frame_.center)};
   }
 
-  // Highest and lowest places of a round face.
+  // Highest and lowest places of a round face, and on its edge with plane i.
   void find_tops(int r) { intersect(polar(r, frame_.u), polar(r, frame_.v), r, kTop); }
+  void find_tops(int i, int r, const Vec3& n) {
+    const Plane p = plane(i);
+    intersect(p, polar(r, p.normal.cross(n)), r, kTop);
+  }
 
   // A half-plane near the apex of a cone cuts it in an arc that bends sharply, and so it does where
   // the tip is cut off by a small disc.
@@ -115,7 +128,7 @@ class BreakSearch {
   // half-plane of the sections touches it. Also the seams of a capsule.
   void find_on_edge(int i, int r) {
     const Plane p = plane(i);
-    intersect(p, polar(r, p.normal.cross(frame_.t)), r, kTop);
+    find_tops(i, r, frame_.t);
     const double climb = p.normal.dot(frame_.t);
     const RoundFace& f = faces_.rounds[r];
     if (std::abs(climb) > 1e-9 * frame_.t.norm()) {
@@ -358,6 +371,11 @@ void SectionBreaks::clear() {
 void find_breaks(const FaceSet& faces, const SectionFrame& frame, double tolerance,
                  SectionBreaks& breaks) {
   BreakSearch(faces, frame, tolerance, breaks).run();
+}
+
+void find_tops(const FaceSet& faces, const SectionFrame& frame, const Vec3& n, double tolerance,
+               SectionBreaks& breaks) {
+  BreakSearch(faces, frame, tolerance, breaks).find_tops(n);
 }
 
 }  // namespace volcontact

@@ -24,4 +24,9 @@ struct SectionBreaks {
 void find_breaks(const FaceSet& faces, const SectionFrame& frame, double tolerance,
                  SectionBreaks& breaks);
 
+/// Adds the places that lie farthest along the unit vector `n` or against it, of each round face
+/// and of its edges with plane faces, to those which find_breaks found for the same sections.
+void find_tops(const FaceSet& faces, const SectionFrame& frame, const Vec3& n, double tolerance,
+               SectionBreaks& breaks);
+
 }  // namespace volcontact
