@@ -9,6 +9,7 @@
 #include "volcontact/pair/sections/even_turn.h"
 #include "volcontact/pair/sections/rim_shape.h"
 #include "volcontact/pair/sections/section_metrics.h"
+#include "volcontact/pair/sections/unseen_caps.h"
 
 namespace volcontact {
 namespace {
@@ -24,8 +25,6 @@ constexpr double kLeaning = 0.02;   // of the columns to the normal; with more t
 constexpr double kSameWay = 1e-12;  // of a normal and the columns along it
 constexpr double kAboutUpright = 0.9;  // cosine of columns and a normal that they follow
 constexpr double kUpright = 1e-4;      // of a face to the columns: the sine of its lean
-constexpr double kLargestCap = 0.1;    // of V, as a cap that stands out unseen
-constexpr int kClimbs = 4;             // to where a solid is farthest out of a face
 constexpr double kWhole = 0.999;       // share of a solid in the overlap, that is all of it
 // Of the smaller solid. An overlap of 1e-9 is not to be missed, and from a far corner of a thin one
 // the window sees a small part of it.
@@ -44,8 +43,6 @@ Mat3 turn_between(const Vec3& from, const Vec3& to) {
 }
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-const Pose kHere{};
 
 class LinesRun {
  public:
@@ -151,57 +148,15 @@ class LinesRun {
     if (!smooth || !integrate_smooth() || is_open(options_.tolerance)) integrate_arcs();
   }
 
-  // Half-planes may all miss a small cap that stands out through a round face, and on both sides
-  // alike: neither the columns nor the check of the surface know of that face then. Half-planes to
-  // where the other solid is farthest out of it do.
+  // Half-planes to caps that none has seen yet.
   void look_at_unseen() {
     if (s_.faces.active.has_bore) return;
-    const double before = unseen(true);
-    if (!(before > 0.0)) return;
+    const auto caps = [this](std::vector<Vec2>* directions) {
+      return unseen_caps(a_, b_, X_AB_, s_.faces.active, s_.sections, frame_, reach(), directions);
+    };
+    if (!(caps(&s_.breaks.directions) > 0.0)) return;
     integrate_arcs();
-    error_ += unseen(false);
-  }
-
-  // About the volume that stands out through round faces which no column ends at. Notes the ways
-  // there if `note`.
-  double unseen(bool note) {
-    const std::vector<RoundFace>& rounds = s_.faces.active.rounds;
-    const double volume = s_.sections.total().moments[0];
-    double sum = 0.0;
-    for (std::size_t i = 0; i < rounds.size(); ++i) {
-      const RoundFace& face = rounds[i];
-      if (face.part != CapsulePart::kNone || s_.sections.total().rounds[i].area > 0.0) continue;
-      const ConvexView& other = face.owner == Owner::kA ? b_ : a_;
-      const Pose& X = face.owner == Owner::kA ? X_AB_ : kHere;
-      for (const Vec3& axis : {frame_.u, frame_.v, frame_.t}) {
-        for (const double side : {1.0, -1.0}) {
-          Vec3 x = other.support(X, side * axis);
-          for (int k = 0; k < kClimbs; ++k) x = other.support(X, face.half_gradient(x));
-          const double slope = face.half_gradient(x).norm();
-          const double out = slope > 0.0 ? 0.5 * face(x) / slope : 0.0;
-          const double cap = kPi * out * out * reach();
-          if (!(out > 0.0 && cap > outer_rule::kInnerError * volume)) continue;
-          if (cap > kLargestCap * volume) continue;  // no columns miss that: it lies elsewhere
-          if (!within_others(face, x, out)) continue;
-          sum = std::max(sum, 2.0 * cap);  // they come in pairs
-          const Vec3 way = x - frame_.center;
-          const Vec2 direction(way.dot(frame_.u), way.dot(frame_.v));
-          if (note && direction.norm() > 0.0)
-            s_.breaks.directions.push_back(direction.normalized());
-        }
-      }
-    }
-    return sum;
-  }
-
-  bool within_others(const RoundFace& face, const Vec3& x, double slack) const {
-    const FaceSet& all = s_.faces.active;
-    return std::all_of(all.planes.begin(), all.planes.end(),
-                       [&](const PlaneFace& p) { return p.normal.dot(x) <= p.offset + slack; }) &&
-           std::all_of(all.rounds.begin(), all.rounds.end(), [&](const RoundFace& f) {
-             return &f == &face || f.part != CapsulePart::kNone ||
-                    f(x) <= 4.0 * slack * f.half_gradient(x).norm();
-           });
+    error_ += caps(nullptr);
   }
 
   // How far round faces may be from those of the solids, by what they stand for or by the rounding
