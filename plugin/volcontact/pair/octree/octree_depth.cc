@@ -229,10 +229,10 @@ OctreeScratch::ColumnSum sum_columns(const OctreeTask& task, OctreeScratch& scra
 
 double farthest(const OctreeTask& task, OctreeScratch& s, LeafRange leaves, const Vec3& inside,
                 const Vec3& e) {
-  double height = -kInfinity;
   if (task.a.convex && task.b.convex) {
     return overlap_height(task.a, task.b, task.window, s.hull, inside, e, s.part);
   }
+  double height = -kInfinity;
   if (leaves.all && farthest_support(task, e, height)) return height;
   // One promising leaf first: most others can then be seen to reach less far.
   int best = leaves.first;

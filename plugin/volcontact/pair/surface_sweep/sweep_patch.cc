@@ -344,8 +344,7 @@ class FaceSweep {
       for (int i = 0; i < kSteps; ++i) add(2.0 * kPi * i / kSteps, 1.0 / kSteps);
       return;
     }
-    // On a line three nodes were enough for the fluxes, but not for columns, whose length has
-    // kinks.
+    // Three nodes would do for the fluxes of a line, but not for columns: their length has kinks.
     const int parts =
         curve.circle ? std::max(1, static_cast<int>(std::ceil(length / kStraightArc))) : 1;
     for (int i = 0; i < parts; ++i) {
