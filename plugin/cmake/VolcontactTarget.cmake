@@ -17,6 +17,12 @@ function(volcontact_target name)
     target_compile_options(${name} PRIVATE -Wno-psabi)
     # By default GCC looks for garbage from 128 MB on, which takes a fifteenth of its time; in kB.
     target_compile_options(${name} PRIVATE --param=ggc-min-heapsize=500000)
+    # Passes that take a seventh of its time, and without which steps and engines are as fast: these
+    # processors order instructions themselves.
+    if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+      target_compile_options(${name} PRIVATE -fno-schedule-insns2 -fno-gcse -fno-gcse-after-reload
+        --param=sccvn-max-alias-queries-per-access=100)
+    endif()
   endif()
   set_target_properties(${name} PROPERTIES
     CXX_EXTENSIONS OFF
