@@ -36,7 +36,7 @@ bool overlap(const SceneContact& contact, const mjData* d, const PairContact& pa
              ContactModel::Workspace& workspace) {
   const Pose X_WA = pose_of_geom(d, pair.geoms.a), X_WB = pose_of_geom(d, pair.geoms.b);
   InterferenceOptions options;
-  options.engine = pair.engine;
+  options.engine = pair.model.options().engine;
   interference(contact.solids()[size(pair.geoms.a)], contact.solids()[size(pair.geoms.b)],
                X_WA.inverse() * X_WB, options, workspace.engines, workspace.interference);
   return workspace.interference.total.touching();

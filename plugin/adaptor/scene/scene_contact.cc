@@ -258,7 +258,8 @@ PairContact SceneContact::make_pair(const GeomPair& in_order) const {
   const SceneOptions& options = keys_.options;
   const bool is_asked =
       options.engine != Engine::kAuto && serves(options.engine, solids_[a], solids_[b]);
-  const Engine engine = is_asked ? options.engine : engine_for(solids_[a], solids_[b]);
+  const Engine asked = is_asked ? options.engine : Engine::kAuto;
+  const Engine engine = is_asked ? asked : engine_for(solids_[a], solids_[b]);
   const int most_cells = options.engine == Engine::kOctree ? kMostCells : kMostCellsInStep;
   const bool joins = family.number >= 0;
   const int frame_a = joins ? flush_.frame_of(geoms.a) : geoms.a;
@@ -275,7 +276,7 @@ PairContact SceneContact::make_pair(const GeomPair& in_order) const {
   if (family.swapped) laws.share_of_a = 1.0 - laws.share_of_a;
   PairContact pair{geoms, engine,
                    ContactModel({{solids_[a], solids_[b], Pose{}, Pose{}}}, std::move(laws),
-                                {options.tolerance, engine, kInnerThreads, most_cells}),
+                                {options.tolerance, asked, kInnerThreads, most_cells}),
                    law_class.stiffness};
   pair.frame_a = frame_a;
   pair.frame_b = frame_b;
