@@ -10,6 +10,7 @@
 #include "volcontact/pair/closed_form/closed_form.h"
 #include "volcontact/shape/box.h"
 #include "volcontact/shape/polytope/convex_polytope.h"
+#include "volcontact/shape/sphere.h"
 
 namespace volcontact {
 
@@ -66,10 +67,22 @@ class FacesMet {
       double from = -length, to = length;
       if (rise > 0.0) to = std::min(to, (around - face.height) / rise);
       if (rise < 0.0) from = std::max(from, (around - face.height) / rise);
-      return std::max(from * e.z(), to * e.z()) + a_.support_height(e) - length * std::abs(e.z());
+      const double lowest = face.height + std::min(from * rise, to * rise);
+      return std::max(from * e.z(), to * e.z()) +
+             std::min(a_.support_height(e) - length * std::abs(e.z()),
+                      reach_of_cap(a_.radius(), lowest, face.normal.dot(e)));
+    } else if constexpr (std::is_same_v<A, Sphere>) {
+      return reach_of_cap(a_.radius(), face.height, face.normal.dot(e));
     } else {
       return a_.support_height(e);
     }
+  }
+
+  // The same of a ball whose middle is at a height over the face: of its cap the pole, or the rim.
+  static double reach_of_cap(double radius, double height, double cosine) {
+    if (height <= -radius * cosine) return radius;
+    const double rim = std::sqrt(std::max(0.0, (radius - height) * (radius + height)));
+    return rim * std::sqrt(std::max(0.0, 1.0 - cosine * cosine)) - height * cosine;
   }
 
   const A& a_;

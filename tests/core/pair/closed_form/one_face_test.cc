@@ -138,6 +138,52 @@ TEST(OneFace, ACapsuleMayLeanOverAnEdge) {
   EXPECT_EQ(test::evaluated(capsule, kBox, nearer.inverse()).engine, Engine::kLines);
 }
 
+// Its equator is beyond the edge; what counts is how far the cap behind the face reaches.
+TEST(OneFace, ABallMayReachOverAnEdge) {
+  const Sphere ball({.radius = 0.05});
+  const double height = 0.049, rim = std::sqrt(0.05 * 0.05 - height * height);
+  const auto with_rim_at = [&](double x) {
+    const Pose X_BA{Mat3::Identity(), Vec3(x - rim, 0.1, 0.2 + height)};
+    return test::evaluated(ball, kBox, X_BA.inverse());
+  };
+  const double cap = kPi / 3.0 * 0.001 * 0.001 * (3.0 * 0.05 - 0.001);
+  for (const double x : {0.25, 0.2999999, 0.3 - 1e-12}) {
+    const Interference out = with_rim_at(x);
+    EXPECT_EQ(out.engine, Engine::kClosedForm);
+    EXPECT_NEAR(out.total.volume, cap, 1e-12 * cap);
+  }
+  const Interference cut = with_rim_at(0.3 + 0.1 * rim);
+  EXPECT_EQ(cut.engine, Engine::kLines);
+  EXPECT_LT(cut.total.volume, 0.999 * cap);
+}
+
+// About edges of a right angle, and of bevels: a little too far, and lines find less.
+TEST(OneFace, ARoundSolidNearAnEdgeIsThatOfLines) {
+  test::Random random(11);
+  const Shape solids[] = {Sphere({.radius = 0.05}), Capsule({.radius = 0.05, .half_length = 0.04}),
+                          Cylinder({.radius = 0.05, .half_length = 0.04})};
+  const Shape planar[] = {kBox, bevelled()};
+  int by_formula = 0;
+  for (int i = 0; i < 600; ++i) {
+    const Shape& solid = solids[i % 3];
+    const Vec3 place(random.uniform(0.2, 0.32), random.uniform(0.15, 0.27), 0.0);
+    const Mat3 turn = random.rotation();
+    const double low =
+        std::visit([&](const auto& s) { return s.support_height(-Vec3(turn.row(2))); }, solid);
+    const double depth = 0.02 * random.uniform() * random.uniform();
+    const Pose X_BA{turn, place + Vec3(0.0, 0.0, 0.2 + low - depth)};
+    const Interference out = test::evaluated(solid, planar[i / 3 % 2], X_BA.inverse());
+    if (out.engine != Engine::kClosedForm || !out.total.touching()) continue;
+    ++by_formula;
+    const Interference lines =
+        test::evaluated(solid, planar[i / 3 % 2], X_BA.inverse(), Engine::kLines);
+    EXPECT_NEAR(out.total.volume, lines.total.volume,
+                lines.total.volume_error + 1e-3 * out.total.volume)
+        << i;
+  }
+  EXPECT_GT(by_formula, 100);
+}
+
 TEST(OneFace, WhatIsAheadOfAFaceTouchesNothing) {
   test::Random random(5);
   for (const auto& [name, solid] : round_solids()) {
