@@ -26,7 +26,7 @@ void run(benchmark::State& state, const Shape& a, const Shape& b, const Pose& X_
   }
   InterferenceWorkspace workspace;
   Interference result;
-  const InterferenceOptions options;
+  const InterferenceOptions options{.engine = Engine::kLines};
   for (const Pose& X : poses) {
     interference(a, b, X, options, workspace, result);
     if (result.engine != Engine::kLines || result.sites.size() != sites) {
