@@ -9,7 +9,7 @@ namespace volcontact::adaptor {
 /// The contact model of one pair of geoms.
 struct PairContact {
   GeomPair geoms;
-  Engine engine;  ///< the one that will serve
+  Engine engine;  ///< asked for, or the first that serves the pair at any pose
   ContactModel model;
   double stiffness = 0.0;  ///< PairLaws::stiffness [N/m^3]
   /// k/m of a patch as large as the smaller solid's box against a displacement [1/s^2].

@@ -256,10 +256,9 @@ PairContact SceneContact::make_pair(const GeomPair& in_order) const {
   const LawClasses::Laws& law_class = laws_.of(in_order);
   const auto a = static_cast<std::size_t>(geoms.a), b = static_cast<std::size_t>(geoms.b);
   const SceneOptions& options = keys_.options;
-  const bool is_asked =
-      options.engine != Engine::kAuto && serves(options.engine, solids_[a], solids_[b]);
-  const Engine asked = is_asked ? options.engine : Engine::kAuto;
-  const Engine engine = is_asked ? asked : engine_for(solids_[a], solids_[b]);
+  const Engine asked =
+      serves(options.engine, solids_[a], solids_[b]) ? options.engine : Engine::kAuto;
+  const Engine engine = asked != Engine::kAuto ? asked : engine_for(solids_[a], solids_[b]);
   const int most_cells = options.engine == Engine::kOctree ? kMostCells : kMostCellsInStep;
   const bool joins = family.number >= 0;
   const int frame_a = joins ? flush_.frame_of(geoms.a) : geoms.a;

@@ -78,7 +78,8 @@ class FacesMet {
     }
   }
 
-  // The same of a ball whose middle is at a height over the face: of its cap the pole, or the rim.
+  // How far what of a ball is behind a face reaches: its middle is at a height over the face, whose
+  // normal and the direction have this cosine.
   static double reach_of_cap(double radius, double height, double cosine) {
     if (height <= -radius * cosine) return radius;
     const double rim = std::sqrt(std::max(0.0, (radius - height) * (radius + height)));
