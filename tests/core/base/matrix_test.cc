@@ -10,6 +10,76 @@
 namespace volcontact::matrix_test {
 namespace {
 
+// In the same order as those of Eigen, below.
+template <int R, int C>
+test::Findings found(const Matrix<R, C>& a, const Matrix<R, C>& b, const Matrix<C, R>& c,
+                     const Vector<C>& v, const Vector<R>& u, double s) {
+  test::Findings found;
+  found.add(a + b);
+  found.add(a - b);
+  found.add(-a);
+  found.add(s * a);
+  found.add(a * s);
+  found.add(a / s);
+  found.add(a.transpose());
+  found.add(a.cwiseAbs());
+  found.add(a.cwiseAbs2());
+  found.add(a.rounded());
+  for (int k = 0; k < C; ++k) found.add(a.col(k));
+  for (int k = 0; k < R; ++k) found.add(a.row(k));
+  found.add(row_lengths(a));
+  found.add(a * v);
+  found.add(a.transposed_times(u));
+  found.add(a * c);
+  found.add(a.norm());
+  found.add(a.sum());
+  found.add(a.maxCoeff());
+  if constexpr (R == C) {
+    found.add(a.diagonal());
+    found.add(a.trace());
+    found.add(a * v.asDiagonal());
+    found.add(v.asDiagonal() * a);
+    found.add(Matrix<R, R>(v.asDiagonal()));
+  }
+  return found;
+}
+
+test::Findings found_by_eigen(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y,
+                              const Eigen::MatrixXd& z, const Eigen::VectorXd& v,
+                              const Eigen::VectorXd& u, double s) {
+  const double rows = test::kRounding * static_cast<double>(x.rows());
+  const double columns = test::kRounding * static_cast<double>(x.cols());
+  test::Findings found;
+  found.add(x + y);
+  found.add(x - y);
+  found.add(-x);
+  found.add(s * x);
+  found.add(x * s);
+  found.add(x / s);
+  found.add(x.transpose());
+  found.add(x.cwiseAbs());
+  found.add(x.cwiseAbs2());
+  found.add(x.array().round().matrix());
+  for (Eigen::Index k = 0; k < x.cols(); ++k) found.add(x.col(k));
+  for (Eigen::Index k = 0; k < x.rows(); ++k) found.add(x.row(k).transpose());
+  found.add(x.rowwise().norm(), columns * x.norm());
+  found.add(test::product(x, v), columns * x.norm() * v.norm());
+  found.add(test::product(x.transpose(), u), rows * x.norm() * u.norm());
+  found.add(test::product(x, z), columns * x.norm() * z.norm());
+  found.add(x.norm(), rows * static_cast<double>(x.cols()) * x.norm());
+  found.add(x.sum(), rows * static_cast<double>(x.cols()) * x.cwiseAbs().sum());
+  found.add(x.maxCoeff());
+  if (x.rows() == x.cols()) {
+    const double size = test::kRounding * x.norm() * v.norm();
+    found.add(x.diagonal());
+    found.add(x.trace(), rows * x.norm());
+    found.add(x * v.asDiagonal(), size);
+    found.add(v.asDiagonal() * x, size);
+    found.add(v.asDiagonal().toDenseMatrix());
+  }
+  return found;
+}
+
 template <int R, int C>
 void expect_arithmetic_of_matrices() {
   test::Random random(10 * R + C);
@@ -19,35 +89,10 @@ void expect_arithmetic_of_matrices() {
     const auto c = test::matrix_of_many_sizes<C, R>(random);
     const auto v = test::vector_of_many_sizes<C>(random);
     const auto u = test::vector_of_many_sizes<R>(random);
-    const auto x = test::eigen(a), y = test::eigen(b);
     const double s = random.uniform(-2.0, 2.0);
-    test::expect_same(a + b, x + y);
-    test::expect_same(a - b, x - y);
-    test::expect_same(-a, -x);
-    test::expect_same(s * a, s * x);
-    test::expect_same(a * s, x * s);
-    test::expect_same(a / s, x / s);
-    test::expect_same(a.transpose(), x.transpose());
-    test::expect_same(a.cwiseAbs(), x.cwiseAbs());
-    test::expect_same(a.cwiseAbs2(), x.cwiseAbs2());
-    test::expect_same(a.rounded(), x.array().round().matrix());
-    for (int k = 0; k < C; ++k) test::expect_same(a.col(k), x.col(k));
-    for (int k = 0; k < R; ++k) test::expect_same(a.row(k), x.row(k).transpose());
-    test::expect_near(row_lengths(a), x.rowwise().norm(), C * x.norm());
-    test::expect_near(a * v, x * test::eigen(v), C * x.norm() * v.norm());
-    test::expect_near(a.transposed_times(u), x.transpose() * test::eigen(u),
-                      R * x.norm() * u.norm());
-    test::expect_near(a * c, x * test::eigen(c), C * x.norm() * c.norm());
-    EXPECT_NEAR(a.norm(), x.norm(), R * C * test::kRounding * x.norm());
-    EXPECT_NEAR(a.sum(), x.sum(), R * C * test::kRounding * x.cwiseAbs().sum());
-    EXPECT_EQ(a.maxCoeff(), x.maxCoeff());
-    if constexpr (R == C) {
-      test::expect_same(a.diagonal(), x.diagonal());
-      EXPECT_NEAR(a.trace(), x.trace(), R * test::kRounding * x.norm());
-      test::expect_near(a * v.asDiagonal(), x * test::eigen(v).asDiagonal(), x.norm() * v.norm());
-      test::expect_near(v.asDiagonal() * a, test::eigen(v).asDiagonal() * x, x.norm() * v.norm());
-      test::expect_same(Matrix<R, R>(v.asDiagonal()), test::eigen(v).asDiagonal().toDenseMatrix());
-    }
+    const auto theirs = found_by_eigen(test::eigen(a), test::eigen(b), test::eigen(c),
+                                       test::eigen(v), test::eigen(u), s);
+    theirs.expect(found(a, b, c, v, u, s));
   }
 }
 

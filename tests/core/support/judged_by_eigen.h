@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "core/support/dense.h"
 #include "core/support/random.h"
 
@@ -26,13 +28,37 @@ Matrix<R, C> matrix_of_many_sizes(Random& random) {
   return m;
 }
 
-template <typename A, typename B>
-void expect_same(const A& ours, const B& theirs) {
-  EXPECT_EQ(eigen(ours), theirs.eval());
-}
-template <typename A, typename B>
-void expect_near(const A& ours, const B& theirs, double size) {
-  EXPECT_LE((eigen(ours) - theirs).norm(), kRounding * size);
-}
+/// Numbers that one library finds, and how far those of another may be from them.
+class Findings {
+ public:
+  void add(const Eigen::MatrixXd& numbers, double tolerance = 0.0) {
+    numbers_.push_back(numbers);
+    tolerances_.push_back(tolerance);
+  }
+  void add(double number, double tolerance = 0.0) {
+    add(Eigen::MatrixXd(Eigen::MatrixXd::Constant(1, 1, number)), tolerance);
+  }
+  template <int N>
+  void add(const Vector<N>& v) {
+    add(Eigen::MatrixXd(Eigen::MatrixXd::Map(v.data(), N, 1)));
+  }
+  template <int R, int C>
+  void add(const Matrix<R, C>& m) {
+    add(Eigen::MatrixXd(Eigen::MatrixXd::Map(m.columns[0].data(), R, C)));
+  }
+
+  void expect(const Findings& ours) const {
+    ASSERT_EQ(ours.numbers_.size(), numbers_.size());
+    for (std::size_t i = 0; i < numbers_.size(); ++i) {
+      ASSERT_EQ(ours.numbers_[i].size(), numbers_[i].size()) << "number " << i;
+      // At 0 the same: norms of differences are 0 for equal numbers alone.
+      EXPECT_LE((ours.numbers_[i] - numbers_[i]).norm(), tolerances_[i]) << "number " << i;
+    }
+  }
+
+ private:
+  std::vector<Eigen::MatrixXd> numbers_;
+  std::vector<double> tolerances_;
+};
 
 }  // namespace volcontact::test
