@@ -23,6 +23,8 @@ from volcontact.messages.spelling import nearest
 from volcontact.surface import SiteSurface
 from volcontact.wrenches import wrench_on
 
+_TOLD_OF_CONTACTS = [name for name in CONTACT_DTYPE.names or () if name != "reserved"]
+
 
 class Wrench(NamedTuple):
     """A force and its torque.
@@ -340,8 +342,7 @@ class Contact(Closing):
                 "contacts", model._address, data._address, rows.ctypes.data, len(rows)
             )
             if count <= len(rows):
-                names = [name for name in CONTACT_DTYPE.names or () if name != "reserved"]
-                return rows[:count][names].copy()
+                return rows[:count][_TOLD_OF_CONTACTS].copy()
             rows = np.empty(count, CONTACT_DTYPE)
 
     def force_on(self, data: mujoco.MjData, name: str) -> Wrench:
@@ -457,9 +458,8 @@ class Contact(Closing):
             self._report(
                 "MuJoCo's passive callback was replaced: volumetric contact no longer acts"
             )
-        error = self.live_error()
-        if error:
-            self._report(f"the last valid numbers stay in force: {error}")
+        if self._adaptor.call("live_error", self._model._address, None, 0):
+            self._report(f"the last valid numbers stay in force: {self.live_error()}")
         if not self._lookout.is_over and self._lookout.is_time(data):
             for line in self._lookout.look(data, self._read_sites(self._model, data)):
                 warnings.warn(line, RuntimeWarning, stacklevel=_out_of_here())

@@ -21,8 +21,8 @@ class Contact(sysModel.SysModel):
         step, read = self.scene.step, self.state()
         time = max(0.0, now * 1e-9 - step)  # what is read is of a step ago
         s = np.array(read.sigma_BN)
-        X = pose(np.array(read.r_BN_N), np.r_[1.0 - s @ s, 2.0 * s])
-        V = np.r_[X[:3, :3] @ read.omega_BN_B, read.v_BN_N]
+        X = pose(np.array(read.r_BN_N), np.array([1.0 - s @ s, *(2.0 * s)]))
+        V = np.concatenate([X[:3, :3] @ read.omega_BN_B, read.v_BN_N])
         self.rows.append((time, X))
         self.memory.keep(time, self.memory.report(time, X, V))
         X = moved(X, V, 0.5 * step)  # the wrench holds for a step: that of its middle

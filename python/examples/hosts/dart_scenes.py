@@ -33,7 +33,7 @@ def run(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     every = round(SAMPLE / step)
     for i in range(round(scene.duration / step) + 1):
         X_WA = body.getWorldTransform().matrix()
-        V_WA = np.r_[body.getAngularVelocity(), body.getLinearVelocity()]
+        V_WA = np.concatenate([body.getAngularVelocity(), body.getLinearVelocity()])
         if i % every == 0:
             times.append(i * step)
             poses.append(X_WA)

@@ -13,7 +13,7 @@ METHOD = {"method": "DOP853", "rtol": 1e-9, "atol": 1e-11}
 def motion(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Pose and twist of y: position, quaternion, angular velocity in the body, velocity."""
     X = pose(y[:3], y[3:7])
-    return X, np.r_[X[:3, :3] @ y[7:10], y[10:]]
+    return X, np.concatenate([X[:3, :3] @ y[7:10], y[10:]])
 
 
 def slopes(t: float, y: np.ndarray, scene: Scene, memory: Memory) -> np.ndarray:
@@ -21,10 +21,10 @@ def slopes(t: float, y: np.ndarray, scene: Scene, memory: Memory) -> np.ndarray:
     X, V = motion(y)
     report = memory.report(t, X, V)
     w, q = y[7:10], y[3:7]
-    turn = X[:3, :3].T @ report.torque_on_A - np.cross(w, scene.inertia * w)
-    spin = 0.5 * np.r_[-q[1:] @ w, (q[0] * np.eye(3) + cross(q[1:])) @ w]
+    turn = X[:3, :3].T @ report.torque_on_A - cross(w) @ (scene.inertia * w)
+    spin = 0.5 * np.array([-q[1:] @ w, *(q[0] * w + cross(q[1:]) @ w)])
     fall = report.force_on_A / scene.mass + GRAVITY
-    return np.r_[y[10:], spin, turn / scene.inertia, fall]
+    return np.concatenate([y[10:], spin, turn / scene.inertia, fall])
 
 
 def run(scene: Scene) -> tuple[np.ndarray, np.ndarray, list[float]]:

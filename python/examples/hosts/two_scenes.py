@@ -64,18 +64,23 @@ class Memory:
 
 def pose(position: np.ndarray, quaternion: np.ndarray) -> np.ndarray:
     """X_WA of a place and a quaternion w, x, y, z."""
-    w, v = quaternion[0], quaternion[1:] / np.linalg.norm(quaternion)
-    w /= np.linalg.norm(quaternion)
-    X = np.eye(4)
-    X[:3, :3] = (w * w - v @ v) * np.eye(3) + 2.0 * np.outer(v, v) + 2.0 * w * cross(v)
-    X[:3, 3] = position
-    return X
+    w, x, y, z = (quaternion / np.linalg.norm(quaternion)).tolist()
+    a, b, c = position
+    return np.array(
+        [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y), a],
+            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x), b],
+            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y), c],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )
 
 
 def moved(X_WA: np.ndarray, V_WA: np.ndarray, time: float) -> np.ndarray:
     """The pose a time later, with the twist kept up."""
     angle = time * np.linalg.norm(V_WA[:3])
-    turn = np.r_[np.cos(0.5 * angle), 0.5 * time * np.sinc(0.5 * angle / np.pi) * V_WA[:3]]
+    axis = 0.5 * time * np.sinc(0.5 * angle / np.pi) * V_WA[:3]
+    turn = np.array([np.cos(0.5 * angle), *axis])
     X = pose(X_WA[:3, 3] + time * V_WA[3:], turn)
     X[:3, :3] = X[:3, :3] @ X_WA[:3, :3]
     return X

@@ -27,8 +27,13 @@ class Probe(Protocol):
         """Structured array of `SITE`."""
         ...
 
-    def contacts(self, data: mujoco.MjData) -> np.ndarray:
-        """All contacts: `geom_a`, `geom_b`, `position`, `force` and `torque` as of `SITE`."""
+    def contacts(self, data: mujoco.MjData, sites: np.ndarray) -> np.ndarray:
+        """All contacts: `geom_a`, `geom_b`, `position`, `force` and `torque` as of `SITE`.
+
+        Args:
+            data: whose `sites` these are.
+            sites: all contacts where there are no others, which then are not evaluated anew.
+        """
         ...
 
     def surfaces(self, data: mujoco.MjData) -> tuple[SiteSurface, ...]:
@@ -74,8 +79,8 @@ class _VolumetricProbe:
     def sites(self, data: mujoco.MjData) -> np.ndarray:
         return recorded_sites(self._contact.sites(data))
 
-    def contacts(self, data: mujoco.MjData) -> np.ndarray:
-        return self._contact.contact_forces(data)
+    def contacts(self, data: mujoco.MjData, sites: np.ndarray) -> np.ndarray:
+        return self._contact.contact_forces(data) if data.ncon else sites
 
     def surfaces(self, data: mujoco.MjData) -> tuple[SiteSurface, ...]:
         count = len(self._contact.sites(data))
@@ -100,8 +105,9 @@ class _NativeProbe:
     def sites(self, data: mujoco.MjData) -> np.ndarray:
         return native_sites(self._model, data)
 
-    def contacts(self, data: mujoco.MjData) -> np.ndarray:
-        return self.sites(data)
+    def contacts(self, data: mujoco.MjData, sites: np.ndarray) -> np.ndarray:
+        del data
+        return sites
 
     def surfaces(self, data: mujoco.MjData) -> tuple[SiteSurface, ...]:
         del data

@@ -33,7 +33,7 @@ from volcontact.running.recording import (
     Recording,
 )
 from volcontact.running.signals import SignalReader
-from volcontact.wrenches import wrenches_on_bodies
+from volcontact.wrenches import wrenches_on_frames
 
 Progress = Callable[[int, int], None]
 
@@ -43,9 +43,10 @@ _WARNING_NAMES = {
     for name in dir(mujoco.mjtWarning)
     if name.startswith("mjWARN_")
 }
-_FATAL_WARNINGS = tuple(
+_FATAL_WARNINGS = [
     int(getattr(mujoco.mjtWarning, f"mjWARN_{name}")) for name in ("BADQPOS", "BADQVEL", "BADQACC")
-)
+]
+_FRAME_OF_BODY = int(mujoco.mjtObj.mjOBJ_XBODY)
 _PROGRESS_CALLS = 200
 
 
@@ -203,7 +204,6 @@ class RunRecorder:
         self._model = model
         self._probe = probe
         self._ids = _bodies_followed(model, follow)
-        self._geom_bodies = model.geom_bodyid.copy()
         rows, bodies = steps + 1, len(self._ids)
         self._rows = 0
         self._time = np.zeros(rows)
@@ -211,19 +211,18 @@ class RunRecorder:
         self._qvel = np.zeros((rows, model.nv))
         self._position = np.zeros((rows, bodies, 3))
         self._quaternion = np.zeros((rows, bodies, 4))
-        self._speed = np.zeros((rows, bodies))
-        self._spin = np.zeros((rows, bodies))
+        self._twist = np.zeros((rows, bodies, 6))  # angular, linear
         self._energies = np.zeros((rows, 7))  # kinetic, potential, then of contact
         self._dissipated = np.zeros((rows, len(CHANNELS)))
-        self._contact = np.zeros((rows, 4))  # sum and largest of forces, count, depth
         self._sensors = np.zeros((rows, model.nsensordata))
         self._solid = _bodies_with_geoms(model)
-        self._wrenches = np.zeros((rows, len(self._solid), 6))
+        self._origins = np.zeros((rows, len(self._solid), 3))
         self._signals = SignalReader(model, rows)
         self._outside = OutsideWork(model, rows)
         self._microseconds = np.zeros(steps)
         self._frames: list[Frame] = []
         self._sites: list[np.ndarray] = []
+        self._contacts: list[np.ndarray] = []
         self._frame_rows = _frame_rows(steps, float(model.opt.timestep), frame_interval)
         self._warnings: dict[str, int] = {}
         self._dropped = 0
@@ -243,7 +242,7 @@ class RunRecorder:
         mujoco.mj_step(self._model, data)
         self._microseconds[row] = 1e-3 * (clock.perf_counter_ns() - begin)
         self._outside.keep_step(row, data, self._qvel[row])
-        if any(data.warning[i].number for i in _FATAL_WARNINGS):
+        if data.warning.number[_FATAL_WARNINGS].any():
             self._stop(data, row)
             return
         if not self._evaluate_first:
@@ -283,7 +282,9 @@ class RunRecorder:
         """Packs what was recorded."""
         n = self._rows
         kinetic, potential, elastic, work, numerical, driven, made = self._energies[:n].T
-        total, largest, count, depth = self._contact[:n].T
+        sites = _joined(self._sites)
+        forces = np.linalg.norm(sites["force"], axis=1)
+        wrenches = self._wrenches(n)
         gravity = np.linalg.norm(self._model.opt.gravity)
         return Recording(
             contact=contact,
@@ -294,8 +295,8 @@ class RunRecorder:
             qvel=self._qvel[:n],
             position=self._position[:n],
             quaternion=self._quaternion[:n],
-            speed=self._speed[:n],
-            spin=self._spin[:n],
+            speed=np.linalg.norm(self._twist[:n, :, 3:], axis=2),
+            spin=np.linalg.norm(self._twist[:n, :, :3], axis=2),
             kinetic=kinetic,
             potential=potential,
             elastic=elastic,
@@ -305,23 +306,23 @@ class RunRecorder:
             driven=driven,
             made=made,
             outside_work=self._outside.work(n),
-            contact_force=total,
-            largest_site_force=largest,
-            site_count=count.astype(np.int64),
-            penetration=depth,
+            contact_force=np.bincount(sites["row"], forces, minlength=n),
+            largest_site_force=_largest(sites["row"], forces, n),
+            site_count=np.bincount(sites["row"], minlength=n),
+            penetration=_largest(sites["row"], sites["depth"], n),
             step_microseconds=self._microseconds[: max(n - 1, 0)],
             warnings=self._warnings,
             stopped=self.stopped,
             dropped=self._dropped,
             frames=tuple(self._frames),
-            sites=np.concatenate([np.zeros(0, SITE_IN_RUN), *self._sites]),
+            sites=sites,
             sensors={
                 name: np.linalg.norm(self._sensors[:n, places], axis=1)
                 for name, places in _sensor_places(self._model).items()
             },
             signals=self._signals.signals(self._qpos[:n], self._qvel[:n]),
             wrench_on={
-                name_of(self._model, "body", body): self._wrenches[:n, i]
+                name_of(self._model, "body", body): wrenches[:, i]
                 for i, body in enumerate(self._solid)
             },
             notes=self.notes,
@@ -329,6 +330,20 @@ class RunRecorder:
             description=description,
             weight=float(gravity * self._model.body_mass[self._model.body_weldid != 0].sum()),
         )
+
+    def _wrenches(self, rows: int) -> np.ndarray:
+        """On each of the solid bodies, about the origin of its frame, shape (rows, bodies, 6)."""
+        bodies = len(self._solid)
+        of_bodies = np.full(self._model.nbody, -1)
+        of_bodies[self._solid] = np.arange(bodies)
+        of_geoms = np.append(of_bodies[self._model.geom_bodyid], -1)  # a flex is geom -1
+        contacts = _joined(self._contacts)
+        frames = []
+        for side in ("geom_a", "geom_b"):
+            body = of_geoms[contacts[side]]
+            frames.append(np.where(body >= 0, contacts["row"] * bodies + body, -1))
+        origins = self._origins[:rows].reshape(rows * bodies, 3)
+        return wrenches_on_frames(contacts, *frames, origins).reshape(rows, bodies, 6)
 
     def _stop(self, data: mujoco.MjData, row: int) -> None:
         if row == 0:  # MuJoCo has gone back to the start, which is the state of this row
@@ -345,12 +360,8 @@ class RunRecorder:
     def _keep_evaluation(self, row: int, data: mujoco.MjData) -> None:
         self._position[row] = data.xpos[self._ids]
         self._quaternion[row] = data.xquat[self._ids]
-        velocity = np.zeros(6)
-        for i, body in enumerate(self._ids):
-            kind = int(mujoco.mjtObj.mjOBJ_XBODY)
-            mujoco.mj_objectVelocity(self._model, data, kind, body, velocity, 0)
-            self._spin[row, i] = np.linalg.norm(velocity[:3])
-            self._speed[row, i] = np.linalg.norm(velocity[3:])
+        for body, twist in zip(self._ids, self._twist[row], strict=True):
+            mujoco.mj_objectVelocity(self._model, data, _FRAME_OF_BODY, body, twist, 0)
         self._outside.keep_power(row, data)
         self._probe.update_touch(data)
         self._sensors[row] = data.sensordata
@@ -362,14 +373,12 @@ class RunRecorder:
         self._dissipated[row] = energy.by_channel
         sites = self._probe.sites(data)
         if len(sites):
-            forces = np.linalg.norm(sites["force"], axis=1)
-            depth = sites["depth"].max()
-            self._contact[row] = forces.sum(), forces.max(), len(sites), depth
             self._sites.append(_in_run(sites, row))
-        contacts = self._probe.contacts(data)
+        contacts = self._probe.contacts(data, sites)
         if len(contacts):
-            on_bodies = wrenches_on_bodies(contacts, self._geom_bodies, data.xpos)
-            self._wrenches[row] = on_bodies[self._solid]
+            is_known = contacts is sites
+            self._contacts.append(self._sites[-1] if is_known else _in_run(contacts, row))
+        self._origins[row] = data.xpos[self._solid]
         if row in self._frame_rows:
             shapes = self._probe.surfaces(data)
             self._frames.append(Frame(row, float(self._time[row]), sites, shapes))
@@ -406,8 +415,23 @@ def _in_run(sites: np.ndarray, row: int) -> np.ndarray:
     rows = np.zeros(len(sites), SITE_IN_RUN)
     rows["row"] = row
     for name in SITE.names or ():
-        rows[name] = sites[name]
+        if name in sites.dtype.fields:
+            rows[name] = sites[name]
     return rows
+
+
+def _joined(parts: list[np.ndarray]) -> np.ndarray:
+    """Arrays of `SITE_IN_RUN` in one; as records, NumPy would match their names part by part."""
+    plain = f"V{SITE_IN_RUN.itemsize}"
+    joined = np.concatenate([np.zeros(0, plain), *(part.view(plain) for part in parts)])
+    return joined.view(SITE_IN_RUN)
+
+
+def _largest(rows: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
+    """The largest of the values of each row; 0 where there is none."""
+    largest = np.zeros(count)
+    np.maximum.at(largest, rows, values)
+    return largest
 
 
 def _frame_rows(steps: int, timestep: float, interval: float | None) -> frozenset[int]:

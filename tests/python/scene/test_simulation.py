@@ -5,6 +5,7 @@ import mujoco
 import numpy as np
 import pytest
 
+import volcontact as vc
 from volcontact.running.recording import CHANNELS
 from volcontact.running.simulation import SimulationError, simulate
 
@@ -236,3 +237,52 @@ def test_body_that_another_carries_is_followed_on_demand():
     run = simulate(text, duration=0.01, frame_interval=None, follow=["held", "nobody"])
     assert run.bodies == ("held", "carrier")
     np.testing.assert_allclose(run.position[-1], [[0, 0, 0.5], [0, 0, 0]])
+
+
+TWO_BALLS = """
+<mujoco>
+  <option timestep="1e-3"/>
+  <worldbody>
+    <geom name="floor" type="plane" size="5 5 1"/>
+    <body name="ours" pos="0 0 .0505"><freejoint/><geom name="ours" size=".05" mass="1"/></body>
+    <body name="theirs" pos="1 2 .0505"><freejoint/><geom name="theirs" size=".05" mass="1"/></body>
+  </worldbody>
+  <keyframe><key name="start" qpos="0 0 .0505 1 0 0 0  1 2 .0505 1 0 0 0"
+    qvel=".2 0 0 0 5 1  0 .3 0 2 0 4"/></keyframe>
+  <custom>
+    <numeric name="volcontact/option/pairs/listed" data="1"/>
+    <tuple name="volcontact/pair/p"><element objtype="geom" objname="floor"/>
+      <element objtype="geom" objname="ours"/></tuple>
+  </custom>
+</mujoco>
+"""
+
+
+def test_rows_have_what_contact_tells_after_each_step_of_both_kinds_of_contact():
+    run = simulate(TWO_BALLS, duration=0.1, frame_interval=None)
+    assert (run.wrench_on["ours"][-1, 2] > 0.0) and (run.wrench_on["theirs"][-1, 2] > 0.0)
+    model = vc.load(TWO_BALLS)
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    velocity = np.zeros(6)
+    with vc.attach(model) as contact:
+        for row in range(len(run.time) - 1):
+            mujoco.mj_step(model, data)
+            sites, n = contact.sites(data), run.site_count[row]
+            forces = [np.linalg.norm(force) for force in sites["force"]]
+            assert n == len(sites) == np.count_nonzero(run.sites["row"] == row)
+            assert run.contact_force[row] == pytest.approx(sum(forces), rel=1e-14)
+            assert run.largest_site_force[row] == pytest.approx(max(forces, default=0.0), rel=1e-14)
+            assert run.penetration[row] == max(sites["depth"], default=0.0)
+            for i, name in enumerate(run.bodies):
+                wrench, kind = np.zeros(6), mujoco.mjtObj.mjOBJ_XBODY
+                for touch in contact.contact_forces(data):
+                    sign = int(touch["geom_a"] == i + 1) - int(touch["geom_b"] == i + 1)
+                    arm = touch["position"] - data.body(name).xpos
+                    wrench[:3] += sign * touch["force"]
+                    wrench[3:] += sign * (touch["torque"] + np.cross(arm, touch["force"]))
+                size = 1e-14 * np.linalg.norm(wrench)
+                np.testing.assert_allclose(run.wrench_on[name][row], wrench, atol=size)
+                mujoco.mj_objectVelocity(model, data, kind, i + 1, velocity, 0)
+                assert run.spin[row, i] == pytest.approx(np.linalg.norm(velocity[:3]), rel=1e-14)
+                assert run.speed[row, i] == pytest.approx(np.linalg.norm(velocity[3:]), rel=1e-14)
