@@ -338,12 +338,14 @@ class RunRecorder:
         of_bodies[self._solid] = np.arange(bodies)
         of_geoms = np.append(of_bodies[self._model.geom_bodyid], -1)  # a flex is geom -1
         contacts = _joined(self._contacts)
-        frames = []
-        for side in ("geom_a", "geom_b"):
+
+        def frames(side: str) -> np.ndarray:
             body = of_geoms[contacts[side]]
-            frames.append(np.where(body >= 0, contacts["row"] * bodies + body, -1))
+            return np.where(body >= 0, contacts["row"] * bodies + body, -1)
+
         origins = self._origins[:rows].reshape(rows * bodies, 3)
-        return wrenches_on_frames(contacts, *frames, origins).reshape(rows, bodies, 6)
+        found = wrenches_on_frames(contacts, frames("geom_a"), frames("geom_b"), origins)
+        return found.reshape(rows, bodies, 6)
 
     def _stop(self, data: mujoco.MjData, row: int) -> None:
         if row == 0:  # MuJoCo has gone back to the start, which is the state of this row
@@ -415,7 +417,7 @@ def _in_run(sites: np.ndarray, row: int) -> np.ndarray:
     rows = np.zeros(len(sites), SITE_IN_RUN)
     rows["row"] = row
     for name in SITE.names or ():
-        if name in sites.dtype.fields:
+        if name in (sites.dtype.names or ()):
             rows[name] = sites[name]
     return rows
 

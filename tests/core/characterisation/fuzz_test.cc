@@ -17,7 +17,7 @@ TEST(Fuzz, NoPairFails) {
   for (const char* pair :
        {"half_space-capsule", "sphere-sphere", "box-box", "ellipsoid-box", "cylinder-sphere",
         "box-capsule", "box-cylinder", "frustum-box", "cylinder-frustum"}) {
-    const int poses = test::cases(40, 15, 10);
+    const int poses = test::cases(40, 10, 10);
     const FuzzReport report =
         fuzz({.random_poses = poses, .degenerate_poses = poses, .seed = 7, .only = pair});
     int overlapping = 0;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/support/sanitized.h"
+
 namespace volcontact::test::line_oracle_test {
 namespace {
 
@@ -61,7 +63,7 @@ TEST(LineOracle, KnowsTheVolumesOfOverlaps) {
 // Few lines meet a needle at first: what they saw of it is not all there is.
 TEST(LineOracle, KnowsNeedles) {
   Random random(4);
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < test::cases(60, 24, 24); ++i) {
     const double r = random.log_uniform(2e-5, 1e-2), h = random.uniform(0.05, 0.3);
     const bool is_cone = i % 2 == 1;
     const ImplicitSolid needle =

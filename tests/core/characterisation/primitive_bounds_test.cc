@@ -101,7 +101,7 @@ Shape sharp_cone(Random& random) {
   return Frustum({.bottom_radius = tip, .top_radius = base, .half_length = height});
 }
 
-const int kPoses = cases(12, 6, 2);
+const int kPoses = cases(12, 3, 2);
 
 TEST(PrimitiveBounds, HoldForSharpConesWithAllOthers) {
   for (int kind = 0; kind <= 5; ++kind) {

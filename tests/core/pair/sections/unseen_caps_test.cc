@@ -37,7 +37,7 @@ double volume_of_columns(const Mat3& M, double radius, double low) {
 // alike: half-planes pass beside the two caps, and what they see of the surface is closed.
 TEST(UnseenCaps, OfEllipsoidsInCylinders) {
   test::Random random(61);
-  for (int i = 0; i < test::cases(150, 5); ++i) {
+  for (int i = 0; i < test::cases(150, 50, 5); ++i) {
     const Vec3 axes(random.uniform(0.15, 0.4), random.uniform(0.05, 0.4),
                     random.uniform(0.05, 0.2));
     const Mat3 R = random.rotation();

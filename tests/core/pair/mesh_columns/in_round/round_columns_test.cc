@@ -289,7 +289,7 @@ TEST(RoundColumns, ABarThroughTheMiddleTakesItsPart) {
       Frustum({.bottom_radius = 0.3, .top_radius = 0.2, .half_length = 0.2})};
   Random random(21);
   for (const Shape& b : solids) {
-    for (int axis = 0; axis < test::cases(3, 1); ++axis) {
+    for (int axis = 0; axis < test::cases(3, 1, 1); ++axis) {
       Vec3 half(0.1, 0.1, 0.1);
       half[axis] = 0.4;
       const Box box({.half_sizes = half});

@@ -231,7 +231,7 @@ TEST(ComposedColumns, NoSurfaceIsSmallerThanItsAreaVector) {
   const ConvexPolytope gem = test::random_polytope(18, random);
   const Csg block = testing::box(.8, .8, .5) - testing::tube(.3, 1.) -
                     testing::tube(.5, .4, testing::at(0, 0, .6));
-  const int kPoses = test::cases(3000, 800, 50);
+  const int kPoses = test::cases(3000, 300, 50);
   int served = 0;
   for (int k = 0; k < kPoses; ++k) {
     const Pose X_AB = random.pose(1.2);

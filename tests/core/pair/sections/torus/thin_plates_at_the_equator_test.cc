@@ -37,7 +37,7 @@ double volume_of_lines(const ImplicitSolid& plate, const ImplicitSolid& ring, do
 // symmetric, show that in few of them.
 TEST(ThinPlatesAtTheEquator, VolumeIsAsGoodAsItClaims) {
   test::Random random(51);
-  for (int i = 0; i < test::cases(60, 20, 4); ++i) {
+  for (int i = 0; i < test::cases(60, 10, 4); ++i) {
     const double r = random.uniform(0.03, 0.1), R = i % 2 == 0 ? r : r * random.uniform(1.0, 3.0);
     const double half = random.log_uniform(1e-4, 3e-3),
                  depth = 2.0 * half * random.uniform(0.7, 1.3);
