@@ -34,6 +34,8 @@ include_patterns = [
     "python/examples/*.md",
     "python/volcontact/templates/tour/tour.ipynb",
 ]
+# Sphinx looks through every folder that is not named here.
+exclude_patterns = [".*", "build", "tests", "**/__pycache__"]
 root_doc = "docs/index"
 html_theme = "furo"
 html_title = "volcontact"
