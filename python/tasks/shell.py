@@ -8,6 +8,7 @@ import fcntl
 import os
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import IO, Any, NoReturn
@@ -28,9 +29,22 @@ class Stopped(Exception):
         self.status = status
 
 
+_ASIDE = threading.local()  # `file`: where the work of a thread tells what it does
+
+
+@contextlib.contextmanager
+def aside(file: IO[str]) -> Iterator[None]:
+    """What this thread says, and the programs that it runs, goes to a file."""
+    _ASIDE.file = file
+    try:
+        yield
+    finally:
+        del _ASIDE.file
+
+
 def say(message: str) -> None:
     """Tells the user, beside the output of the programs that run."""
-    print(f"run: {message}", file=sys.stderr, flush=True)
+    print(f"run: {message}", file=getattr(_ASIDE, "file", sys.stderr), flush=True)
 
 
 def stop(message: str, status: int = 1) -> NoReturn:
@@ -51,12 +65,13 @@ def run(
     """
     words = [str(word) for word in command]
     sys.stdout.flush()
+    log = log or getattr(_ASIDE, "file", None)
     done = subprocess.run(
         words,
         cwd=cwd,
         env={**os.environ, **(env or {})},
-        stdout=log or table,
-        stderr=subprocess.STDOUT if log else None,
+        stdout=table or log,
+        stderr=subprocess.STDOUT if log and not table else log,
         check=False,
     )
     if done.returncode != 0:

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import os
+import sys
+import tempfile
 import threading
 import time
 import traceback
@@ -11,7 +14,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from tasks.shell import Stopped
+from tasks.shell import Stopped, aside
 
 
 @dataclass
@@ -29,13 +32,25 @@ class Stages:
         self.rows.append((word, title, time.monotonic() - start))
         return word == "ok"
 
-    def beside(self, title: str, work: Callable[[], None]) -> Callable[[], bool]:
-        """The same while other parts run. Call what is returned to wait for its end."""
+    def beside(
+        self, title: str, work: Callable[[], None], *, idle: bool = False
+    ) -> Callable[[], bool]:
+        """The same while other parts run. Call what is returned to wait for its end.
+
+        Args:
+            title: of the part.
+            work: tells what it does when it is waited for.
+            idle: takes only what time the others leave.
+        """
         outcome: list[tuple[str, float]] = []
+        told = tempfile.TemporaryFile("a+", encoding="utf-8")  # noqa: SIM115 (`wait` closes it)
 
         def body() -> None:
+            if idle and sys.platform == "linux":  # where a priority is that of a thread
+                os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), 19)
             start = time.monotonic()
-            word = _outcome(work)
+            with aside(told):
+                word = _outcome(work)
             outcome.append((word, time.monotonic() - start))
 
         thread = threading.Thread(target=body)
@@ -45,6 +60,10 @@ class Stages:
             thread.join()
             ((word, seconds),) = outcome
             self.rows.append((word, f"{title} (beside others)", seconds))
+            told.seek(0)
+            if text := told.read():
+                print(f"\n==== {title} (beside others)\n{text}", end="", flush=True)
+            told.close()
             return word == "ok"
 
         return wait

@@ -84,8 +84,18 @@ def _test_all(stages: Stages) -> None:
         stages.run("Core: C++ tests", lambda: ctest(CORE, "cpp-core"))
     cgal()
     stages.run("fmi-sim, a master of FMUs", lambda: _build_fmi_sim(stages))
-    for number, release in enumerate(releases):
-        _test_release(stages, release, everything=number == 0)
+    tested = [_Release(release) for release in releases]
+    tested[0].is_built = stages.run(tested[0].title, tested[0].set_up)
+    for place, release in enumerate(tested):
+        release.test_in_cpp(stages)
+        # Tests in Python wait for browsers, for disks, for what they have killed.
+        built = [
+            (following, stages.beside(following.title, following.set_up, idle=True))
+            for following in tested[place + 1 : place + 2]
+        ]
+        release.test_in_python(stages, everything=place == 0)
+        for following, wait in built:
+            following.is_built = wait()
 
 
 def _furnish(releases: list[str]) -> None:
@@ -117,34 +127,45 @@ def _build_fmi_sim(stages: Stages) -> None:
         stages.note("NOT RUN", f"FMUS IN FMI-SIM: {error}")
 
 
-def _test_release(stages: Stages, release: str, *, everything: bool) -> None:
-    made: list[Environment] = []
-    missing: list[NoPython] = []
+class _Release:
+    """One MuJoCo release."""
 
-    def set_up() -> None:
+    def __init__(self, release: str) -> None:
+        self.title = f"MuJoCo {release}: set-up and builds"
+        self.is_built = False
+        self._release = release
+        self._made: Environment | None = None
+        self._is_missing = False
+
+    def set_up(self) -> None:
+        """Its environment, adaptor and C++ tests."""
         try:
-            made.append(prepared(release, tests=True))
-            _build_adaptor_tests(made[0])
-        except NoPython as error:
-            if release != BASELINE or os.environ.get("CI") == "true":
+            self._made = prepared(self._release, tests=True)
+            _build_adaptor_tests(self._made)
+        except NoPython:
+            if self._release != BASELINE or os.environ.get("CI") == "true":
                 raise
-            missing.append(error)
+            self._is_missing = True
 
-    built = stages.run(f"MuJoCo {release}: set-up and builds", set_up)
-    if missing:
-        stages.run(f"MuJoCo {release}: C++ tests, on Debian's library", _ctest_on_system)
-        stages.note("NOT RUN", f"MuJoCo {release}: ALL PYTHON TESTS, for want of Python 3.10")
-    if not made:
-        return
-    name = f"mujoco-{made[0].version}"
-    if built:
-        stages.run(
-            f"MuJoCo {made[0].version}: C++ tests",
-            lambda: ctest(made[0].tree, f"{name}-cpp"),
-        )
-    once = not everything and "VOLCONTACT_SOAK" not in os.environ
-    arguments = ["--again", *_IGNORED] if once else []
-    stages.run(f"MuJoCo {made[0].version}: Python tests", lambda: pytest(made[0], arguments))
+    def test_in_cpp(self, stages: Stages) -> None:
+        """The adaptor."""
+        if self._is_missing:
+            title = f"MuJoCo {self._release}: C++ tests, on Debian's library"
+            stages.run(title, _ctest_on_system)
+        if (made := self._made) and self.is_built:
+            name = f"mujoco-{made.version}-cpp"
+            stages.run(f"MuJoCo {made.version}: C++ tests", lambda: ctest(made.tree, name))
+
+    def test_in_python(self, stages: Stages, *, everything: bool) -> None:
+        """All tests in Python, or those that the release can change."""
+        if self._is_missing:
+            title = f"MuJoCo {self._release}: ALL PYTHON TESTS, for want of Python 3.10"
+            stages.note("NOT RUN", title)
+        if not (made := self._made):
+            return
+        once = not everything and "VOLCONTACT_SOAK" not in os.environ
+        arguments = ["--again", *_IGNORED] if once else []
+        stages.run(f"MuJoCo {made.version}: Python tests", lambda: pytest(made, arguments))
 
 
 def _build_adaptor_tests(environment: Environment) -> None:

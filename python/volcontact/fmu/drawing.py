@@ -160,9 +160,8 @@ def _is_number(word: str) -> bool:
 def _cloud(shape: str, p: list[float]) -> np.ndarray:
     u = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
     v = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 25)
-    ball = np.array(
-        [(np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)) for a in u for b in v]
-    )
+    a, b = np.repeat(u, len(v)), np.tile(v, len(u))
+    ball = np.column_stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)])
     ring = np.column_stack([np.cos(u), np.sin(u)])
 
     def rings(*levels: tuple[float, float]) -> np.ndarray:
