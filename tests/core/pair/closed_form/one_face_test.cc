@@ -77,7 +77,7 @@ template <typename B>
 void expect_right(const Shape& round, const B& planar, std::uint64_t seed) {
   test::Random random(seed);
   // Cells take long with a torus.
-  const int runs = std::holds_alternative<Torus>(round) ? 24 : test::cases(90, 36, 18);
+  const int runs = std::holds_alternative<Torus>(round) ? 24 : test::cases(90, 36, 36);
   int by_formula = 0, others = 0;
   for (int i = 0; i < runs; ++i) {
     const Pose X_AB = near_a_side(random, i % 6).inverse();
