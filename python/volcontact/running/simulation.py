@@ -221,8 +221,9 @@ class RunRecorder:
         self._outside = OutsideWork(model, rows)
         self._microseconds = np.zeros(steps)
         self._frames: list[Frame] = []
-        self._sites: list[np.ndarray] = []
-        self._contacts: list[np.ndarray] = []
+        # By row: one may be evaluated again, or be the one at which the run stops.
+        self._sites: dict[int, np.ndarray] = {}
+        self._contacts: dict[int, np.ndarray] = {}
         self._frame_rows = _frame_rows(steps, float(model.opt.timestep), frame_interval)
         self._warnings: dict[str, int] = {}
         self._dropped = 0
@@ -282,7 +283,7 @@ class RunRecorder:
         """Packs what was recorded."""
         n = self._rows
         kinetic, potential, elastic, work, numerical, driven, made = self._energies[:n].T
-        sites = _joined(self._sites)
+        sites = _joined(self._sites, n)
         forces = np.linalg.norm(sites["force"], axis=1)
         wrenches = self._wrenches(n)
         gravity = np.linalg.norm(self._model.opt.gravity)
@@ -337,7 +338,7 @@ class RunRecorder:
         of_bodies = np.full(self._model.nbody, -1)
         of_bodies[self._solid] = np.arange(bodies)
         of_geoms = np.append(of_bodies[self._model.geom_bodyid], -1)  # a flex is geom -1
-        contacts = _joined(self._contacts)
+        contacts = _joined(self._contacts, rows)
 
         def frames(side: str) -> np.ndarray:
             body = of_geoms[contacts[side]]
@@ -374,12 +375,10 @@ class RunRecorder:
         self._energies[row] = kinetic, potential, *of_contact
         self._dissipated[row] = energy.by_channel
         sites = self._probe.sites(data)
-        if len(sites):
-            self._sites.append(_in_run(sites, row))
+        self._sites[row] = _in_run(sites, row)
         contacts = self._probe.contacts(data, sites)
-        if len(contacts):
-            is_known = contacts is sites
-            self._contacts.append(self._sites[-1] if is_known else _in_run(contacts, row))
+        is_known = contacts is sites
+        self._contacts[row] = self._sites[row] if is_known else _in_run(contacts, row)
         self._origins[row] = data.xpos[self._solid]
         if row in self._frame_rows:
             shapes = self._probe.surfaces(data)
@@ -422,11 +421,11 @@ def _in_run(sites: np.ndarray, row: int) -> np.ndarray:
     return rows
 
 
-def _joined(parts: list[np.ndarray]) -> np.ndarray:
+def _joined(parts: dict[int, np.ndarray], rows: int) -> np.ndarray:
     """Arrays of `SITE_IN_RUN` in one; as records, NumPy would match their names part by part."""
     plain = f"V{SITE_IN_RUN.itemsize}"
-    joined = np.concatenate([np.zeros(0, plain), *(part.view(plain) for part in parts)])
-    return joined.view(SITE_IN_RUN)
+    kept = (part.view(plain) for row, part in parts.items() if row < rows)
+    return np.concatenate([np.zeros(0, plain), *kept]).view(SITE_IN_RUN)
 
 
 def _largest(rows: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
