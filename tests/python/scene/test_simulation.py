@@ -286,3 +286,14 @@ def test_rows_have_what_contact_tells_after_each_step_of_both_kinds_of_contact()
                 mujoco.mj_objectVelocity(model, data, kind, i + 1, velocity, 0)
                 assert run.spin[row, i] == pytest.approx(np.linalg.norm(velocity[:3]), rel=1e-14)
                 assert run.speed[row, i] == pytest.approx(np.linalg.norm(velocity[3:]), rel=1e-14)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_run_that_stops_under_runge_kutta_has_the_sites_of_its_rows_once(kind):
+    text = ball(0.049, "RK4").replace(
+        "<custom>", '<keyframe><key name="start" qvel="0 0 1e300 0 0 0"/></keyframe><custom>'
+    )
+    run = simulate(text, contact=kind, duration=0.01, frame_interval=None)
+    assert run.stopped is not None
+    assert len(run.time) == len(run.contact_force) == len(run.site_count) == 1
+    assert run.site_count[0] == len(run.sites) <= 1
