@@ -50,9 +50,12 @@ class Findings {
   void expect(const Findings& ours) const {
     ASSERT_EQ(ours.numbers_.size(), numbers_.size());
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
-      ASSERT_EQ(ours.numbers_[i].size(), numbers_[i].size()) << "number " << i;
-      // At 0 the same: norms of differences are 0 for equal numbers alone.
-      EXPECT_LE((ours.numbers_[i] - numbers_[i]).norm(), tolerances_[i]) << "number " << i;
+      ASSERT_EQ(ours.numbers_[i].rows(), numbers_[i].rows()) << "number " << i;
+      ASSERT_EQ(ours.numbers_[i].cols(), numbers_[i].cols()) << "number " << i;
+      // Squares of tiny differences are 0: the same numbers are asked for by themselves.
+      const bool is_near = (ours.numbers_[i] - numbers_[i]).norm() <= tolerances_[i];
+      EXPECT_TRUE(tolerances_[i] > 0.0 ? is_near : ours.numbers_[i] == numbers_[i])
+          << "number " << i;
     }
   }
 
