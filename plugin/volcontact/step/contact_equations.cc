@@ -34,36 +34,66 @@ bool ContactEquations::is_of_normal_slopes() const {
 
 void ContactEquations::factor_normal(const ContactSpace& space, double step) {
   by_.is_valid = false;
+  by_.rubs = may_rub;
   by_.slopes.clear();
   by_.pressed.clear();
   by_.roots.clear();
-  by_.rubbed.clear();
+  by_.frictions.clear();
   for (int place = 0; place < space.places(); ++place) {
     const Mat3& slope = by_.slopes.emplace_back(slopes[size(place)].normal);
-    if (slope.isZero(0.0)) continue;
+    if (slopes[size(place)].is_zero()) continue;
     by_.pressed.push_back(place);
     by_.roots.push_back(cholesky(slope));
   }
   const bool is_symmetric = space.is_symmetric();
   const int count = static_cast<int>(by_.pressed.size());
-  by_.normal.reset(count, is_symmetric);
-  for (int i = 0; i < count; ++i) {
-    const Mat3 left = (step * by_.roots[size(i)]).transpose();
-    for (int k = 0; k < (is_symmetric ? i + 1 : count); ++k) {
-      const ContactSpace::Square& lambda =
-          space.delassus(by_.pressed[size(i)], by_.pressed[size(k)]);
-      by_.normal(i, k) = left * (lambda.block<3, 3>(0, 0) * by_.roots[size(k)]);
-    }
-    for (int k = 0; k < 3; ++k) by_.normal(i, i)(k, k) += 1.0;
-  }
-  by_.normal.factor();
+  by_.whole.resize(size(count));
+  by_.pressing.reset(by_.rubs ? 6 * count : 3 * count, is_symmetric);
+  for (int k = 0; k < count; ++k) set_columns(space, step, k);
+  by_.pressing.eliminate(3 * count);
   by_.is_valid = true;
+}
+
+// The columns of a place, of a symmetric matrix from the diagonal on.
+void ContactEquations::set_columns(const ContactSpace& space, double step, int k) {
+  const int count = static_cast<int>(by_.pressed.size());
+  const bool is_symmetric = by_.pressing.is_symmetric();
+  const int place = by_.pressed[size(k)];
+  responses_.resize(kRows * space.stride());
+  multiply_by_root(space.delassus(place), space.stride(), step * by_.roots[size(k)],
+                   responses_.data());
+  for (int c = 0; c < 3; ++c) {
+    const double* const from = responses_.data() + size(c) * space.stride();
+    double* const to = by_.pressing.column(3 * k + c);
+    for (int i = is_symmetric ? k : 0; i < count; ++i) {
+      const Vec3 moved = Vec3::from(from + kRows * by_.pressed[size(i)]);
+      by_.roots[size(i)].transposed_times(moved).to(to + 3 * i);
+    }
+    to[3 * k + c] += 1.0;
+    if (!by_.rubs) continue;
+    for (int i = 0; i < count; ++i) {
+      Vec3::from(from + kRows * by_.pressed[size(i)] + 3).to(to + 3 * (count + i));
+    }
+  }
+  if (!by_.rubs) return;
+  for (int c = 0; c < 3; ++c) {
+    const double* const from = space.delassus(place) + size(3 + c) * space.stride();
+    double* const to = by_.pressing.column(3 * (count + k) + c);
+    for (int i = 0; !is_symmetric && i < count; ++i) {
+      const Vec3 moved = step * Vec3::from(from + kRows * by_.pressed[size(i)]);
+      by_.roots[size(i)].transposed_times(moved).to(to + 3 * i);
+    }
+    for (int i = is_symmetric ? k : 0; i < count; ++i) {
+      (step * Vec3::from(from + kRows * by_.pressed[size(i)] + 3)).to(to + 3 * (count + i));
+    }
+    by_.whole[size(k)][c] = to[3 * (count + k) + c];
+  }
 }
 
 bool ContactEquations::knows_all_that_rub() const {
   std::size_t next = 0;
   for (std::size_t place = 0; place < slopes.size(); ++place) {
-    const bool is_known = next < by_.rubbed.size() && by_.rubbed[next] == static_cast<int>(place);
+    const bool is_known = next < by_.pressed.size() && by_.pressed[next] == static_cast<int>(place);
     if (is_known) ++next;
     if (!is_known && !slopes[place].friction.isZero(0.0)) return false;
   }
@@ -71,119 +101,77 @@ bool ContactEquations::knows_all_that_rub() const {
 }
 
 bool ContactEquations::is_of_frictions() const {
-  return std::equal(
-      by_.rubbed.begin(), by_.rubbed.end(), by_.frictions.begin(), by_.frictions.end(),
-      [this](int place, const Vec3& friction) { return slopes[size(place)].friction == friction; });
-}
-
-// R, and what leads to it.
-void ContactEquations::respond_to_friction(const ContactSpace& space, double step) {
-  const bool is_symmetric = space.is_symmetric();
-  by_.rubbed.clear();
-  for (int place = 0; place < space.places(); ++place) {
-    if (!slopes[size(place)].friction.isZero(0.0)) by_.rubbed.push_back(place);
-  }
-  const std::size_t pressed = by_.pressed.size(), rubbed = by_.rubbed.size();
-  by_.W.resize(rubbed * pressed);
-  by_.V.resize(rubbed * pressed);
-  by_.R.resize(rubbed * rubbed);
-  by_.whole.resize(rubbed);
-  by_.frictions.clear();
-  for (std::size_t j = 0; j < rubbed; ++j) {
-    const int place = by_.rubbed[j];
-    Mat3* const to_press = &by_.W[j * pressed];
-    Mat3* const from_press = &by_.V[j * pressed];
-    for (std::size_t i = 0; i < pressed; ++i) {
-      const int other = by_.pressed[i];
-      const Mat3 left = (step * by_.roots[i]).transpose();
-      if (is_symmetric && place > other) {
-        to_press[i] = left * space.delassus(place, other).block<3, 3>(3, 0).transpose();
-      } else {
-        to_press[i] = left * space.delassus(other, place).block<3, 3>(0, 3);
-      }
-      if (is_symmetric) continue;
-      from_press[i] = left * space.delassus(place, other).block<3, 3>(3, 0).transpose();
-    }
-    by_.normal.solve_lower(to_press);
-    if (!is_symmetric) by_.normal.solve_transposed_upper(from_press);
-    for (std::size_t i = 0; i < pressed; ++i) {
-      from_press[i] = (is_symmetric ? to_press[i] : from_press[i]).transpose();
-    }
-  }
-  for (std::size_t j = 0; j < rubbed; ++j) {
-    for (std::size_t k = 0; k < (is_symmetric ? j + 1 : rubbed); ++k) {
-      const ContactSpace::Square& lambda = space.delassus(by_.rubbed[j], by_.rubbed[k]);
-      Mat3 response = step * lambda.block<3, 3>(3, 3);
-      if (j == k) by_.whole[j] = response.diagonal();
-      for (std::size_t i = 0; i < pressed; ++i) {
-        response -= by_.V[j * pressed + i] * by_.W[k * pressed + i];
-      }
-      by_.R[j * rubbed + k] = response;
-    }
-  }
+  return by_.frictions.size() == by_.pressed.size() &&
+         std::equal(by_.pressed.begin(), by_.pressed.end(), by_.frictions.begin(),
+                    [this](int place, const Vec3& friction) {
+                      return slopes[size(place)].friction == friction;
+                    });
 }
 
 void ContactEquations::factor_friction() {
-  const std::size_t count = by_.rubbed.size();
-  const bool is_symmetric = by_.normal.is_symmetric();
+  const int count = static_cast<int>(by_.pressed.size()), first = 3 * count;
+  const bool is_symmetric = by_.pressing.is_symmetric();
   by_.frictions.clear();
   by_.friction_roots.clear();
   rubbing_.clear();
-  for (std::size_t j = 0; j < count; ++j) {
-    const Vec3& slope = by_.frictions.emplace_back(slopes[size(by_.rubbed[j])].friction);
+  for (int j = 0; j < count; ++j) {
+    const Vec3& slope = by_.frictions.emplace_back(slopes[size(by_.pressed[size(j)])].friction);
     by_.friction_roots.push_back(slope.cwiseSqrt());
-    rubbing_.push_back(Vec3::Constant(1.0) + slope.cwiseProduct(by_.whole[j]));
+    const Vec3 whole = Vec3::Constant(1.0) + slope.cwiseProduct(by_.whole[size(j)]);
+    rubbing_.insert(rubbing_.end(), whole.begin(), whole.end());
   }
-  by_.friction.reset(static_cast<int>(count), is_symmetric);
-  for (std::size_t j = 0; j < count; ++j) {
-    const auto left = by_.friction_roots[j].asDiagonal();
-    for (std::size_t k = 0; k < (is_symmetric ? j + 1 : count); ++k) {
-      const auto right = by_.friction_roots[k].asDiagonal();
-      by_.friction(static_cast<int>(j), static_cast<int>(k)) = left * by_.R[j * count + k] * right;
-    }
-    Mat3& own = by_.friction(static_cast<int>(j), static_cast<int>(j));
-    for (int k = 0; k < 3; ++k) own(k, k) += 1.0;
+  const double* const root = by_.friction_roots.data()->data();
+  by_.rubbing.reset(first, is_symmetric);
+  for (int i = 0; i < first; ++i) {
+    const double* const from = by_.pressing.column(first + i) + first;
+    double* const to = by_.rubbing.column(i);
+    for (int k = is_symmetric ? i : 0; k < first; ++k) to[k] = root[i] * from[k] * root[k];
+    to[i] += 1.0;
   }
-  by_.friction.factor(rubbing_.data());
+  by_.rubbing.eliminate(first, rubbing_.data());
 }
 
 // Takes L y off the forces.
 void ContactEquations::take_off(const ContactSpace& space, double step,
                                 std::vector<double>& force) {
-  if (!is_of_normal_slopes()) factor_normal(space, step);
+  if (!is_of_normal_slopes() || !knows_all_that_rub()) factor_normal(space, step);
   const std::size_t pressed = by_.pressed.size();
-  const auto at = [&](int place) { return &response_[size(kRows * place)]; };
-  pressing_.resize(pressed);
+  const auto at = [&](std::size_t i) { return &response_[size(kRows * by_.pressed[i])]; };
+  const bool rubs = has_friction();
+  pressing_.assign(size(by_.pressing.size() + kLanes), 0.0);
   for (std::size_t i = 0; i < pressed; ++i) {
-    pressing_[i] = by_.roots[i].transposed_times(Vec3::from(at(by_.pressed[i])));
+    by_.roots[i].transposed_times(Vec3::from(at(i))).to(&pressing_[3 * i]);
+    if (rubs) Vec3::from(at(i) + 3).to(&pressing_[3 * (pressed + i)]);
   }
-  by_.normal.solve_lower(pressing_.data());
-  if (has_friction()) {
-    if (!knows_all_that_rub()) respond_to_friction(space, step);
+  by_.pressing.go_down(pressing_.data());
+  if (rubs) {
     if (!is_of_frictions()) factor_friction();
-    const std::size_t rubbed = by_.rubbed.size();
-    rubbing_.resize(rubbed);
-    for (std::size_t j = 0; j < rubbed; ++j) {
-      Vec3 motion = Vec3::from(at(by_.rubbed[j]) + 3);
-      for (std::size_t i = 0; i < pressed; ++i) motion -= by_.V[j * pressed + i] * pressing_[i];
-      rubbing_[j] = by_.friction_roots[j].cwiseProduct(motion);
+    rubbing_.assign(3 * pressed + kLanes, 0.0);
+    for (std::size_t j = 0; j < pressed; ++j) {
+      by_.friction_roots[j]
+          .cwiseProduct(Vec3::from(&pressing_[3 * (pressed + j)]))
+          .to(&rubbing_[3 * j]);
     }
-    by_.friction.solve(rubbing_.data());
-    for (std::size_t j = 0; j < rubbed; ++j) {
-      const Vec3 less = by_.friction_roots[j].cwiseProduct(rubbing_[j]);
-      double* const f = &force[size(kRows * by_.rubbed[j] + 3)];
+    by_.rubbing.go_down(rubbing_.data());
+    by_.rubbing.go_up(rubbing_.data());
+  }
+  if (by_.rubs) {
+    for (std::size_t j = 0; j < pressed; ++j) {
+      Vec3 less = Vec3::Zero();
+      if (rubs) less = by_.friction_roots[j].cwiseProduct(Vec3::from(&rubbing_[3 * j]));
+      less.to(&pressing_[3 * (pressed + j)]);
+      double* const f = &force[size(kRows * by_.pressed[j] + 3)];
       (Vec3::from(f) - less).to(f);
-      for (std::size_t i = 0; i < pressed; ++i) pressing_[i] -= by_.W[j * pressed + i] * less;
     }
   }
-  by_.normal.solve_upper(pressing_.data());
+  by_.pressing.go_up(pressing_.data());
   for (std::size_t i = 0; i < pressed; ++i) {
     double* const f = &force[size(kRows * by_.pressed[i])];
-    (Vec3::from(f) - by_.roots[i] * pressing_[i]).to(f);
+    (Vec3::from(f) - by_.roots[i] * Vec3::from(&pressing_[3 * i])).to(f);
   }
 }
 
-void ContactEquations::solve_for_forces(const ContactSpace& space, double step,
+void ContactEquations::solve_for_forces(ContactSpace& space, double step,
                                         std::vector<double>& force, std::vector<double>& velocity) {
   force.assign(constant.begin(), constant.end());
   velocity.resize(size(space.rows()));
@@ -200,7 +188,7 @@ void ContactEquations::keep_to_slopes(std::vector<double>& velocity) const {
   for (std::size_t i = 0; i < by_.pressed.size(); ++i) {
     double* const u = &velocity[size(kRows * by_.pressed[i])];
     const Mat3& root = by_.roots[i];
-    Vec3 left = pressing_[i] - root.transposed_times(Vec3::from(u));
+    Vec3 left = Vec3::from(&pressing_[3 * i]) - root.transposed_times(Vec3::from(u));
     for (int k = 2; k >= 0; --k) {
       for (int j = k + 1; j < 3; ++j) left[k] -= root(j, k) * left[j];
       left[k] = root(k, k) > 0.0 ? left[k] / root(k, k) : 0.0;
@@ -208,11 +196,11 @@ void ContactEquations::keep_to_slopes(std::vector<double>& velocity) const {
     (Vec3::from(u) + left).to(u);
   }
   if (!has_friction()) return;
-  for (std::size_t j = 0; j < by_.rubbed.size(); ++j) {
-    double* const u = &velocity[size(kRows * by_.rubbed[j] + 3)];
+  for (std::size_t j = 0; j < by_.pressed.size(); ++j) {
+    double* const u = &velocity[size(kRows * by_.pressed[j] + 3)];
     for (int k = 0; k < 3; ++k) {
       const double root = by_.friction_roots[j][k];
-      if (root > 0.0) u[k] = rubbing_[j][k] / root;
+      if (root > 0.0) u[k] = rubbing_[3 * j + size(k)] / root;
     }
   }
 }

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "volcontact/step/block_matrix.h"
 #include "volcontact/step/contact_space.h"
+#include "volcontact/step/dense_matrix.h"
 
 namespace volcontact {
 
@@ -29,6 +29,8 @@ struct ContactEquations {
   };
   std::vector<Slope> slopes;     ///< C, by places
   std::vector<double> constant;  ///< e
+  /// Whether friction may come before `forget`.
+  bool may_rub = true;
 
   /// To be called when the space, or the step, is another one: until then a matrix of the same C is
   /// factored once.
@@ -42,7 +44,7 @@ struct ContactEquations {
              std::vector<double>& velocity);
 
   // The two forms, of which a test wants both.
-  void solve_for_forces(const ContactSpace& space, double step, std::vector<double>& force,
+  void solve_for_forces(ContactSpace& space, double step, std::vector<double>& force,
                         std::vector<double>& velocity);
   void solve_for_dofs(ContactSpace& space, double step, std::vector<double>& force,
                       std::vector<double>& velocity);
@@ -55,20 +57,19 @@ struct ContactEquations {
     EnvelopeMatrix matrix;
   };
   // 1 + h L' Lambda L, where the first three coordinates of all places, n, are eliminated first:
-  // friction, which has the others, s, changes from solution to solution, and what is left is then
-  // 1 + Ls' R Ls, R = h Lambda_ss - V W, with G U of n, W = h G^-1 Ln' Lambda_ns and
-  // V = h Lambda_sn Ln U^-1.
+  // friction, which has the others, s, changes from solution to solution. What is left of them
+  // before they get their roots is R, and the matrix of friction 1 + Ls' R Ls.
   struct ByForces {
     bool is_valid = false;
-    std::vector<Mat3> slopes;  // C of n, by places
-    std::vector<int> pressed;  // the places where it is not zero, and there
-    std::vector<Mat3> roots;   // Ln
-    BlockMatrix<3> normal;
-    std::vector<int> rubbed;             // the places that R is of
-    std::vector<Mat3> W, V, R;           // by pairs of the two, those of a rubbed place together
-    std::vector<Vec3> whole, frictions;  // of h Lambda_ss the diagonal; C of s that was factored
-    std::vector<Vec3> friction_roots;    // Ls
-    BlockMatrix<3> friction;
+    bool rubs = false;                 // has R
+    std::vector<Mat3> slopes;          // C of n, by places
+    std::vector<int> pressed;          // the places where C is not zero, and there
+    std::vector<Mat3> roots;           // Ln
+    DenseMatrix pressing;              // of n, then s
+    std::vector<Vec3> whole;           // of h Lambda_ss the diagonal
+    std::vector<Vec3> frictions;       // C of s that was factored
+    std::vector<Vec3> friction_roots;  // Ls
+    DenseMatrix rubbing;
   };
 
   bool has_friction() const;
@@ -76,9 +77,9 @@ struct ContactEquations {
   void factor(ContactSpace& space, double step, ByDofs& out) const;
   bool is_of_normal_slopes() const;
   void factor_normal(const ContactSpace& space, double step);
+  void set_columns(const ContactSpace& space, double step, int k);
   bool knows_all_that_rub() const;
   bool is_of_frictions() const;
-  void respond_to_friction(const ContactSpace& space, double step);
   void factor_friction();
   void keep_to_slopes(std::vector<double>& velocity) const;
   void take_off(const ContactSpace& space, double step, std::vector<double>& force);
@@ -86,8 +87,8 @@ struct ContactEquations {
   // Without and with friction: one of the two comes back as it was, under other constants.
   ByDofs normal_by_dofs_, by_dofs_;
   ByForces by_;
-  std::vector<Vec3> pressing_, rubbing_;  // the right sides of n and of s
-  std::vector<double> right_, response_;
+  std::vector<double> pressing_, rubbing_;  // the right sides of n and s, and of s alone
+  std::vector<double> right_, response_, responses_;
 };
 
 }  // namespace volcontact

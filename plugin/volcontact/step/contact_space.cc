@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "volcontact/base/sizes.h"
+#include "volcontact/step/dense_matrix.h"
 
 namespace volcontact {
 
@@ -102,20 +103,27 @@ void ContactSpace::respond() {
   }
 }
 
+void ContactSpace::set_free_block(int i, int k, const Square& block) {
+  double* to = &free_delassus_[kRows * (size(k) * stride_ + size(i))];
+  for (int c = 0; c < kRows; ++c, to += stride_) block.col(c).to(to);
+}
+
 // J Mh^-1 J' of one place and those before it, or all. That of the place itself is its mobility.
 void ContactSpace::make_free_row(int place, int end) {
-  free_block(place, place) = free_mobility_[size(place)];
+  set_free_block(place, place, free_mobility_[size(place)]);
   if (place == 0 && end == 1) return;
+  const bool is_symmetric = matrix_.free_factor().is_symmetric();
   for (const Carried& one : carried(place)) {
     one.moved.to(&dense_[size(kRows * one.dof)]);
   }
   for (int other = 0; other < end; ++other) {
     if (other == place) continue;
-    Square& out = free_block(place, other);
-    out.setZero();
+    Square block = Square::Zero();
     for (const Carried& one : carried(other)) {
-      out += outer(Block::from(&dense_[size(kRows * one.dof)]), one.forced);
+      block += outer(Block::from(&dense_[size(kRows * one.dof)]), one.forced);
     }
+    set_free_block(place, other, block);
+    if (is_symmetric) set_free_block(other, place, block.transpose());
   }
   for (const Carried& one : carried(place)) {
     Block::Zero().to(&dense_[size(kRows * one.dof)]);
@@ -139,8 +147,8 @@ void ContactSpace::constrain_places() {
       for (Carried& one : carried(place)) one.massed *= factor.inverse_pivot(one.dof);
     }
   }
-  opened_.assign(size(places()) * columns.size(), Block::Zero());
-  closed_.assign(opened_.size(), Block::Zero());
+  opened_.assign(stride_ * columns.size(), 0.0);
+  closed_.assign(size(places()) * columns.size(), Block::Zero());
   const bool converts = matrix_.converts();
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const StepMatrix::Column& column = columns[c];
@@ -149,24 +157,26 @@ void ContactSpace::constrain_places() {
       return is_in_tree_[size(matrix_.tree_begin(one.dof))] != 0;
     };
     // For each place of its trees, what the column has in common with J.
-    const auto sum_up = [&](const std::vector<double>& values, Block Carried::* part,
-                            std::vector<Block>& out) {
+    const auto sum_up = [&](const std::vector<double>& values, Block Carried::* part, double* out,
+                            std::size_t next) {
       for (std::size_t k = 0; k < column.support.size(); ++k) {
         scalars_[size(column.support[k])] = values[k];
       }
       for (int place = 0; place < places(); ++place) {
         const std::span<const Carried> all = carried(place);
         if (all.empty() || !(is_near(all.front()) || is_near(all.back()))) continue;
-        Block& sum = out[size(place) * columns.size() + c];
+        Block sum = Block::Zero();
         for (const Carried& one : all) {
           const double value = scalars_[size(one.dof)];
           if (value != 0.0) sum += value * (one.*part);
         }
+        sum.to(out + size(place) * next);
       }
       for (const int dof : column.support) scalars_[size(dof)] = 0.0;
     };
-    sum_up(column.forced, &Carried::moved, opened_);
-    sum_up(column.constrained, converts ? &Carried::massed : &Carried::forced, closed_);
+    sum_up(column.forced, &Carried::moved, &opened_[c * stride_], kRows);
+    sum_up(column.constrained, converts ? &Carried::massed : &Carried::forced, closed_[c].data(),
+           kRows * columns.size());
     for (const int dof : column.support) is_in_tree_[size(matrix_.tree_begin(dof))] = 0;
   }
   const int count = static_cast<int>(columns.size());
@@ -175,11 +185,12 @@ void ContactSpace::constrain_places() {
   }
 }
 
-ContactSpace::Square ContactSpace::constrained(const Square& free, int place, int other) const {
-  Square out = free;
+ContactSpace::Square ContactSpace::constrained_mobility(int place) const {
+  Square out = free_mobility_[size(place)];
   const std::size_t count = matrix_.columns().size();
   for (std::size_t c = 0; c < count; ++c) {
-    out -= outer(opened_[size(place) * count + c], closed_[size(other) * count + c]);
+    out -= outer(Block::from(&opened_[c * stride_ + size(kRows * place)]),
+                 closed_[size(place) * count + c]);
   }
   return out;
 }
@@ -190,15 +201,14 @@ void ContactSpace::build_mobility() {
   mobility_.resize(size(places()));
   if (!prefers_dofs_) build_delassus();
   for (int place = 0; place < places(); ++place) {
-    mobility_[size(place)] = prefers_dofs_ ? constrained(free_mobility_[size(place)], place, place)
-                                           : delassus(place, place);
+    mobility_[size(place)] = constrained_mobility(place);
   }
 }
 
 // The form of less work, counted in multiplications and weighed as measured. Without symmetry both
 // take twice as much.
 void ContactSpace::choose_form() {
-  constexpr double kBlocks = 8.0, kPairs = 60.0;
+  constexpr double kBlocks = 2.0, kPairs = 20.0;
   double by_dofs = 0.0;
   for (std::size_t i = 0; i < envelope_.size(); ++i) {
     const double width = static_cast<double>(i) + 1.0 - envelope_[i];
@@ -214,42 +224,22 @@ void ContactSpace::choose_form() {
 
 void ContactSpace::build_delassus() {
   const int count = places();
-  const bool is_symmetric = this->is_symmetric();
   if (!has_free_delassus_) {
     has_free_delassus_ = true;
-    free_delassus_.resize(size(count) * size(count));
-    const bool is_free_symmetric = matrix_.free_factor().is_symmetric();
-    for (int i = 0; i < count; ++i) make_free_row(i, is_free_symmetric ? i + 1 : count);
-    for (int i = 0; is_free_symmetric && i < count; ++i) {
-      for (int k = 0; k < i; ++k) free_block(k, i) = free_block(i, k).transpose();
-    }
+    free_delassus_.assign(size(rows()) * stride_, 0.0);
+    const bool is_symmetric = matrix_.free_factor().is_symmetric();
+    for (int i = 0; i < count; ++i) make_free_row(i, is_symmetric ? i + 1 : count);
   }
   if (matrix_.columns().empty()) return;
   delassus_.resize(free_delassus_.size());
-  for (int i = 0; i < count; ++i) {
-    for (int k = 0; k < (is_symmetric ? i + 1 : count); ++k) {
-      delassus_[index(i, k)] = constrained(free_block(i, k), i, k);
-    }
-  }
+  subtract_product(free_delassus_.data(), rows(), opened_.data(), closed_.data()->data(),
+                   static_cast<int>(matrix_.columns().size()), delassus_.data());
 }
 
-void ContactSpace::move_by_delassus(const double* f, double* u) const {
-  const int count = places();
-  const bool is_symmetric = this->is_symmetric();
-  std::fill(u, u + rows(), 0.0);
-  for (int i = 0; i < count; ++i) {
-    Block motion = Block::from(u + kRows * i);
-    const Block force = Block::from(f + kRows * i);
-    for (int k = 0; k < (is_symmetric ? i + 1 : count); ++k) {
-      const Square& block = delassus(i, k);
-      motion += block * Block::from(f + kRows * k);
-      if (!is_symmetric || k == i) continue;
-      double* const other = u + kRows * k;
-      (Block::from(other) + block.transposed_times(force)).to(other);
-    }
-    motion.to(u + kRows * i);
-  }
-  for (std::size_t i = 0; i < free_.size(); ++i) u[i] = free_[i] + step_ * u[i];
+void ContactSpace::move_by_delassus(const double* f, double* u) {
+  impelled_.resize(stride_);
+  multiply(delassus(0), rows(), f, impelled_.data());
+  for (std::size_t i = 0; i < free_.size(); ++i) u[i] = free_[i] + step_ * impelled_[i];
 }
 
 void ContactSpace::add_load(const double* f, double* load) const {
@@ -306,6 +296,7 @@ void ContactSpace::build(const Mechanism& mechanism, std::span<const ContactPlac
     add_driven(places[size(place)]);
   }
   add_motion(generalized_.data(), velocity_.data());
+  stride_ = padded(rows());
   has_responses_ = has_free_delassus_ = false;
 }
 

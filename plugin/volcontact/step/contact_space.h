@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "volcontact/base/sizes.h"
 #include "volcontact/step/contact_islands.h"
 #include "volcontact/step/step_matrix.h"
 
@@ -51,10 +52,12 @@ class ContactSpace {
   /// Makes `mobility`, and `delassus` where it is of use.
   void build_mobility();
   void build_delassus();
-  /// The block of Lambda of two places, after build_delassus(); of a symmetric H with k <= i.
-  const Square& delassus(int i, int k) const {
-    return (matrix_.columns().empty() ? free_delassus_ : delassus_)[index(i, k)];
+  /// Six columns of Lambda, padded to `stride` numbers, after build_delassus().
+  const double* delassus(int place) const {
+    const std::vector<double>& all = matrix_.columns().empty() ? free_delassus_ : delassus_;
+    return all.data() + kRows * size(place) * stride_;
   }
+  std::size_t stride() const { return stride_; }
   /// The block of Lambda of one place.
   const Square& mobility(std::size_t place) const { return mobility_[place]; }
   const std::vector<double>& known() const { return known_; }
@@ -64,7 +67,7 @@ class ContactSpace {
   Block free_velocity(std::size_t place) const { return Block::from(&free_[kRows * place]); }
   /// u' under the forces f: by the degrees of freedom, and by Lambda after build_delassus().
   void move(const std::vector<double>& f, std::vector<double>& u);
-  void move_by_delassus(const double* f, double* u) const;
+  void move_by_delassus(const double* f, double* u);
   /// The acceleration that the solver of native constraints finds under the forces f, into those of
   /// all degrees of freedom that are of the island.
   void accelerate(const std::vector<double>& f, std::vector<double>& a);
@@ -97,13 +100,9 @@ class ContactSpace {
   void carry(int place, Carry carry, Block Carried::* out);
   void respond();
   void constrain_places();
-  Square& free_block(int i, int k) { return free_delassus_[index(i, k)]; }
-  std::size_t index(int i, int k) const {
-    return static_cast<std::size_t>(i) * static_cast<std::size_t>(places()) +
-           static_cast<std::size_t>(k);
-  }
+  void set_free_block(int i, int k, const Square& block);
   void make_free_row(int place, int end);
-  Square constrained(const Square& free, int place, int other) const;
+  Square constrained_mobility(int place) const;
 
   StepMatrix matrix_;
   std::vector<Move> moves_;
@@ -112,13 +111,17 @@ class ContactSpace {
   std::vector<std::size_t> carried_begin_;
   bool is_massed_ = false;
   std::vector<int> support_;
-  // For each place and each column of G: J Mh^-1 G, and (1 + P' Mh^-1 G)^-1 P' Mh^-1 J'.
-  std::vector<Block> opened_, closed_;
+  // J Mh^-1 G by columns, padded; and of each place, (1 + P' Mh^-1 G)^-1 P' Mh^-1 J' by rows.
+  std::vector<double> opened_;
+  std::vector<Block> closed_;
   std::vector<double> dense_;     // kRows numbers a degree of freedom, zeros between uses
   std::vector<double> scalars_;   // one a degree of freedom, likewise
   std::vector<char> is_in_tree_;  // of a column, by the tree's first degree of freedom; likewise
   std::vector<int> envelope_;
-  std::vector<Square> mobility_, delassus_, free_mobility_, free_delassus_;
+  std::vector<Square> mobility_, free_mobility_;
+  std::vector<double> delassus_, free_delassus_;  // by columns, padded
+  std::size_t stride_ = 0;                        // of these
+  std::vector<double> impelled_;                  // Lambda f, padded
   bool has_responses_ = false, has_free_delassus_ = false;
   std::vector<double> free_known_, known_, velocity_, free_, generalized_;
   bool prefers_dofs_ = true;

@@ -174,8 +174,7 @@ void ImplicitStep::solve_contacts(FrictionBound bound, double step) {
     site(i).free_speed = slip_of(site(i), velocity_, i).norm();
     site(i).free_normal = normal_force(i);
   }
-  const bool rubs = std::any_of(island_.begin(), island_.end(),
-                                [this](int i) { return sites_[size(i)].laws.has_friction(); });
+  const bool rubs = equations_.may_rub;
   for (int pass = 0; rubs && pass < kFrictionPasses; ++pass) {
     before_ = force_;
     const bool changed = set_friction(step);
@@ -196,6 +195,8 @@ void ImplicitStep::solve_contacts(FrictionBound bound, double step) {
 void ImplicitStep::solve_island(ImplicitParts parts, double step, double resting) {
   space_.build_mobility();
   equations_.forget();
+  equations_.may_rub = std::any_of(island_.begin(), island_.end(),
+                                   [this](int i) { return sites_[size(i)].laws.has_friction(); });
   make_points(parts, step, resting);
   set_shares();
   solve_contacts(FrictionBound::kCut, step);
