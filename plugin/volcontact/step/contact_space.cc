@@ -60,15 +60,13 @@ void ContactSpace::widen_envelope(int place) {
   }
 }
 
-// Leaves J of the place in `dense_`, carried through one of the factors.
+// J of the place, carried through one of the factors, to what carries the place.
 template <typename Carry>
-void ContactSpace::carry(int place, Carry carry, Block Carried::* out) {
-  support_.clear();
-  for (const Carried& one : carried(place)) support_.push_back(one.dof);
+void ContactSpace::carry(int place, const Carry& carry, Block Carried::* out) {
   for (const Move& move : moves(place)) {
     move.column.to(&dense_[size(kRows * move.dof)]);
   }
-  carry(support_, dense_.data());
+  carry(dense_.data());
   for (Carried& one : carried(place)) {
     double* const numbers = &dense_[size(kRows * one.dof)];
     one.*out = Block::from(numbers);
@@ -82,24 +80,29 @@ void ContactSpace::respond() {
   if (has_responses_) return;
   has_responses_ = true;
   const TreeMatrix& factor = matrix_.free_factor();
-  const auto lower = [&](const auto& support, double* x) { factor.carry_lower<kRows>(support, x); };
-  const auto upper = [&](const auto& support, double* x) { factor.carry_upper<kRows>(support, x); };
+  const bool is_symmetric = factor.is_symmetric();
   carried_.clear();
   carried_begin_.assign(1, 0);
   is_massed_ = false;
-  free_mobility_.assign(size(places()), Square::Zero());
+  free_mobility_.resize(size(places()));
   for (int place = 0; place < places(); ++place) {
     support_.clear();
     for (const Move& move : moves(place)) support_.push_back(move.dof);
     matrix_.close(support_);
-    for (const int dof : support_) carried_.push_back({.dof = dof});
+    const std::size_t begin = carried_.size();
+    carried_.resize(begin + support_.size());
+    for (std::size_t i = 0; i < support_.size(); ++i) carried_[begin + i].dof = support_[i];
     carried_begin_.push_back(carried_.size());
-    carry(place, lower, &Carried::moved);
-    if (!factor.is_symmetric()) carry(place, upper, &Carried::forced);
-    for (Carried& one : carried(place)) {
-      one.forced = factor.inverse_pivot(one.dof) * (factor.is_symmetric() ? one.moved : one.forced);
-      free_mobility_[size(place)] += outer(one.moved, one.forced);
+    carry(place, [&](double* x) { factor.carry_lower<kRows>(support_, x); }, &Carried::moved);
+    if (!is_symmetric) {
+      carry(place, [&](double* x) { factor.carry_upper<kRows>(support_, x); }, &Carried::forced);
     }
+    Square mobility = Square::Zero();
+    for (Carried& one : carried(place)) {
+      one.forced = factor.inverse_pivot(one.dof) * (is_symmetric ? one.moved : one.forced);
+      mobility += outer(one.moved, one.forced);
+    }
+    free_mobility_[size(place)] = mobility;
   }
 }
 
@@ -139,11 +142,10 @@ void ContactSpace::constrain_places() {
   if (matrix_.converts() && !is_massed_) {
     is_massed_ = true;
     const TreeMatrix& factor = matrix_.constraint_factor();
-    const auto lower = [&](const auto& support, double* x) {
-      factor.carry_lower<kRows>(support, x);
-    };
     for (int place = 0; place < places(); ++place) {
-      carry(place, lower, &Carried::massed);
+      support_.clear();
+      for (const Carried& one : carried(place)) support_.push_back(one.dof);
+      carry(place, [&](double* x) { factor.carry_lower<kRows>(support_, x); }, &Carried::massed);
       for (Carried& one : carried(place)) one.massed *= factor.inverse_pivot(one.dof);
     }
   }
@@ -283,9 +285,11 @@ void ContactSpace::build(const Mechanism& mechanism, std::span<const ContactPlac
   free_known_.resize(count);
   generalized_.resize(count);
   known_.resize(count);
-  dense_.assign(kRows * count, 0.0);
-  scalars_.assign(count, 0.0);
-  is_in_tree_.assign(count, 0);
+  if (scalars_.size() < count) {
+    dense_.resize(kRows * count, 0.0);
+    scalars_.resize(count, 0.0);
+    is_in_tree_.resize(count, 0);
+  }
   for (std::size_t i = 0; i < count; ++i) {
     free_known_[i] = known[matrix_.dofs()[i]];
     generalized_[i] = mechanism.speeds[matrix_.dofs()[i]];

@@ -78,10 +78,10 @@ class ContactSpace {
  private:
   // What a place moves and what carries that; J carried through the factors U D L of Mh.
   struct Carried {
-    Block moved = Block::Zero();   // L'^-1 J'
-    Block forced = Block::Zero();  // D^-1 U^-1 J'
-    Block massed = Block::Zero();  // D^-1 L'^-1 J', of the factors of M, where H converts
-    int dof = 0;
+    Block moved;   // L'^-1 J'
+    Block forced;  // D^-1 U^-1 J'
+    Block massed;  // D^-1 L'^-1 J', of the factors of M, where H converts
+    int dof;
   };
   std::span<const Carried> carried(int place) const {
     const std::size_t i = static_cast<std::size_t>(place);
@@ -97,7 +97,7 @@ class ContactSpace {
   void widen_envelope(int place);
   void choose_form();
   template <typename Carry>
-  void carry(int place, Carry carry, Block Carried::* out);
+  void carry(int place, const Carry& carry, Block Carried::* out);
   void respond();
   void constrain_places();
   void set_free_block(int i, int k, const Square& block);

@@ -13,35 +13,37 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 // Numbers for the degrees of freedom of an island, and the envelope of their masses: each has
 // inertia in common with those it carries and with those that carry it.
 void StepMatrix::number_dofs(const MechanismTrees& mechanism, std::span<const DofRange> trees) {
-  trees_.clear();
-  tree_of_.clear();
-  dofs_.clear();
+  std::size_t count = 0;
+  for (const DofRange& tree : trees) count += index(tree.size());
   numbers_.resize(mechanism.carrier.size());
-  limits_.resize(numbers_.size());
+  trees_.clear();
+  tree_of_.resize(count);
+  dofs_.resize(count);
+  free_envelope_.resize(count);
+  parents_.resize(count);
+  int begin = 0;
   for (const DofRange& tree : trees) {
-    const int begin = static_cast<int>(dofs_.size());
+    // The number of a degree of freedom and its own add up to this one.
+    const int both = begin + tree.end - 1;
     for (int dof = tree.end - 1; dof >= tree.begin; --dof) {
-      numbers_[index(dof)] = static_cast<int>(dofs_.size());
-      dofs_.push_back(dof);
-      tree_of_.push_back(begin);
-    }
-    trees_.push_back({begin, static_cast<int>(dofs_.size())});
-    for (int dof = tree.begin; dof < tree.end; ++dof) limits_[index(dof)] = dof;
-    for (int dof = tree.end - 1; dof >= tree.begin; --dof) {
+      const std::size_t i = index(both - dof);
+      numbers_[index(dof)] = both - dof;
+      tree_of_[i] = begin;
+      dofs_[i] = dof;
+      free_envelope_[i] = both - dof;
       const int parent = mechanism.carrier[index(dof)];
-      if (parent < 0) continue;
-      limits_[index(parent)] = std::max(limits_[index(parent)], limits_[index(dof)]);
+      parents_[i] = parent < 0 ? -1 : both - parent;
     }
+    trees_.push_back({begin, both + 1 - tree.begin});
+    begin += tree.size();
   }
-  free_envelope_.resize(dofs_.size());
-  parents_.resize(dofs_.size());
-  for (std::size_t i = 0; i < dofs_.size(); ++i) {
-    free_envelope_[i] = number(limits_[index(dofs_[i])]);
-    const int parent = mechanism.carrier[index(dofs_[i])];
-    parents_[i] = parent < 0 ? -1 : number(parent);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (parents_[i] < 0) continue;
+    int& first = free_envelope_[index(parents_[i])];
+    first = std::min(first, free_envelope_[i]);
   }
   carriers_.set(parents_);
-  marked_.assign(dofs_.size(), 0);
+  if (marked_.size() < count) marked_.resize(count, 0);
 }
 
 void StepMatrix::make_mass(const Mechanism& mechanism) {

@@ -84,7 +84,6 @@ class StepMatrix {
   std::vector<DofRange> trees_;
   std::vector<int> dofs_, numbers_, parents_, tree_of_;
   DofTrees carriers_;
-  std::vector<int> limits_;  // the last degree of freedom of each subtree
   std::vector<int> free_envelope_, envelope_;
   std::vector<DofEntry> entries_;  // of the mechanism
   TreeMatrix mass_, mass_factor_;  // M

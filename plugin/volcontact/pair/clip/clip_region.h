@@ -28,6 +28,7 @@ class Region {
         rounding_(rounding),
         polytope_(scratch.polytope),
         columns_(scratch.columns),
+        in_columns_(scratch.in_columns),
         outline_(scratch.outline),
         neighbors_(scratch.neighbors),
         faces_(scratch.polytope.faces()) {}
@@ -150,6 +151,8 @@ class Region {
   double overlay_energy(const Vec3& contact_normal) {
     const Mat3 R_CA = basis_with_z(contact_normal).transpose();
     columns_.start(a_.size() + b_.size());
+    in_columns_.clear();
+    for (const Vec3& p : polytope_.points()) in_columns_.push_back(R_CA * (p - sum_.origin));
     for (const FaceLoop& face : faces_) add_to_columns(face, R_CA);
     if (columns_.has_overhang()) {
       for_planes(b_, R_CA, true, [&](const HeightPlane& plane) { columns_.add_ceiling(plane); });
@@ -162,18 +165,19 @@ class Region {
     const Vec3 n = R_CA * normal(face);
     if (is_steep(n)) return;
     const bool upper = n.z() > 0.0;
+    const int* const loop = polytope_.loop_vertices().data() + face.first;
+    const Vec3* const points = in_columns_.data();
     outline_.clear();
-    neighbors_.clear();
-    Vec3 p = Vec3::Zero();
-    for (int i = 0; i < face.count; ++i) {
-      p = R_CA * (vertex(face, i) - sum_.origin);
-      outline_.push_back(p.head<2>());
-      neighbors_.push_back(polytope_.face_across(face.first + i));
-    }
+    for (int i = 0; i < face.count; ++i) outline_.push_back(points[loop[i]].template head<2>());
+    const Vec3& p = points[loop[face.count - 1]];
     const HeightPlane height = height_of(n, n.dot(p));
     if (upper) {
       columns_.add_upper(height, is_a(face), outline_);
     } else {
+      neighbors_.clear();
+      for (int i = face.first; i < face.first + face.count; ++i) {
+        neighbors_.push_back(polytope_.face_across(i));
+      }
       columns_.add_lower(face.face, height, !is_a(face), outline_, neighbors_);
     }
   }
@@ -192,6 +196,7 @@ class Region {
   const double rounding_;
   const CutPolytope& polytope_;
   ColumnEnergy& columns_;
+  std::vector<Vec3>& in_columns_;
   std::vector<Vec2>& outline_;
   std::vector<int>& neighbors_;
   std::span<FaceLoop> faces_;

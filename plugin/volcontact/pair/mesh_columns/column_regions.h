@@ -21,6 +21,7 @@ struct RegionScratch {
   std::vector<std::uint64_t> keys;  ///< hash table: slots of f and g
   std::vector<int> cell_at;
   std::vector<int> parent;  ///< of the A side (2 i) and the B side (2 i + 1) of cell i
+  std::vector<std::uint64_t> keys_of_faces;
   std::vector<int> order;
   std::vector<int> number;  ///< of each root
   struct Wall {
