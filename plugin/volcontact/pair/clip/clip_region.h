@@ -153,12 +153,36 @@ class Region {
     columns_.start(a_.size() + b_.size());
     in_columns_.clear();
     for (const Vec3& p : polytope_.points()) in_columns_.push_back(R_CA * (p - sum_.origin));
-    for (const FaceLoop& face : faces_) add_to_columns(face, R_CA);
+    const FaceLoop* top = largest_top(R_CA);
+    for (const FaceLoop& face : faces_) {
+      if (&face != top) add_to_columns(face, R_CA);
+    }
+    if (top) {
+      const Vec3 n = R_CA * normal(*top);
+      const HeightPlane height = height_of(n, n.dot(in_columns_[first_vertex(*top)]));
+      return std::max(0.0, depth_under(*top) / n.z() - columns_.value_above(height));
+    }
     if (columns_.has_overhang()) {
       for_planes(b_, R_CA, true, [&](const HeightPlane& plane) { columns_.add_ceiling(plane); });
       for_planes(a_, R_CA, false, [&](const HeightPlane& plane) { columns_.add_floor(plane); });
     }
     return columns_.value();
+  }
+
+  int first_vertex(const FaceLoop& face) const { return polytope_.loop_vertices()[face.first]; }
+
+  // The largest face that columns end at, all but few of them as a rule; none where there is an
+  // overhang.
+  const FaceLoop* largest_top(const Mat3& R_CA) const {
+    const FaceLoop* top = nullptr;
+    for (const FaceLoop& face : faces_) {
+      const Vec3 n = R_CA * normal(face);
+      if (is_steep(n)) continue;
+      const bool upper = n.z() > 0.0;
+      if (upper == is_a(face)) return nullptr;
+      if (upper && (!top || face.area > top->area)) top = &face;
+    }
+    return top;
   }
 
   void add_to_columns(const FaceLoop& face, const Mat3& R_CA) {

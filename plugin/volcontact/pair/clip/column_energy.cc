@@ -191,32 +191,49 @@ double ColumnEnergy::overhang_energy(const HeightPlane& length,
   return sum;
 }
 
-double ColumnEnergy::value() {
-  constexpr HeightPlane kNoHeight{};
+template <typename Visit>
+void ColumnEnergy::for_cells(const Visit& visit) {
   list_lines();
   reserve();
-  double sum = 0.0;
   for (const Upper& top : upper_) {
-    const std::span<const Point> outline(outlines_.data() + top.first,
-                                         static_cast<std::size_t>(top.count));
-    if (top.overhang) list_reaches(outline, top.height, ceiling_, 1.0, face_reaches_);
     for (const Lower& bottom : lower_) {
       if (top.min.exceeds(bottom.max) || bottom.min.exceeds(top.max)) continue;
       cut_cell(top, bottom);
-      if (cell_.count < 3) continue;
-      const std::span<const Point> cell(cell_.points, static_cast<std::size_t>(cell_.count));
-      const HeightPlane length = top.height - bottom.height;
-      sum += 0.5 * cell_.integral(length, length);
-      if (top.overhang) {
-        list_reaches(cell, kNoHeight, face_reaches_, 1.0, reaches_);
-        sum += overhang_energy(length, reaches_);
-      }
-      if (bottom.overhang) {
-        list_reaches(cell, bottom.height, floor_, -1.0, reaches_);
-        sum += overhang_energy(length, reaches_);
-      }
+      if (cell_.count >= 3) visit(top, bottom, top.height - bottom.height);
     }
   }
+}
+
+double ColumnEnergy::value() {
+  constexpr HeightPlane kNoHeight{};
+  double sum = 0.0;
+  const Upper* last = nullptr;
+  for_cells([&](const Upper& top, const Lower& bottom, const HeightPlane& length) {
+    if (top.overhang && &top != last) {
+      const std::span<const Point> outline(outlines_.data() + top.first,
+                                           static_cast<std::size_t>(top.count));
+      list_reaches(outline, top.height, ceiling_, 1.0, face_reaches_);
+    }
+    last = &top;
+    const std::span<const Point> cell(cell_.points, static_cast<std::size_t>(cell_.count));
+    sum += 0.5 * cell_.integral(length, length);
+    if (top.overhang) {
+      list_reaches(cell, kNoHeight, face_reaches_, 1.0, reaches_);
+      sum += overhang_energy(length, reaches_);
+    }
+    if (bottom.overhang) {
+      list_reaches(cell, bottom.height, floor_, -1.0, reaches_);
+      sum += overhang_energy(length, reaches_);
+    }
+  });
+  return sum;
+}
+
+double ColumnEnergy::value_above(const HeightPlane& plane) {
+  double sum = 0.0;
+  for_cells([&](const Upper& top, const Lower&, const HeightPlane& length) {
+    sum += cell_.integral(plane - top.height, length);
+  });
   return sum;
 }
 

@@ -47,6 +47,9 @@ class ColumnEnergy {
   /// potential of f = V. docs/theory.md, "Volume metrics".
   double value();
 
+  /// int L (how far a plane, that lies over all upper faces, is over the column's top) du dv.
+  double value_above(const HeightPlane& plane);
+
  private:
   struct Upper {
     int first, count;  // in outlines_
@@ -81,6 +84,9 @@ class ColumnEnergy {
     int next_ = 0;  // buffer to write to
   };
 
+  // Calls visit(top, bottom, length) for the cells that are not empty, one after the other cell_.
+  template <typename Visit>
+  void for_cells(const Visit& visit);
   void list_lines();
   void reserve();
   void cut_cell(const Upper& top, const Lower& bottom);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "volcontact/base/types.h"
@@ -30,6 +32,26 @@ inline bool boxes_apart(const Vec3& half_a, const Vec3& half_b, const Mat3& R_AB
     }
   }
   return false;
+}
+
+/// Whether two capsules are certainly apart: by the nearest points of their axes, each the z axis
+/// of its solid from -half to half. Conservative as above. Ericson, "Real-Time Collision
+/// Detection", 5.1.9.
+inline bool capsules_apart(double half_a, double radius_a, double half_b, double radius_b,
+                           const Pose& X_AB) {
+  const Vec3 axis = X_AB.rotation.col(2), &p = X_AB.translation;
+  const double cosine = axis.z(), along_b = axis.dot(p);
+  const double square_of_sine = axis.x() * axis.x() + axis.y() * axis.y();
+  double s = 0.0;  // along A's axis, and t along B's
+  if (square_of_sine > 0.0) {
+    s = std::clamp((p.z() - cosine * along_b) / square_of_sine, -half_a, half_a);
+  }
+  const double t = std::clamp(cosine * s - along_b, -half_b, half_b);
+  s = std::clamp(p.z() + cosine * t, -half_a, half_a);
+  const double reach = radius_a + radius_b;
+  const double size = reach + half_a + half_b + p.cwiseAbs().sum();
+  const double slack = 16.0 * std::numeric_limits<double>::epsilon() * size * size;
+  return (p + t * axis - s * Vec3::UnitZ()).squaredNorm() > reach * reach + slack;
 }
 
 }  // namespace volcontact

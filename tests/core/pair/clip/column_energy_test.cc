@@ -44,6 +44,20 @@ TEST(ColumnEnergy, OverlaysUpperAndLowerFacesThatDoNotMatch) {
   EXPECT_NEAR(columns.value(), 1.0 / 12.0 + 1.0 / 16.0, 1e-16);
 }
 
+TEST(ColumnEnergy, LiesUnderAPlaneByItsLengthTimesTheGap) {
+  // Of the roof and the keel above, columns that end at 1 - u where u > 1/2, under the plane u:
+  // int (2 u - 1) ((1 - u) + <a>) du = 1/24 + 1/16.
+  ColumnEnergy columns;
+  columns.start(4);
+  columns.add_upper({1.0, -1.0, 0.0}, false,
+                    std::vector<Point>{{0.5, 0}, {1, 0}, {1, 1}, {0.5, 1}});
+  columns.add_lower(2, {0.0, 0.0, -1.0}, false,
+                    std::vector<Point>{{0, 0}, {1, 0}, {1, 0.5}, {0, 0.5}}, std::vector<int>{3});
+  columns.add_lower(3, {-1.0, 0.0, 1.0}, false,
+                    std::vector<Point>{{0, 0.5}, {1, 0.5}, {1, 1}, {0, 1}}, std::vector<int>{2});
+  EXPECT_NEAR(columns.value_above({0.0, 1.0, 0.0}), 1.0 / 24.0 + 1.0 / 16.0, 1e-16);
+}
+
 TEST(ColumnEnergy, AnOverhangAddsLengthTimesReach) {
   // A block of height 1, its top at 1, sunk into a solid with the top min(1.5, 2 - u); the other
   // solid reaches 2 below the block's bottom.
