@@ -51,9 +51,10 @@ inline double reach(Coupling coupling, const Generalized& load, const FrictionIn
 /// Shortens `load` to what friction of the strength `most` can hold; whether it had to.
 inline bool limit(Coupling coupling, double most, const FrictionInput& in, Generalized& load) {
   constexpr double kLeastReach = 0.5;  // the integrated surface is nowhere nearer than that
-  const double size = load.norm();
   const bool integrated = coupling == Coupling::kQuadrature && in.patch.volume > 0.0;
-  if (!(size > (integrated ? kLeastReach * most : most))) return false;
+  const double nearest = integrated ? kLeastReach * most : most, square = load.dot(load);
+  if (!(square > nearest * nearest)) return false;  // as a rule: no root is needed to see it
+  const double size = std::sqrt(square);
   const double farthest = integrated ? most * reach(coupling, (1.0 / size) * load, in) : most;
   if (!(size > farthest)) return false;
   load = (farthest / size) * load;
