@@ -4,6 +4,7 @@
 #include "volcontact/pair/clip/clip_engine.h"
 #include "volcontact/pair/closed_form/closed_form.h"
 #include "volcontact/pair/closed_form/one_face.h"
+#include "volcontact/pair/closed_form/two_faces.h"
 #include "volcontact/pair/mesh_columns/in_round/round_columns_engine.h"
 #include "volcontact/pair/mesh_columns/mesh_columns_engine.h"
 #include "volcontact/pair/mesh_columns/radial/radial_engines.h"
@@ -18,7 +19,7 @@ namespace volcontact {
 
 /// Every engine there is, in the order in which they are asked. A new one is added here and nowhere
 /// else.
-using Engines = TypeList<ClosedForm, OneFace, Clip, MeshAndComposed, ConvexSections,
+using Engines = TypeList<ClosedForm, OneFace, TwoFaces, Clip, MeshAndComposed, ConvexSections,
                          ComposedSections, TorusAndConvex, TorusAndComposed, TorusPair,
                          SurfaceSweep, MeshAndMesh, MeshAndRound, MeshAndTorus, Octree>;
 
