@@ -13,9 +13,11 @@ namespace {
 constexpr double kLeastSine = 1e-3;    // of the angle between the planes
 constexpr double kLeastDepth = 1e-12;  // of the edge below the surface, in radii
 constexpr double kLeastLean = 1e-12;   // of a half-plane to the axis; with less they are upright
-constexpr double kLongest = 1.2;       // of a step of the angle, where it counts by its scale
-constexpr double kOpen = 1e-7;         // gap of the surface, per area, with which steps are halved
+constexpr double kLongest = 1.8;       // piece of a way, by its measure
+constexpr double kLongestToRim = 1.0;  // the same where a rim is touched
+constexpr double kOpen = 2e-6;         // gap of the surface, per area, with which steps are halved
 constexpr int kMostHalvings = 8;
+constexpr double kRule = 1e-9;         // error of the rule in a section
 constexpr double kMostOpen = 1e-5;     // gap with which there is no answer
 
 double square(double x) { return x * x; }
@@ -44,7 +46,7 @@ struct CapsuleAtEdge::Section {
   double rho = 0.0, rho_rho = 0.0, rho_y = 0.0;                // int rho times 1, rho, y
   double rho_rho_rho = 0.0, rho_rho_y = 0.0, rho_y_y = 0.0;    // rho times rho^2, rho y, y^2
   double surface = 0.0;  // of the solid, per angle
-  double flux = 0.0;     // of the same, across the half-plane
+  double flux = 0.0, rho_flux = 0.0;  // of the same, across the half-plane: 1, rho
 
   // Of a piece of the outline, counterclockwise: sums of rho^k y^i dy, which are the integrals but
   // for factors, since rho vanishes along the edge.
@@ -76,10 +78,10 @@ struct CapsuleAtEdge::View {
 
 struct CapsuleAtEdge::Sums {
   double volume = 0.0, surface = 0.0, depth_moment = 0.0;
-  double flux = 0.0;
+  double flux = 0.0, rho_flux = 0.0;
+  double most = 0.0;  // int rho of a section
   Vec3 first = Vec3::Zero();
   double second[6] = {};  // xx, xy, yy, xz, yz, zz
-  Vec2 area_vector = Vec2(0.0, 0.0);
 
   // A section with the weight of its angle; `length` of a column there, per distance of its lower
   // end from the edge.
@@ -88,6 +90,8 @@ struct CapsuleAtEdge::Sums {
     depth_moment += weight * length * s.rho_rho;
     surface += weight * s.surface;
     flux += weight * s.flux;
+    rho_flux += weight * s.rho_flux;
+    most = std::max(most, s.rho);
     first += weight * Vec3(s.rho_rho * cosine, s.rho_rho * sine, s.rho_y);
     const double x = weight * cosine, y = weight * sine;
     second[0] += x * cosine * s.rho_rho_rho;
@@ -96,18 +100,23 @@ struct CapsuleAtEdge::Sums {
     second[3] += x * s.rho_rho_y;
     second[4] += y * s.rho_rho_y;
     second[5] += weight * s.rho_y_y;
-    area_vector += Vec2(x * s.area - y * s.flux, y * s.area + x * s.flux);
   }
   Sums& operator+=(const Sums& o) {
     volume += o.volume;
     surface += o.surface;
     depth_moment += o.depth_moment;
     flux += o.flux;
+    rho_flux += o.rho_flux;
+    most = std::max(most, o.most);
     first += o.first;
     for (int i = 0; i < 6; ++i) second[i] += o.second[i];
-    area_vector += o.area_vector;
     return *this;
   }
+};
+
+// What gaps are judged by: the area of the faces, and int rho of a section.
+struct CapsuleAtEdge::Scale {
+  double area, rho;
 };
 
 // Angles between which the outline of a section is of the same parts.
@@ -280,6 +289,7 @@ void CapsuleAtEdge::add_cap(const View& v, int end, Section& s) const {
           s.add(rho, y + r * sin_t, weight * r * cos_t);
           s.surface += weight * radius_ * rho;
           s.flux -= weight * across * rho;
+          s.rho_flux -= weight * across * rho * rho;
         }
       }
     }
@@ -291,7 +301,7 @@ void CapsuleAtEdge::add_cap(const View& v, int end, Section& s) const {
     return;
   }
   const double half = std::atan2(std::sqrt(rim), beyond);
-  const double middle = std::atan2(end * v.axis_y, end * v.axis_rho);
+  const double middle = std::atan2(end * v.sine, end * v.cosine);
   for (const double turn : {-2.0 * kPi, 0.0, 2.0 * kPi}) {
     add(std::max(-edge, middle + turn - half), std::min(edge, middle + turn + half));
   }
@@ -320,8 +330,14 @@ void CapsuleAtEdge::add_side(const View& v, double side, Section& s) const {
   };
   const auto cosine_of = [](double q) { return std::sqrt(std::max(0.0, (1.0 - q) * (1.0 + q))); };
 
+  // Across the axis z tells nothing, along it q.
+  const bool steep = std::abs(v.axis_across) > 0.7;
+  const auto order = [&](const Place& p) {
+    return steep ? std::copysign(1.0, v.axis_across) * p.q : p.z;
+  };
+
   const auto add = [&](const Place& a, const Place& b) {
-    if (!(b.z > a.z)) return;
+    if (!(order(b) > order(a))) return;
     const double dz = b.z - a.z, dq = b.q - a.q;
     if (std::abs(dq) <= 1.0 - std::max(std::abs(a.q), std::abs(b.q))) {
       const double q_m = 0.5 * (a.q + b.q), z_m = 0.5 * (a.z + b.z);
@@ -334,6 +350,7 @@ void CapsuleAtEdge::add_side(const View& v, double side, Section& s) const {
         s.add(rho, y, side * weight * dy);
         s.surface += weight * rho * dz / (v.lean * c);
         s.flux -= weight * rho * q * dz / c;
+        s.rho_flux -= weight * rho * rho * q * dz / c;
       });
       return;
     }
@@ -350,6 +367,7 @@ void CapsuleAtEdge::add_side(const View& v, double side, Section& s) const {
         s.add(rho, y, side * weight * (c * (rate * v.axis_y + lean_y) - q * out_y));
         s.surface += weight * rate * rho / v.lean;
         s.flux -= weight * rate * rho * q;
+        s.rho_flux -= weight * rate * rho * rho * q;
       }
     }
   };
@@ -359,12 +377,18 @@ void CapsuleAtEdge::add_side(const View& v, double side, Section& s) const {
   int count = 1;
   for (const double y : {-half_edge_, half_edge_}) {
     const double z = axis_.z() * y - axis_.dot(origin_);
-    if (!(std::abs(z) < half_length_)) continue;
-    const double out = -(v.rho + z * v.axis_rho) * v.sine + (v.y + z * v.axis_y - y) * v.cosine;
-    if (!(out * side > 0.0) || !(z > low.z && z < high.z)) continue;
-    cuts[static_cast<std::size_t>(count++)] = place(z);
+    if (!steep && !(std::abs(z) < half_length_)) continue;
+    const double x = -(v.rho + z * v.axis_rho), along = y - v.y - z * v.axis_y;
+    if (!((x * v.sine - along * v.cosine) * side > 0.0)) continue;
+    Place cut = place(z);
+    if (steep) {
+      cut.q = std::clamp((x * v.cosine + along * v.sine) / (radius_ * v.axis_across), -1.0, 1.0);
+      cut.z = (cut.q / per_radius - v.across) / v.axis_across;
+    }
+    if (!(order(cut) > order(low) && order(cut) < order(high))) continue;
+    cuts[static_cast<std::size_t>(count++)] = cut;
   }
-  if (count == 3 && cuts[1].z > cuts[2].z) std::swap(cuts[1], cuts[2]);
+  if (count == 3 && order(cuts[1]) > order(cuts[2])) std::swap(cuts[1], cuts[2]);
   cuts[static_cast<std::size_t>(count)] = high;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) add(cuts[i], cuts[i + 1]);
 }
@@ -482,15 +506,13 @@ void CapsuleAtEdge::add_piece(const Way& w, double normal_angle, Sums& sum) cons
   const double length = w.length();
   over(kGauss8, [&](double x, double weight) {
     double t = 0.5 + 0.5 * x, rate = 0.5 * weight * length;
-    if (w.at_from && w.at_to) {
-      rate *= 6.0 * t * (1.0 - t);
-      t = t * t * (3.0 - 2.0 * t);
-    } else if (w.at_from) {
-      rate *= 2.0 * t;
-      t = t * t;
+    if (w.at_from) {
+      rate *= 3.0 * t * t;
+      t = t * t * t;
     } else if (w.at_to) {
-      rate *= 2.0 * (1.0 - t);
-      t = t * (2.0 - t);
+      t = 1.0 - t;
+      rate *= 3.0 * t * t;
+      t = 1.0 - t * t * t;
     }
     const double grown = std::exp(w.from + t * length), shrunk = 1.0 / grown;
     const double angle = w.flat + w.scale * 0.5 * (grown - shrunk);
@@ -502,41 +524,52 @@ void CapsuleAtEdge::add_piece(const Way& w, double normal_angle, Sums& sum) cons
   });
 }
 
-CapsuleAtEdge::Sums CapsuleAtEdge::sums(double normal_angle, double tolerance) const {
+CapsuleAtEdge::Sums CapsuleAtEdge::sums(double normal_angle, const Scale* scale) const {
   Sums sum;
   const Breaks b = breaks(normal_angle);
   for (int i = 0; i + 1 < b.count; ++i) {
     const Way whole = way(b, i);
     if (!(whole.length() > 0.0)) continue;
-    const int parts = std::max(1, static_cast<int>(std::ceil(whole.length() / kLongest)));
+    const int least = whole.at_from && whole.at_to ? 2 : 1;
+    const double longest = whole.at_from || whole.at_to ? kLongestToRim : kLongest;
+    const int parts = std::max(least, static_cast<int>(std::ceil(whole.length() / longest)));
     for (int part = 0; part < parts; ++part) {
       Way w = whole;
       w.from = whole.from + whole.length() * part / parts;
       w.to = whole.from + whole.length() * (part + 1) / parts;
       w.at_from = whole.at_from && part == 0;
       w.at_to = whole.at_to && part == parts - 1;
-      add_closed(w, normal_angle, tolerance, kMostHalvings, sum);
+      add_closed(w, normal_angle, scale, kMostHalvings, sum);
     }
   }
   return sum;
 }
 
+// How far the surface between two half-planes is from closed: what flows through them along the
+// angle flows through the surface as well, be it as fast everywhere or ever faster away from the
+// edge.
+double CapsuleAtEdge::gap(const Sums& sum, const Section& from, const Section& to,
+                          const Scale& scale) {
+  return std::max(std::abs(sum.flux + to.area - from.area) / scale.area,
+                  std::abs(sum.rho_flux + to.rho - from.rho) / scale.rho);
+}
+
 // The same, halved until its surface is closed.
-void CapsuleAtEdge::add_closed(const Way& w, double normal_angle, double tolerance, int halvings,
+void CapsuleAtEdge::add_closed(const Way& w, double normal_angle, const Scale* scale, int halvings,
                                Sums& sum) const {
-  if (!(tolerance > 0.0) || halvings == 0) return add_piece(w, normal_angle, sum);
+  if (!scale || halvings == 0) return add_piece(w, normal_angle, sum);
   Sums here;
   add_piece(w, normal_angle, here);
   const double from = w.flat + w.scale * std::sinh(w.from), to = w.flat + w.scale * std::sinh(w.to);
-  if (std::abs(here.flux + section(to).area - section(from).area) < tolerance) {
+  if (gap(here, section(from), section(to), *scale) < kOpen) {
     sum += here;
     return;
   }
   Way low = w, high = w;
   low.to = high.from = 0.5 * (w.from + w.to);
   low.at_to = high.at_from = false;
-  add_closed(low, normal_angle, tolerance, halvings - 1, sum);
-  add_closed(high, normal_angle, tolerance, halvings - 1, sum);
+  add_closed(low, normal_angle, scale, halvings - 1, sum);
+  add_closed(high, normal_angle, scale, halvings - 1, sum);
 }
 
 VolumeMetrics CapsuleAtEdge::metrics() const {
@@ -556,12 +589,13 @@ VolumeMetrics CapsuleAtEdge::metrics() const {
   const double normal_angle = std::atan2(moments.area_vector.y(), moments.area_vector.x());
   if (!(normal_angle > 0.0 && normal_angle < opening_)) return none;
 
-  Sums sum = sums(normal_angle, 0.0);
-  const auto gap = [&] {
-    return (sum.area_vector - moments.area_vector.head<2>()).norm() / moments.counter_area;
-  };
-  if (!(gap() < kOpen)) sum = sums(normal_angle, kOpen * moments.counter_area);
-  const double open = gap();
+  Sums sum = sums(normal_angle, nullptr);
+  const Scale scale{moments.counter_area, sum.most};
+  double open = gap(sum, in_first, in_second, scale);
+  if (!(open < kOpen)) {
+    sum = sums(normal_angle, &scale);
+    open = gap(sum, in_first, in_second, scale);
+  }
   if (!(open < kMostOpen)) return none;
   moments.volume = sum.volume;
   moments.first = sum.first;
@@ -577,7 +611,7 @@ VolumeMetrics CapsuleAtEdge::metrics() const {
   result.volume_error =
       kRounding * (16.0 * result.volume + (result.area + result.counter_area) *
                                               (radius_ + half_length_ + X_AE_.translation.norm())) +
-      open * result.volume;
+      (4.0 * open + kRule) * result.volume;
   return result;
 }
 

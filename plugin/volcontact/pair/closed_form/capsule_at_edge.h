@@ -40,6 +40,7 @@ class CapsuleAtEdge {
   struct Breaks;
   struct View;
   struct Way;
+  struct Scale;
 
   bool find_edge(const FaceMet& first, const FaceMet& second);
   void find_middle();
@@ -54,9 +55,10 @@ class CapsuleAtEdge {
   Breaks breaks(double normal_angle) const;
   Way way(const Breaks& breaks, int i) const;
   void add_piece(const Way& way, double normal_angle, Sums& sum) const;
-  void add_closed(const Way& way, double normal_angle, double tolerance, int halvings,
+  void add_closed(const Way& way, double normal_angle, const Scale* scale, int halvings,
                   Sums& sum) const;
-  Sums sums(double normal_angle, double tolerance) const;
+  Sums sums(double normal_angle, const Scale* scale) const;
+  static double gap(const Sums& sum, const Section& from, const Section& to, const Scale& scale);
 
   double radius_, half_length_;
   std::array<FaceMet, 2> faces_;
