@@ -16,6 +16,12 @@ namespace volcontact {
 struct FaceMet {
   Vec3 normal;    ///< out of B, in A
   double height;  ///< of A's origin over the plane [m]
+
+  /// Of B's plane normal . x = offset.
+  static FaceMet of(const Vec3& normal, double offset, const Pose& X_BA) {
+    return {X_BA.rotation.transposed_times(normal), normal.dot(X_BA.translation) - offset};
+  }
+  bool operator==(const FaceMet&) const = default;
 };
 
 /// The faces of a solid B of planes that solid A is cut by, and the one that alone cuts what of A
@@ -27,7 +33,7 @@ class FacesMet {
 
   /// For B to write: normal . x <= offset.
   void plane(const Vec3& normal, double offset) {
-    FaceMet met{X_BA_.rotation.transposed_times(normal), normal.dot(X_BA_.translation) - offset};
+    const FaceMet met = FaceMet::of(normal, offset, X_BA_);
     if (!(met.height + a_.support_height(met.normal) > 0.0)) return;  // A is behind it
     is_apart_ = is_apart_ || !(met.height < a_.support_height(-met.normal));
     if (count_ < kMost) met_[count_] = met;
