@@ -6,7 +6,8 @@
 #include <cstddef>
 #include <limits>
 
-#include "volcontact/pair/closed_form/gauss_rule.h"
+#include "volcontact/base/fields.h"
+#include "volcontact/pair/quadrature/gauss.h"
 
 namespace volcontact {
 namespace {
@@ -17,12 +18,16 @@ constexpr double kParallel = 1e-12;    // squared sine of the edge to the axis
 constexpr double kOnAxis = 1e-6;       // distance of the edge from the axis, in radii
 constexpr double kLevel = 1e-12;       // sine of a plane to the axis
 constexpr double kSamePlace = 1e-14;   // of the size of the solid
-constexpr double kLongest = 1.8;       // piece of a way, by its measure
-constexpr double kLongestToRim = 1.0;  // the same of ways next to a rim
+constexpr double kBend = 2.0;          // measure of a way up to where it bends
+constexpr double kLongest = 1.8;       // piece of a way there, by its measure
+constexpr double kLongestToRim = 1.0;  // the same next to a rim
+constexpr double kLongestAway = 5.0;   // the same beyond the bend, where sections shrink
+constexpr double kShort = 0.6;         // piece for which a short rule will do
+constexpr double kNearRim = 1.0;       // of the end of a way, by its measure
 constexpr double kLeastScale = 1e-9;   // of angles [rad]
-constexpr double kOpen = 2e-6;         // gap of the surface with which pieces are halved
+constexpr double kOpen = 5e-6;         // gap of the surface with which pieces are halved
 constexpr int kMostHalvings = 8;
-constexpr double kMostOpen = 1e-5;  // with more there is no answer
+constexpr double kMostOpen = 5e-5;  // with more there is no answer
 constexpr double kPerGap = 4.0;     // error of V that is claimed for a gap
 constexpr double kRule = 1e-9;      // error of the rules in sections
 
@@ -81,6 +86,7 @@ struct CapsuleAtEdge::Breaks {
   };
   std::array<Break, 8> at;  // in order, from the first after 0
   int count = 0;
+  Break before = {-kInfinity, 0}, after = {kInfinity, 0};  // rims next to them
 
   void add(double angle, int end) { at[static_cast<std::size_t>(count++)] = {angle, end}; }
 };
@@ -131,6 +137,7 @@ bool CapsuleAtEdge::find_middle() {
 void CapsuleAtEdge::find_flat(const Vec3& nearest, const Vec3& out, double depth) {
   const Vec3 flat = out.cross(X_AE_.rotation.col(2)).normalized();
   flat_angle_ = std::atan2(flat.dot(X_AE_.rotation.col(1)), flat.dot(X_AE_.rotation.col(0)));
+  out_angle_ = std::atan2(out.dot(X_AE_.rotation.col(1)), out.dot(X_AE_.rotation.col(0)));
   flat_scale_ = 4.0 * depth / (way_out(nearest, flat) + way_out(nearest, -flat));
 }
 
@@ -218,6 +225,10 @@ bool CapsuleAtEdge::is_roof_behind(const FaceMet& other, const Vec3& n) const {
   return false;
 }
 
+EdgeSection CapsuleAtEdge::section(double angle) const {
+  return sections_.at(std::cos(angle), std::sin(angle));
+}
+
 // Where a half-plane touches the rim of an end of the cylinder: (N . p)^2 = R^2 (1 - N_z^2) for its
 // normal N = (-sin, cos).
 void CapsuleAtEdge::add_touches(int end, Breaks& b) const {
@@ -233,12 +244,17 @@ void CapsuleAtEdge::add_touches(int end, Breaks& b) const {
   const double middle = 0.5 * std::atan2(-xy, c), half = 0.5 * std::acos(cosine);
   for (double angle : {middle - half, middle + half}) {
     angle -= kPi * std::floor(angle / kPi);
-    if (!(angle > 0.0 && angle < opening_)) continue;
-    const EdgeView v = sections_.view(angle);
+    const EdgeView v = sections_.view(std::cos(angle), std::sin(angle));
     const double across = v.across + z * v.axis_across;
     const double tip = across * v.axis_across / square(v.lean);
-    const double rho = v.rho + (z + tip) * v.axis_rho;
-    if (rho > 0.0) b.add(angle, end);
+    const bool is_ahead = v.rho + (z + tip) * v.axis_rho > 0.0;
+    if (is_ahead && angle > 0.0 && angle < opening_) {
+      b.add(angle, end);
+    } else if (is_ahead && angle < b.after.angle) {
+      b.after = {angle, end};
+    } else if (!is_ahead && angle - kPi > b.before.angle) {
+      b.before = {angle - kPi, end};
+    }
   }
 }
 
@@ -259,18 +275,28 @@ CapsuleAtEdge::Breaks CapsuleAtEdge::breaks(double normal_angle) const {
 // steps are small about a half-plane `flat` along the surface, where sections change fast.
 struct CapsuleAtEdge::Way {
   double flat, scale;
-  double from, to;      // of the measure
-  bool at_from, at_to;  // a rim is touched there, by half-planes that meet it on this way
+  double from, to;  // of the measure
+  // Where a rim is touched, at the ends or next to them, by half-planes that meet it on this way.
+  double low_rim = -kInfinity, high_rim = kInfinity;
 
   double length() const { return to - from; }
+  bool is_at_rim() const { return low_rim > -kInfinity || high_rim < kInfinity; }
+  double measure(double angle) const { return std::asinh((angle - flat) / scale); }
   double angle(double at) const { return flat + scale * std::sinh(at); }
+  // A piece: the rims are next to its ends alone.
+  Way piece(double begin, double end) const {
+    return {flat, scale, begin, end, begin > from ? -kInfinity : low_rim,
+            end < to ? kInfinity : high_rim};
+  }
 };
 
 CapsuleAtEdge::Way CapsuleAtEdge::way_about(double flat, double scale, double from,
                                             double to) const {
   flat += kPi * std::round((0.5 * (from + to) - flat) / kPi);
-  return {flat,  scale, std::asinh((from - flat) / scale), std::asinh((to - flat) / scale),
-          false, false};
+  Way w{flat, scale, 0.0, 0.0};
+  w.from = w.measure(from);
+  w.to = w.measure(to);
+  return w;
 }
 
 // From break i to the next one: about the half-plane along the surface next to the edge, or along
@@ -282,21 +308,27 @@ CapsuleAtEdge::Way CapsuleAtEdge::way(const Breaks& b, int i) const {
   if (!(sections_.half_length > 0.0)) return w;
   const double along = std::atan2(sections_.axis.y(), sections_.axis.x());
   double scale = 1.0;
-  for (int k = 0; k < b.count; ++k) {
-    const Breaks::Break& other = b.at[static_cast<std::size_t>(k)];
-    if (other.end == 0) continue;
-    const double turn = (other.angle - along) / kPi;
+  const auto include = [&](const Breaks::Break& touch) {
+    if (touch.end == 0) return;
+    const double turn = (touch.angle - along) / kPi;
     scale = std::min(scale, kPi * std::abs(turn - std::round(turn)));
-  }
+  };
+  for (int k = 0; k < b.count; ++k) include(b.at[static_cast<std::size_t>(k)]);
+  include(b.before);
+  include(b.after);
   const Way other = way_about(along, std::max(scale, kLeastScale), first.angle, last.angle);
   if (other.length() > w.length()) w = other;
-  const EdgeView v = sections_.view(0.5 * (first.angle + last.angle));
+  const double middle = 0.5 * (first.angle + last.angle);
+  const EdgeView v = sections_.view(std::cos(middle), std::sin(middle));
   const auto meets = [&](int end) {
     const double across = v.across + end * sections_.half_length * v.axis_across;
     return end != 0 && std::abs(across) < sections_.radius * v.lean;
   };
-  w.at_from = meets(first.end);
-  w.at_to = meets(last.end);
+  const Breaks::Break &low = i > 0 ? first : b.before, &high = i + 1 < b.count ? last : b.after;
+  if (meets(low.end)) w.low_rim = std::min(w.from, w.measure(low.angle));
+  if (meets(high.end)) w.high_rim = std::max(w.to, w.measure(high.angle));
+  if (w.from - w.low_rim > kNearRim) w.low_rim = -kInfinity;
+  if (w.high_rim - w.to > kNearRim) w.high_rim = kInfinity;
   return w;
 }
 
@@ -305,22 +337,28 @@ CapsuleAtEdge::Way CapsuleAtEdge::way(const Breaks& b, int i) const {
 void CapsuleAtEdge::add_piece(const Way& w, double normal_angle, Sums& sum) const {
   const double to_second = opening_ - normal_angle;
   const double per_first = 1.0 / std::sin(normal_angle), per_second = 1.0 / std::sin(to_second);
+  const bool low = w.low_rim > -kInfinity, high = !low && w.high_rim < kInfinity;
+  const double rim = low ? w.low_rim : w.high_rim;
+  const double from = low || high ? std::cbrt(w.from - rim) : w.from;
+  const double range = (low || high ? std::cbrt(w.to - rim) : w.to) - from;
   const auto add = [&](double t, double weight) {
-    if (w.at_from || w.at_to) {
-      const double u = w.at_from ? t : 1.0 - t;
-      weight *= 3.0 * u * u;
-      t = w.at_from ? u * u * u : 1.0 - u * u * u;
+    double at = from + t * range, rate = range;
+    if (low || high) {
+      rate *= 3.0 * at * at;
+      at = rim + at * at * at;
     }
-    const double grown = std::exp(w.from + t * w.length()), shrunk = 1.0 / grown;
+    const double grown = std::exp(at), shrunk = 1.0 / grown;
     const double angle = w.flat + 0.5 * w.scale * (grown - shrunk);
-    const double rate = 0.5 * w.scale * (grown + shrunk) * w.length();
-    const double column = angle < normal_angle ? std::sin(angle) * per_first
+    rate *= 0.5 * w.scale * (grown + shrunk);
+    const double cosine = std::cos(angle), sine = std::sin(angle);
+    const double column = angle < normal_angle ? sine * per_first
                                                : std::sin(opening_ - angle) * per_second;
-    sum.add(sections_.at(angle), weight * rate, std::cos(angle), std::sin(angle), column);
+    sum.add(sections_.at(cosine, sine), weight * rate, cosine, sine, column);
   };
-  for (const GaussNode& node : kGauss8) {
-    add(0.5 - 0.5 * node.x, 0.5 * node.weight);
-    add(0.5 + 0.5 * node.x, 0.5 * node.weight);
+  if (w.length() < kShort && !w.is_at_rim()) {
+    for (int i = 0; i < 5; ++i) add(GaussRule<5>::kNodes[i], GaussRule<5>::kWeights[i]);
+  } else {
+    for (int i = 0; i < 8; ++i) add(GaussRule<8>::kNodes[i], GaussRule<8>::kWeights[i]);
   }
 }
 
@@ -329,16 +367,14 @@ void CapsuleAtEdge::add_closed(const Way& w, double normal_angle, const Scale& s
                                Sums& sum) const {
   Sums here;
   add_piece(w, normal_angle, here);
-  const EdgeSection from = sections_.at(w.angle(w.from)), to = sections_.at(w.angle(w.to));
+  const EdgeSection from = section(w.angle(w.from)), to = section(w.angle(w.to));
   if (halvings == 0 || gap(here, from, to, scale) < kOpen) {
     sum += here;
     return;
   }
-  Way low = w, high = w;
-  low.to = high.from = 0.5 * (w.from + w.to);
-  low.at_to = high.at_from = false;
-  add_closed(low, normal_angle, scale, halvings - 1, sum);
-  add_closed(high, normal_angle, scale, halvings - 1, sum);
+  const double middle = 0.5 * (w.from + w.to);
+  add_closed(w.piece(w.from, middle), normal_angle, scale, halvings - 1, sum);
+  add_closed(w.piece(middle, w.to), normal_angle, scale, halvings - 1, sum);
 }
 
 // How far the surface between two half-planes is from closed: a flow about the edge that passes
@@ -356,27 +392,34 @@ CapsuleAtEdge::Sums CapsuleAtEdge::sums(double normal_angle, const Scale* scale)
   for (int i = 0; i < b.count; ++i) {
     const Way whole = way(b, i);
     if (!(whole.length() > 0.0)) continue;
-    const int least = whole.at_from && whole.at_to ? 2 : 1;
-    const double longest = whole.at_from || whole.at_to ? kLongestToRim : kLongest;
-    const int parts = std::max(least, static_cast<int>(std::ceil(whole.length() / longest)));
-    for (int part = 0; part < parts; ++part) {
-      Way w = whole;
-      w.from = whole.from + whole.length() * part / parts;
-      w.to = whole.from + whole.length() * (part + 1) / parts;
-      w.at_from = whole.at_from && part == 0;
-      w.at_to = whole.at_to && part == parts - 1;
-      if (scale) {
-        add_closed(w, normal_angle, *scale, kMostHalvings, sum);
-      } else {
-        add_piece(w, normal_angle, sum);
+    double from = whole.from;
+    for (const double bend : {-kBend, kBend, whole.to}) {
+      const double to = std::min(bend, whole.to);
+      if (!(to > from)) continue;
+      const Way w = whole.piece(from, to);
+      const double middle = 0.5 * (from + to);
+      const bool is_away =
+          std::abs(middle) > kBend && std::cos(w.angle(middle) - out_angle_) > 0.0;
+      const double longest = w.is_at_rim() ? kLongestToRim : is_away ? kLongestAway : kLongest;
+      const int least = w.low_rim > -kInfinity && w.high_rim < kInfinity ? 2 : 1;
+      const int parts = std::max(least, static_cast<int>(std::ceil(w.length() / longest)));
+      for (int part = 0; part < parts; ++part) {
+        const double end = part + 1 < parts ? from + w.length() * (part + 1) / parts : to;
+        const Way piece = w.piece(from + w.length() * part / parts, end);
+        if (scale) {
+          add_closed(piece, normal_angle, *scale, kMostHalvings, sum);
+        } else {
+          add_piece(piece, normal_angle, sum);
+        }
       }
+      from = to;
     }
   }
   return sum;
 }
 
 VolumeMetrics CapsuleAtEdge::metrics() const {
-  const EdgeSection in_first = sections_.at(0.0), in_second = sections_.at(opening_);
+  const EdgeSection in_first = section(0.0), in_second = section(opening_);
   const double a = in_first.area, b = in_second.area;
   const Vec3 along(std::cos(opening_), std::sin(opening_), 0.0);  // the second face
   const Vec3 n(0.0, -1.0, 0.0), m(-along.y(), along.x(), 0.0);

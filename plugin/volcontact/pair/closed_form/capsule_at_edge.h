@@ -52,6 +52,7 @@ class CapsuleAtEdge {
   bool reaches_in_face(const Vec3& e, int face, double& reach) const;
   bool is_behind(int face, const Vec3& x) const;
 
+  EdgeSection section(double angle) const;
   void add_touches(int end, Breaks& breaks) const;
   Breaks breaks(double normal_angle) const;
   Way way(const Breaks& breaks, int i) const;
@@ -69,6 +70,7 @@ class CapsuleAtEdge {
   EdgeSections sections_;    // in E
   double opening_ = 0.0;     // angle between the faces [rad]
   double flat_angle_ = 0.0;  // of a half-plane along the surface that is nearest to the edge [rad]
+  double out_angle_ = 0.0;   // of the way out of the solid there [rad]
   double flat_scale_ = 1.0;  // how far from it sections change much [rad]
 };
 

@@ -16,14 +16,27 @@ namespace {
 constexpr double kLeastLean = 1e-12;   // of a half-plane to the axis; with less it is across it
 constexpr double kSteep = 0.7;         // part of the axis across, with which z tells little
 constexpr double kMostAtOnce = 5.0;    // angle of an arc for one rule [rad]
+constexpr double kShortArc = 0.8;      // angle of an arc for a short rule [rad]
 
 double square_of(double x) { return x * x; }
 
 // For products of five sines and cosines over `range` [rad], to 1e-7 or better.
 std::span<const GaussNode> rule_for(double range) {
+  if (range < kShortArc) return kGauss6;
   if (range < 1.7) return kGauss8;
   if (range < 3.5) return kGauss12;
   return kGauss16;
+}
+
+struct Direction {
+  double cosine, sine;
+};
+
+// To 1e-12 if the angle is less than half a short arc.
+Direction direction_near_0(double angle) {
+  const double x = angle * angle;
+  return {1.0 - x / 2.0 * (1.0 - x / 12.0 * (1.0 - x / 30.0 * (1.0 - x / 56.0 * (1.0 - x / 90.0)))),
+          angle * (1.0 - x / 6.0 * (1.0 - x / 20.0 * (1.0 - x / 42.0 * (1.0 - x / 72.0))))};
 }
 
 // Calls add(cosine, sine, weight) at the nodes of a rule between two angles.
@@ -31,8 +44,11 @@ template <typename Add>
 void over_arc(double from, double to, Add&& add) {
   const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
   const double cosine = std::cos(middle), sine = std::sin(middle);
-  for (const GaussNode& node : rule_for(2.0 * std::abs(half))) {
-    const double c = std::cos(half * node.x), s = std::sin(half * node.x);
+  const double range = 2.0 * std::abs(half);
+  for (const GaussNode& node : rule_for(range)) {
+    const double angle = half * node.x;
+    const auto [c, s] =
+        range < kShortArc ? direction_near_0(angle) : Direction{std::cos(angle), std::sin(angle)};
     const double weight = half * node.weight;
     add(cosine * c + sine * s, sine * c - cosine * s, weight);
     add(cosine * c - sine * s, sine * c + cosine * s, weight);
@@ -88,6 +104,8 @@ class Side {
   // bends much.
   void add(const Place& a, const Place& b, EdgeSection& s) const {
     if (!is_before(a, b)) return;
+    const double q_m = 0.5 * (a.q + b.q);
+    if (!(rho(0.5 * (a.z + b.z), q_m, cosine_of(q_m)) > 0.0)) return;
     const bool is_flat = std::abs(b.q - a.q) <= 1.0 - std::max(std::abs(a.q), std::abs(b.q));
     return is_flat ? add_by_z(a, b, s) : add_by_angle(a, b, s);
   }
@@ -103,29 +121,30 @@ class Side {
 
   void add_by_z(const Place& a, const Place& b, EdgeSection& s) const {
     const double z_m = 0.5 * (a.z + b.z), q_m = 0.5 * (a.q + b.q);
-    if (!(rho(z_m, q_m, cosine_of(q_m)) > 0.0)) return;
     const double dz = 0.5 * (b.z - a.z), dq = 0.5 * (b.q - a.q);
+    EdgeSection sum;
     for (const GaussNode& node : kGauss8) {
       for (const double x : {-node.x, node.x}) {
         const double z = z_m + dz * x, q = q_m + dq * x, c = cosine_of(q), r = rho(z, q, c);
         const double dy = dz * v_.axis_y + dq * (slope_y_ - q / c * out_y_);
-        s.add(r, y(z, q, c), side_ * node.weight * dy);
-        s.add_surface(r, node.weight * dz / (v_.lean * c), q * v_.lean);
+        sum.add(r, y(z, q, c), side_ * node.weight * dy);
+        sum.add_surface(r, node.weight * dz / (v_.lean * c), q * v_.lean);
       }
     }
+    s += sum;
   }
 
   // By the angle whose sine is q.
   void add_by_angle(const Place& a, const Place& b, EdgeSection& s) const {
     const double from = std::atan2(a.q, cosine_of(a.q)), to = std::atan2(b.q, cosine_of(b.q));
     const double rate = (b.z - a.z) / (b.q - a.q);
-    const double q_m = std::sin(0.5 * (from + to)), z_m = a.z + rate * (q_m - a.q);
-    if (!(rho(z_m, q_m, cosine_of(q_m)) > 0.0)) return;
+    EdgeSection sum;
     over_arc(from, to, [&](double c, double q, double weight) {
       const double z = a.z + rate * (q - a.q), r = rho(z, q, c);
-      s.add(r, y(z, q, c), side_ * weight * (c * (rate * v_.axis_y + slope_y_) - q * out_y_));
-      s.add_surface(r, weight * rate / v_.lean, q * v_.lean);
+      sum.add(r, y(z, q, c), side_ * weight * (c * (rate * v_.axis_y + slope_y_) - q * out_y_));
+      sum.add_surface(r, weight * rate / v_.lean, q * v_.lean);
     });
+    s += sum;
   }
 
   const EdgeView& v_;
@@ -152,11 +171,13 @@ void EdgeSections::add_cap(const EdgeView& v, int end, EdgeSection& s) const {
     return;
   }
   const auto add_arc = [&](double from, double to) {
+    EdgeSection sum;
     over_arc(from, to, [&](double cosine, double sine, double weight) {
       const double rho = x + r * cosine;
-      s.add(rho, y + r * sine, weight * r * cosine);
-      s.add_surface(rho, weight * radius, across / radius);
+      sum.add(rho, y + r * sine, weight * r * cosine);
+      sum.add_surface(rho, weight * radius, across / radius);
     });
+    s += sum;
   };
   const auto add = [&](double from, double to) {
     if (!(to > from)) return;
@@ -198,8 +219,7 @@ void EdgeSections::add_side(const EdgeView& v, double which, EdgeSection& s) con
   for (std::size_t i = 0; i < count; ++i) side.add(cuts[i], cuts[i + 1], s);
 }
 
-EdgeView EdgeSections::view(double angle) const {
-  const double c = std::cos(angle), s = std::sin(angle);
+EdgeView EdgeSections::view(double c, double s) const {
   EdgeView v;
   v.rho = c * origin.x() + s * origin.y();
   v.across = c * origin.y() - s * origin.x();
@@ -214,8 +234,8 @@ EdgeView EdgeSections::view(double angle) const {
   return v;
 }
 
-EdgeSection EdgeSections::at(double angle) const {
-  const EdgeView v = view(angle);
+EdgeSection EdgeSections::at(double cosine, double sine) const {
+  const EdgeView v = view(cosine, sine);
   EdgeSection result;
   add_cap(v, 1, result);
   if (half_length > 0.0) {

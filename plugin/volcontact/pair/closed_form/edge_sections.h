@@ -35,6 +35,13 @@ struct EdgeSection {
     flux -= across * one;
     rho_flux -= across * r * one;
   }
+  EdgeSection& operator+=(const EdgeSection& o) {
+    area += o.area, area_y += o.area_y;
+    rho += o.rho, rho_rho += o.rho_rho, rho_y += o.rho_y;
+    rho_rho_rho += o.rho_rho_rho, rho_rho_y += o.rho_rho_y, rho_y_y += o.rho_y_y;
+    surface += o.surface, flux += o.flux, rho_flux += o.rho_flux;
+    return *this;
+  }
   /// The factors.
   void finish() {
     rho *= 0.5, rho_y *= 0.5, rho_y_y *= 0.5;
@@ -60,9 +67,9 @@ struct EdgeSections {
   Vec3 origin, axis;           ///< of the capsule
   double half_edge;            ///< half the part of the edge within it [m]
 
-  /// By half-planes at an angle to x about the edge [rad].
-  EdgeView view(double angle) const;
-  EdgeSection at(double angle) const;
+  /// By the half-plane at an angle to x about the edge.
+  EdgeView view(double cosine, double sine) const;
+  EdgeSection at(double cosine, double sine) const;
 
  private:
   void add_cap(const EdgeView& v, int end, EdgeSection& section) const;
