@@ -23,8 +23,7 @@ struct TwoFaces : EngineBase {
 
   template <typename A, typename B>
   static constexpr bool serves() {
-    return (std::is_same_v<A, Sphere> || std::is_same_v<A, Capsule>) &&
-           OneFace::serves<A, B>();
+    return (std::is_same_v<A, Sphere> || std::is_same_v<A, Capsule>) && OneFace::serves<A, B>();
   }
   template <typename A, typename B>
   static bool reaches(const A& a, const B& b) noexcept {

@@ -95,8 +95,8 @@ class TwoFacesOf : public ::testing::TestWithParam<std::size_t> {
   const Round& round() const { return kRounds[GetParam()]; }
 };
 
-// Lines know of no edge. Their normal is off by about as much as their surface is from closed, and
-// their columns do not end in time at an edge across them, by up to 3e-3 of Q.
+// Lines are off by about as much as they claim for V, in the normal too, and by more in Q and depth:
+// there columns on a grid, below, have the word.
 TEST_P(TwoFacesOf, IsWhatLinesFind) {
   test::Random random(1 + GetParam());
   const int runs = test::cases(6000, 600, 60);
@@ -123,7 +123,7 @@ TEST_P(TwoFacesOf, IsWhatLinesFind) {
     expected.depth = out.total.depth;
     expected.depth_moment = out.total.depth_moment;
     expected.status = out.total.status;  // lines were asked for more than they can do
-    EXPECT_TRUE(test::same(out.total, expected, {doubt + 1e-3 * (i % 2), round().size()})) << i;
+    EXPECT_TRUE(test::same(out.total, expected, {doubt + 1e-4, round().size()})) << i;
     const Interference back = test::evaluated(edge.solid, round().shape(), X_BA);
     EXPECT_EQ(back.engine, Engine::kClosedForm);
     EXPECT_TRUE(test::same(reversed(transformed(back.total, X_AB)), out.total,
@@ -179,8 +179,7 @@ TEST_P(TwoFacesOf, DepthAndQAreThoseOfColumns) {
                                          X_BA.rotation.transposed_times(between(edge.second))};
     std::array<double, 2> heights;
     for (std::size_t k = 0; k < 2; ++k) {
-      heights[k] =
-          between(k ? edge.second : edge.first).dot(X_BA.translation - edge.place);
+      heights[k] = between(k ? edge.second : edge.first).dot(X_BA.translation - edge.place);
     }
     double low = kInfinity, high = -kInfinity, q = 0.0;
     Vec3 from = Vec3::Constant(-round().size()), to = Vec3::Constant(round().size());
@@ -225,8 +224,7 @@ TEST_P(TwoFacesOf, NoStepsOverTheEdge) {
     const EdgeOfB& edge = edges()[0];
     const Mat3 turn = random.rotation();
     const double depth = round().radius * random.uniform(0.01, 0.5);
-    const double low =
-        round().radius + round().half_length * std::abs(turn.row(2).z());
+    const double low = round().radius + round().half_length * std::abs(turn.row(2).z());
     const auto at = [&](double x) {
       const Pose X_BA{turn, Vec3(x, 0.0, edge.place.z() + low - depth)};
       return test::evaluated(round().shape(), edge.solid, X_BA.inverse());
@@ -241,14 +239,15 @@ TEST_P(TwoFacesOf, NoStepsOverTheEdge) {
       (is_one_face(at(middle)) ? inside : outside) = middle;
     }
     const Interference one = at(inside), two = at(outside);
-    if (!one.total.touching() || two.engine != Engine::kClosedForm) continue;
+    if (!one.total.touching() || one.engine != two.engine) continue;
+    if (two.engine != Engine::kClosedForm) continue;
     ++changes;
-    EXPECT_LT((one.total.inertia - two.total.inertia).norm(), 3e-5 * one.total.inertia.norm()) << i;
-    EXPECT_NEAR(one.total.depth_moment, two.total.depth_moment, 1e-5 * one.total.depth_moment) << i;
+    EXPECT_LT((one.total.inertia - two.total.inertia).norm(), 1e-4 * one.total.inertia.norm()) << i;
+    EXPECT_NEAR(one.total.depth_moment, two.total.depth_moment, 1e-4 * one.total.depth_moment) << i;
     VolumeMetrics expected = one.total;
     expected.inertia = two.total.inertia;
     expected.depth_moment = two.total.depth_moment;
-    EXPECT_TRUE(test::same(two.total, expected, {1e-6, round().size()})) << i;
+    EXPECT_TRUE(test::same(two.total, expected, {3e-6, round().size()})) << i;
     EXPECT_NEAR(one.total.depth, two.total.depth, 1e-3 * one.total.depth) << i;
     EXPECT_LT((one.total.normal() - two.total.normal()).norm(), 1e-6) << i;
   }
