@@ -29,7 +29,7 @@ constexpr double kOpen = 2e-6;         // gap of the surface with which pieces a
 constexpr int kMostHalvings = 8;
 constexpr double kMostOpen = 5e-5;  // with more there is no answer
 constexpr double kPerGap = 4.0;     // error of V that is claimed for a gap
-constexpr double kRule = 1e-9;      // error of the rules in sections
+constexpr double kRule = 5e-6;      // the same for the rules, more than any error that was found
 
 double square(double x) { return x * x; }
 
@@ -152,8 +152,8 @@ double CapsuleAtEdge::way_out(const Vec3& from, const Vec3& along) const {
   const double a = square(along.x()) + square(along.y());
   if (half_length > 0.0 && a > square(kLevel)) {
     const double away = std::hypot(from.x(), from.y());
-    const double s = root(a, along.x() * from.x() + along.y() * from.y(),
-                          (radius - away) * (radius + away));
+    const double s =
+        root(a, along.x() * from.x() + along.y() * from.y(), (radius - away) * (radius + away));
     const double z = from.z() + s * along.z();
     if (std::abs(z) <= half_length) return s;
     end = std::copysign(half_length, z);
@@ -203,8 +203,8 @@ double CapsuleAtEdge::reach(const Vec3& along) const {
   const Vec3 farthest =
       sections_.radius * e + Vec3(0.0, 0.0, std::copysign(sections_.half_length, e.z()));
   if (is_behind(0, farthest) && is_behind(1, farthest)) return length * e.dot(farthest);
-  double most = e.dot(X_AE_.translation) +
-                sections_.half_edge * std::abs(e.dot(X_AE_.rotation.col(2)));
+  double most =
+      e.dot(X_AE_.translation) + sections_.half_edge * std::abs(e.dot(X_AE_.rotation.col(2)));
   for (const int face : {0, 1}) {
     double here = 0.0;
     if (reaches_in_face(e, face, here)) most = std::max(most, here);
@@ -285,7 +285,11 @@ struct CapsuleAtEdge::Way {
   double angle(double at) const { return flat + scale * std::sinh(at); }
   // A piece: the rims are next to its ends alone.
   Way piece(double begin, double end) const {
-    return {flat, scale, begin, end, begin > from ? -kInfinity : low_rim,
+    return {flat,
+            scale,
+            begin,
+            end,
+            begin > from ? -kInfinity : low_rim,
             end < to ? kInfinity : high_rim};
   }
 };
@@ -351,8 +355,8 @@ void CapsuleAtEdge::add_piece(const Way& w, double normal_angle, Sums& sum) cons
     const double angle = w.flat + 0.5 * w.scale * (grown - shrunk);
     rate *= 0.5 * w.scale * (grown + shrunk);
     const double cosine = std::cos(angle), sine = std::sin(angle);
-    const double column = angle < normal_angle ? sine * per_first
-                                               : std::sin(opening_ - angle) * per_second;
+    const double column =
+        angle < normal_angle ? sine * per_first : std::sin(opening_ - angle) * per_second;
     sum.add(sections_.at(cosine, sine), weight * rate, cosine, sine, column);
   };
   if (w.length() < kShort && !w.is_at_rim()) {
@@ -398,8 +402,7 @@ CapsuleAtEdge::Sums CapsuleAtEdge::sums(double normal_angle, const Scale* scale)
       if (!(to > from)) continue;
       const Way w = whole.piece(from, to);
       const double middle = 0.5 * (from + to);
-      const bool is_away =
-          std::abs(middle) > kBend && std::cos(w.angle(middle) - out_angle_) > 0.0;
+      const bool is_away = std::abs(middle) > kBend && std::cos(w.angle(middle) - out_angle_) > 0.0;
       const double longest = w.is_at_rim() ? kLongestToRim : is_away ? kLongestAway : kLongest;
       const int least = w.low_rim > -kInfinity && w.high_rim < kInfinity ? 2 : 1;
       const int parts = std::max(least, static_cast<int>(std::ceil(w.length() / longest)));

@@ -13,10 +13,10 @@
 namespace volcontact {
 namespace {
 
-constexpr double kLeastLean = 1e-12;   // of a half-plane to the axis; with less it is across it
-constexpr double kSteep = 0.7;         // part of the axis across, with which z tells little
-constexpr double kMostAtOnce = 5.0;    // angle of an arc for one rule [rad]
-constexpr double kShortArc = 0.8;      // angle of an arc for a short rule [rad]
+constexpr double kLeastLean = 1e-12;  // of a half-plane to the axis; with less it is across it
+constexpr double kSteep = 0.7;        // part of the axis across, with which z tells little
+constexpr double kMostAtOnce = 5.0;   // angle of an arc for one rule [rad]
+constexpr double kShortArc = 0.8;     // angle of an arc for a short rule [rad]
 
 double square_of(double x) { return x * x; }
 

@@ -146,8 +146,8 @@ TEST(OneFace, ACapsuleMayLeanOverAnEdge) {
   EXPECT_NEAR(out.total.volume, ball.total.volume, 1e-12 * ball.total.volume);
   // With the foot nearer to the edge than what of it is behind the face, it is another matter.
   const Pose nearer{X_BA.rotation, X_BA.translation + Vec3(0.095, 0.0, 0.0)};
-  EXPECT_FALSE(is_of_one_face(test::evaluated(capsule, kBox, nearer.inverse()), kBox,
-                              nearer.inverse()));
+  EXPECT_FALSE(
+      is_of_one_face(test::evaluated(capsule, kBox, nearer.inverse()), kBox, nearer.inverse()));
 }
 
 // Its equator is beyond the edge; what counts is how far the cap behind the face reaches.

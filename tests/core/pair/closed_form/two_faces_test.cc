@@ -46,10 +46,8 @@ struct Round {
   }
   double size() const { return radius + half_length; }
 };
-const std::vector<Round> kRounds = {{"Ball", 0.05, 0.0},
-                                    {"Capsule", 0.03, 0.08},
-                                    {"Rod", 0.01, 0.12},
-                                    {"Stub", 0.05, 0.01}};
+const std::vector<Round> kRounds = {
+    {"Ball", 0.05, 0.0}, {"Capsule", 0.03, 0.08}, {"Rod", 0.01, 0.12}, {"Stub", 0.05, 0.01}};
 
 // An edge of B along its y axis.
 struct EdgeOfB {
@@ -95,16 +93,16 @@ class TwoFacesOf : public ::testing::TestWithParam<std::size_t> {
   const Round& round() const { return kRounds[GetParam()]; }
 };
 
-// Lines are off by about as much as they claim for V, in the normal too, and by more in Q and depth:
-// there columns on a grid, below, have the word.
+// Lines are off by about as much as they claim for V, in the normal too, and by more in Q and
+// depth: there columns on a grid, below, have the word.
 TEST_P(TwoFacesOf, IsWhatLinesFind) {
   test::Random random(1 + GetParam());
   const int runs = test::cases(6000, 600, 60);
   int count = 0;
   for (int i = 0; i < runs; ++i) {
     const EdgeOfB& edge = edges()[static_cast<std::size_t>(i % 3)];
-    const double depth = round().radius * (i % 2 ? random.log_uniform(1e-6, 0.1)
-                                                 : random.uniform(0.05, 1.5));
+    const double depth =
+        round().radius * (i % 2 ? random.log_uniform(1e-6, 0.1) : random.uniform(0.05, 1.5));
     const Pose X_BA = at_edge(random, round(), edge, depth), X_AB = X_BA.inverse();
     const Interference out = test::evaluated(round().shape(), edge.solid, X_AB);
     if (!is_of_two_faces(out, X_BA, edge)) continue;
@@ -126,8 +124,8 @@ TEST_P(TwoFacesOf, IsWhatLinesFind) {
     EXPECT_TRUE(test::same(out.total, expected, {doubt + 1e-4, round().size()})) << i;
     const Interference back = test::evaluated(edge.solid, round().shape(), X_BA);
     EXPECT_EQ(back.engine, Engine::kClosedForm);
-    EXPECT_TRUE(test::same(reversed(transformed(back.total, X_AB)), out.total,
-                           {1e-9, round().size()}))
+    EXPECT_TRUE(
+        test::same(reversed(transformed(back.total, X_AB)), out.total, {1e-9, round().size()}))
         << i;
   }
   EXPECT_GT(count, runs / 3);
