@@ -77,14 +77,21 @@ TIMED = {
 
 @functools.cache
 def chosen() -> dict[tuple[str, str], str]:
-    """Which engine `auto` takes for a pair of solids that overlap over edges, in this order."""
-    X_AB = np.eye(4)
-    X_AB[:3, 3] = 0.03, 0.06, 0.05
+    """Which engine `auto` takes for a pair of solids that overlap over edges, in this order. A
+    formula must know the overlap over a corner, too.
+    """
+    over_edge, over_corner = np.eye(4), np.eye(4)
+    over_edge[:3, 3] = 0.03, 0.06, 0.05
+    over_corner[:3, 3] = 0.08, 0.06, 0.05
     engines = {}
     for a, solid in SOLIDS.items():
         for b, other in SOLIDS.items():
-            if (a, b) != ("half-space", "half-space"):
-                engines[a, b] = vc.interference(solid, other, X_AB, tolerance=0.5).engine
+            if (a, b) == ("half-space", "half-space"):
+                continue
+            engine = vc.interference(solid, other, over_edge, tolerance=0.5).engine
+            if engine == "closed_form":
+                engine = vc.interference(solid, other, over_corner, tolerance=0.5).engine
+            engines[a, b] = engine
     return engines
 
 

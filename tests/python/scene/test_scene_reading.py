@@ -185,7 +185,7 @@ def test_description_warns_of_what_cannot_touch():
 
 
 def test_a_scene_asks_auto_at_every_pose():
-    """Where one face of the table alone cuts the rod there is a formula; at its edge `lines` is
+    """Where one face of the table alone cuts the rod there is a formula; at its corner `lines` is
     asked, which the description names."""
     model = vc.load("""<mujoco><worldbody>
       <geom name="table" type="box" size="0.7 0.4 0.46" pos="0 0 -0.46"/>
@@ -209,5 +209,9 @@ def test_a_scene_asks_auto_at_every_pose():
 
     assert volume("auto") == pytest.approx(volume_on_floor(), rel=1e-11, abs=0)
     assert volume("lines") != pytest.approx(volume_on_floor(), rel=1e-9, abs=0)
-    data.qpos[0] = 0.7  # half of it is over the edge
-    assert volume("auto") == volume("lines") == pytest.approx(0.5 * volume_on_floor(), rel=1e-3)
+    data.qpos[0] = 0.7  # half of it is over the edge: two faces cut it
+    assert volume("auto") == pytest.approx(0.5 * volume_on_floor(), rel=1e-3)
+    assert volume("auto") == pytest.approx(volume("lines"), rel=1e-4, abs=0)
+    assert volume("auto") != volume("lines")
+    data.qpos[1] = 0.4  # and of that half
+    assert volume("auto") == volume("lines") == pytest.approx(0.25 * volume_on_floor(), rel=1e-3)
