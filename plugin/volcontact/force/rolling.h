@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "volcontact/base/types.h"
@@ -25,16 +26,16 @@ struct RollingInput {
 /// direction of the arm, the distance from the centroid to the loaded edge of a wedge-shaped patch.
 inline Vec3 rolling_torque(const RollingInput& in) {
   if (!(in.rolling_damping > 0.0) || !(in.volume > 0.0)) return Vec3::Zero();
-  const Mat3 cross = skew(in.normal);
-  const Mat3 projected = cross * in.second_moment * cross.transpose();
-  Vec3 torque = -in.rolling_damping * (projected * in.angular_velocity);
-  const double size = torque.norm();
-  if (!(size > 0.0)) return Vec3::Zero();
+  const Vec3& n = in.normal;
+  const Vec3 torque =
+      -in.rolling_damping * n.cross(in.second_moment * in.angular_velocity.cross(n));
+  const double square = torque.squaredNorm();
+  if (!(square > 0.0)) return Vec3::Zero();
   // Variance of the patch along the arm, which is perpendicular to the torque.
-  const Vec3 direction = torque / size;
-  const double variance = direction.dot(projected * direction) / in.volume;
-  const double limit = in.normal_force * std::sqrt(2.0 * variance);
-  return size > limit ? Vec3(limit * direction) : torque;
+  const Vec3 arm = torque.cross(n);
+  const double variance = std::max(0.0, arm.dot(in.second_moment * arm)) / (square * in.volume);
+  const double limit = in.normal_force * std::sqrt(2.0 * variance), size = std::sqrt(square);
+  return size > limit ? Vec3((limit / size) * torque) : torque;
 }
 
 }  // namespace volcontact

@@ -38,15 +38,16 @@ PatchMoments patch_moments(const VolumeMetrics& metrics_W, const Mat3& axes) noe
   PatchMoments patch;
   patch.area = metrics_W.area_vector.norm();
   if (!(patch.area > 0.0) || !(metrics_W.volume > 0.0)) return patch;
-  const Mat3 to_site = axes.transpose();
-  const Vec3 n = axes.col(2);
+  const Vec3 &t_1 = axes.col(0), &t_2 = axes.col(1), &n = axes.col(2);
   // T about the centroid, per area: (r x n) of the patch's centre r, turned round.
   const Vec3 turned =
       (metrics_W.centroid.cross(metrics_W.area_vector) - metrics_W.area_moment) / patch.area;
-  const Vec3 offset = to_site * n.cross(turned);
-  const Mat3 weighed = to_site * metrics_W.second_moment() * axes;
-  patch.offset = offset.head<2>();
-  patch.weighed = weighed.block<2, 2>(0, 0) / metrics_W.volume;
+  const Vec3 centre = n.cross(turned);
+  const Mat3 second = metrics_W.second_moment();
+  const Vec3 along_1 = second * t_1, along_2 = second * t_2;
+  const double mixed = t_1.dot(along_2);
+  patch.offset = {t_1.dot(centre), t_2.dot(centre)};
+  patch.weighed = Mat2(t_1.dot(along_1), mixed, mixed, t_2.dot(along_2)) / metrics_W.volume;
 
   // About the patch's centre the volume and the patch have the same second moments where the depth
   // is linear. A smooth body pushed in has those of a paraboloid, 2/3 of an ellipse's; which of the
