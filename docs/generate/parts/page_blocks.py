@@ -77,8 +77,9 @@ TIMED = {
 
 @functools.cache
 def chosen() -> dict[tuple[str, str], str]:
-    """Which engine `auto` takes for a pair of solids that overlap over edges, in this order. A
-    formula must know the overlap over a corner, too.
+    """Which engine `auto` takes for a pair of solids that overlap over edges, in this order.
+
+    A formula must know the overlap over a corner, too.
     """
     over_edge, over_corner = np.eye(4), np.eye(4)
     over_edge[:3, 3] = 0.03, 0.06, 0.05
