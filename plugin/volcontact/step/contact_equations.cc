@@ -34,7 +34,7 @@ bool ContactEquations::is_of_normal_slopes() const {
 
 void ContactEquations::factor_normal(const ContactSpace& space, double step) {
   by_.is_valid = false;
-  by_.rubs = may_rub;
+  by_.rubs = may_rub || has_friction();
   by_.slopes.clear();
   by_.pressed.clear();
   by_.roots.clear();
@@ -91,6 +91,7 @@ void ContactEquations::set_columns(const ContactSpace& space, double step, int k
 }
 
 bool ContactEquations::knows_all_that_rub() const {
+  if (!by_.rubs) return !has_friction();
   std::size_t next = 0;
   for (std::size_t place = 0; place < slopes.size(); ++place) {
     const bool is_known = next < by_.pressed.size() && by_.pressed[next] == static_cast<int>(place);

@@ -29,7 +29,7 @@ struct ContactEquations {
   };
   std::vector<Slope> slopes;     ///< C, by places
   std::vector<double> constant;  ///< e
-  /// Whether friction may come before `forget`.
+  /// Whether friction may come before `forget`: then its unknowns are there from the first matrix.
   bool may_rub = true;
 
   /// To be called when the space, or the step, is another one: until then a matrix of the same C is

@@ -285,11 +285,10 @@ void ContactSpace::build(const Mechanism& mechanism, std::span<const ContactPlac
   free_known_.resize(count);
   generalized_.resize(count);
   known_.resize(count);
-  if (scalars_.size() < count) {
-    dense_.resize(kRows * count, 0.0);
-    scalars_.resize(count, 0.0);
-    is_in_tree_.resize(count, 0);
-  }
+  // Zeros between uses, but for a step that ran out of memory.
+  dense_.assign(kRows * count, 0.0);
+  scalars_.assign(count, 0.0);
+  is_in_tree_.assign(count, 0);
   for (std::size_t i = 0; i < count; ++i) {
     free_known_[i] = known[matrix_.dofs()[i]];
     generalized_[i] = mechanism.speeds[matrix_.dofs()[i]];

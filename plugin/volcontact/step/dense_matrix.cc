@@ -21,7 +21,7 @@ void DenseMatrix::reset(int size, bool is_symmetric) {
   if (!is_symmetric && shares_.size() < count) shares_.resize(count);
   inverse_.resize(volcontact::size(size));
   whole_.resize(volcontact::size(size));
-  // What is read beyond a row, whose place nothing else has.
+  // Registers reach as far beyond a column.
   for (int i = 0; i < size; ++i) {
     std::fill_n(column(i) + size, kLanes, 0.0);
     if (!is_symmetric) std::fill_n(&shares_[volcontact::size(i) * stride_] + size, kLanes, 0.0);

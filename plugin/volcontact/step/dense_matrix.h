@@ -34,15 +34,15 @@ class DenseMatrix {
     return numbers_.data() + static_cast<std::size_t>(i) * stride_;
   }
 
-  /// Eliminates the first `count` unknowns. A pivot is at least what rounding
-  /// leaves of `whole`, the diagonal of what this matrix is left of; without, of its own.
+  /// Eliminates the first `count` unknowns. A pivot is at least what rounding leaves of `whole`,
+  /// the diagonal of what this matrix is left of; without, of its own.
   void eliminate(int count, const double* whole = nullptr);
 
-  // After it, of a vector of all rows and `kLanes` zeros.
+  // After it, for a right side: a number a row, and `kLanes` zeros behind them.
 
-  /// Takes the eliminated unknowns out of the right sides after them.
+  /// Takes the eliminated unknowns out of the right sides of the others.
   void go_down(double* x) const;
-  /// The eliminated unknowns, from what that left of the right sides and the other unknowns.
+  /// Solves for the eliminated unknowns, once the others stand in place of their right sides.
   void go_up(double* x) const;
 
  private:
@@ -54,16 +54,18 @@ class DenseMatrix {
   std::vector<double> inverse_, whole_;  // of the pivots
 };
 
-/// Numbers column by column, each column padded: y = M x, where y has whole registers.
+// Products of matrices whose columns stand one after another, each padded with zeros.
+
+/// y = M x of a square matrix; y has room for a padded column.
 void multiply(const double* matrix, int size, const double* x, double* y,
               SimdPath path = best_simd_path());
 
-/// Three columns, padded, by a lower triangular matrix.
+/// Three columns of `stride` numbers, times a lower triangular matrix.
 void multiply_by_root(const double* columns, std::size_t stride, const Mat3& root, double* out,
                       SimdPath path = best_simd_path());
 
-/// out = M - A B' of `count` columns, those of M, A and out padded; B has for each of its `size`
-/// rows, six by six, `count` times six numbers.
+/// out = M - A B' of a square matrix, with `count` columns of A and of B. B stands by blocks of six
+/// rows, the columns of each block one after another.
 void subtract_product(const double* matrix, int size, const double* a, const double* b, int count,
                       double* out, SimdPath path = best_simd_path());
 

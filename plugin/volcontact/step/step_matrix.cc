@@ -43,7 +43,7 @@ void StepMatrix::number_dofs(const MechanismTrees& mechanism, std::span<const Do
     first = std::min(first, free_envelope_[i]);
   }
   carriers_.set(parents_);
-  if (marked_.size() < count) marked_.resize(count, 0);
+  marked_.assign(count, 0);
 }
 
 void StepMatrix::make_mass(const Mechanism& mechanism) {
