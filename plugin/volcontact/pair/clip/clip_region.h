@@ -171,16 +171,19 @@ class Region {
 
   int first_vertex(const FaceLoop& face) const { return polytope_.loop_vertices()[face.first]; }
 
-  // The largest face that columns end at, all but few of them as a rule; none where there is an
-  // overhang.
+  // The face at which most columns end, all but few as a rule; none where there is an overhang.
   const FaceLoop* largest_top(const Mat3& R_CA) const {
     const FaceLoop* top = nullptr;
+    double largest = 0.0;  // shadow
     for (const FaceLoop& face : faces_) {
       const Vec3 n = R_CA * normal(face);
       if (is_steep(n)) continue;
       const bool upper = n.z() > 0.0;
       if (upper == is_a(face)) return nullptr;
-      if (upper && (!top || face.area > top->area)) top = &face;
+      if (upper && face.area * n.z() > largest) {
+        largest = face.area * n.z();
+        top = &face;
+      }
     }
     return top;
   }
