@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "volcontact/pair/closed_form/gauss_rule.h"
+#include "volcontact/pair/quadrature/small_turn.h"
 
 namespace volcontact {
 namespace {
@@ -18,8 +19,6 @@ constexpr double kSteep = 0.7;        // part of the axis across, with which z t
 constexpr double kMostAtOnce = 5.0;   // angle of an arc for one rule [rad]
 constexpr double kShortArc = 0.8;     // angle of an arc for a short rule [rad]
 
-double square_of(double x) { return x * x; }
-
 // For products of five sines and cosines over `range` [rad], to 1e-7 or better.
 std::span<const GaussNode> rule_for(double range) {
   if (range < kShortArc) return kGauss6;
@@ -28,30 +27,18 @@ std::span<const GaussNode> rule_for(double range) {
   return kGauss16;
 }
 
-struct Direction {
-  double cosine, sine;
-};
-
-// To 1e-12 if the angle is less than half a short arc.
-Direction direction_near_0(double angle) {
-  const double x = angle * angle;
-  return {1.0 - x / 2.0 * (1.0 - x / 12.0 * (1.0 - x / 30.0 * (1.0 - x / 56.0 * (1.0 - x / 90.0)))),
-          angle * (1.0 - x / 6.0 * (1.0 - x / 20.0 * (1.0 - x / 42.0 * (1.0 - x / 72.0))))};
-}
-
 // Calls add(cosine, sine, weight) at the nodes of a rule between two angles.
 template <typename Add>
 void over_arc(double from, double to, Add&& add) {
   const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
   const double cosine = std::cos(middle), sine = std::sin(middle);
-  const double range = 2.0 * std::abs(half);
-  for (const GaussNode& node : rule_for(range)) {
+  const bool is_small = std::abs(half) <= kSmallTurn;
+  for (const GaussNode& node : rule_for(2.0 * std::abs(half))) {
     const double angle = half * node.x;
-    const auto [c, s] =
-        range < kShortArc ? direction_near_0(angle) : Direction{std::cos(angle), std::sin(angle)};
+    const SmallTurn turn = is_small ? SmallTurn(angle) : SmallTurn::any(angle);
     const double weight = half * node.weight;
-    add(cosine * c + sine * s, sine * c - cosine * s, weight);
-    add(cosine * c - sine * s, sine * c + cosine * s, weight);
+    add(cosine * turn.cos + sine * turn.sin, sine * turn.cos - cosine * turn.sin, weight);
+    add(cosine * turn.cos - sine * turn.sin, sine * turn.cos + cosine * turn.sin, weight);
   }
 }
 

@@ -5,6 +5,8 @@
 
 namespace volcontact {
 
+inline double square_of(double x) { return x * x; }
+
 /// Integrals over a section by a half-plane that ends at an edge: y along the edge, rho away from
 /// it.
 struct EdgeSection {

@@ -29,18 +29,23 @@ TEST(ColumnEnergy, OfAWedgeIsTheIntegralOfTheSquare) {
   EXPECT_NEAR(columns.value(), 1.0 / 6.0, 1e-16);
 }
 
-TEST(ColumnEnergy, OverlaysUpperAndLowerFacesThatDoNotMatch) {
-  // Roof over u: h = min(u, 1 - u); keel over v: h = -min(v, 1 - v). L is their sum:
-  // int L^2/2 = 1/2 (2 <a^2> + 2 <a>^2) with <a> = 1/4, <a^2> = 1/12.
-  ColumnEnergy columns;
-  columns.start(4);
-  columns.add_upper({0.0, 1.0, 0.0}, false, std::vector<Point>{{0, 0}, {0.5, 0}, {0.5, 1}, {0, 1}});
+// The half u > 1/2 of a roof h = min(u, 1 - u), and a keel h = -min(v, 1 - v).
+void add_half_of_roof_and_keel(ColumnEnergy& columns) {
   columns.add_upper({1.0, -1.0, 0.0}, false,
                     std::vector<Point>{{0.5, 0}, {1, 0}, {1, 1}, {0.5, 1}});
   columns.add_lower(2, {0.0, 0.0, -1.0}, false,
                     std::vector<Point>{{0, 0}, {1, 0}, {1, 0.5}, {0, 0.5}}, std::vector<int>{3});
   columns.add_lower(3, {-1.0, 0.0, 1.0}, false,
                     std::vector<Point>{{0, 0.5}, {1, 0.5}, {1, 1}, {0, 1}}, std::vector<int>{2});
+}
+
+TEST(ColumnEnergy, OverlaysUpperAndLowerFacesThatDoNotMatch) {
+  // L of a roof over u and a keel over v is their sum:
+  // int L^2/2 = 1/2 (2 <a^2> + 2 <a>^2) with <a> = 1/4, <a^2> = 1/12.
+  ColumnEnergy columns;
+  columns.start(4);
+  columns.add_upper({0.0, 1.0, 0.0}, false, std::vector<Point>{{0, 0}, {0.5, 0}, {0.5, 1}, {0, 1}});
+  add_half_of_roof_and_keel(columns);
   EXPECT_NEAR(columns.value(), 1.0 / 12.0 + 1.0 / 16.0, 1e-16);
 }
 
@@ -49,12 +54,7 @@ TEST(ColumnEnergy, LiesUnderAPlaneByItsLengthTimesTheGap) {
   // int (2 u - 1) ((1 - u) + <a>) du = 1/24 + 1/16.
   ColumnEnergy columns;
   columns.start(4);
-  columns.add_upper({1.0, -1.0, 0.0}, false,
-                    std::vector<Point>{{0.5, 0}, {1, 0}, {1, 1}, {0.5, 1}});
-  columns.add_lower(2, {0.0, 0.0, -1.0}, false,
-                    std::vector<Point>{{0, 0}, {1, 0}, {1, 0.5}, {0, 0.5}}, std::vector<int>{3});
-  columns.add_lower(3, {-1.0, 0.0, 1.0}, false,
-                    std::vector<Point>{{0, 0.5}, {1, 0.5}, {1, 1}, {0, 1}}, std::vector<int>{2});
+  add_half_of_roof_and_keel(columns);
   EXPECT_NEAR(columns.value_above({0.0, 1.0, 0.0}), 1.0 / 24.0 + 1.0 / 16.0, 1e-16);
 }
 

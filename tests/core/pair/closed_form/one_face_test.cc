@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "core/support/bevelled_box.h"
 #include "core/support/evaluated.h"
 #include "core/support/matchers.h"
 #include "core/support/random.h"
@@ -16,20 +17,7 @@ namespace {
 
 const Box kBox({.half_sizes = Vec3(0.3, 0.25, 0.2)});
 
-// A box of many faces, its edges cut off.
-ConvexPolytope bevelled() {
-  std::vector<Vec3> corners;
-  for (const double x : {-1.0, 1.0}) {
-    for (const double y : {-1.0, 1.0}) {
-      for (const double z : {-1.0, 1.0}) {
-        corners.emplace_back(0.29 * x, 0.24 * y, 0.2 * z);
-        corners.emplace_back(0.29 * x, 0.25 * y, 0.19 * z);
-        corners.emplace_back(0.3 * x, 0.24 * y, 0.19 * z);
-      }
-    }
-  }
-  return ConvexPolytope({.vertices = corners});
-}
+ConvexPolytope bevelled() { return test::bevelled_box(kBox.half_sizes(), 0.01); }
 
 const std::map<std::string, Shape>& round_solids() {
   static const std::map<std::string, Shape> solids = {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/reference/reference_integral.h"
+#include "core/support/bevelled_box.h"
 #include "core/support/evaluated.h"
 #include "core/support/matchers.h"
 #include "core/support/random.h"
@@ -20,20 +21,7 @@ namespace {
 
 const Box kBox({.half_sizes = Vec3(0.3, 0.25, 0.2)});
 
-// A box with its edges and corners cut off.
-ConvexPolytope bevelled() {
-  std::vector<Vec3> corners;
-  for (const double x : {-1.0, 1.0}) {
-    for (const double y : {-1.0, 1.0}) {
-      for (const double z : {-1.0, 1.0}) {
-        corners.emplace_back(0.25 * x, 0.2 * y, 0.2 * z);
-        corners.emplace_back(0.25 * x, 0.25 * y, 0.15 * z);
-        corners.emplace_back(0.3 * x, 0.2 * y, 0.15 * z);
-      }
-    }
-  }
-  return ConvexPolytope({.vertices = corners});
-}
+ConvexPolytope bevelled() { return test::bevelled_box(kBox.half_sizes(), 0.05); }
 
 // A round solid: a capsule, or a ball if it has no length.
 struct Round {
