@@ -410,7 +410,7 @@ step of the assembly peg went from 1.52 to 0.44 million instructions, or from 8.
 the hammer from 2.8 to 1.6 times.
 
 The latest changes, in instructions per step of our part (callgrind, with AVX2): humanoid 1.58 to 1.27 million, hand with block
-1.27 to 0.94 million, can in bins 332 to 257 thousand. The equations for the forces are dense and are eliminated row
+1.27 to 0.94 million, can in bins 307 to 257 thousand. The equations for the forces are dense and are eliminated row
 by row in whole registers, pressing and friction in one matrix; they were blocks of 3 x 3, and the response of
 friction was computed anew whenever a point of a patch lifted. A capsule on an edge of the block is cut by two faces
 and has its own sections ([theory.md](theory.md#two-faces)). Capsules that do not touch are told apart by their axes.

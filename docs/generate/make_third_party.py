@@ -33,7 +33,7 @@ their file. Of {scenes} scenes, {clean} run without a MuJoCo warning and {refuse
 Cells with two numbers show volumetric / native: the largest number of contacts at a time (sites / contact points), the
 deepest penetration [mm], the median time of a step [us], and MuJoCo's warnings. *Hulls* counts meshes that do not bound
 a solid and are replaced by their convex hulls. Native depths are those of the contact points, which MuJoCo finds between
-hulls. The machine had other work to do, so take the times as a ratio: {median:.1f} in the median, {worst:.1f} at worst
+hulls. Times differ from machine to machine; take them as a ratio: {median:.1f} in the median, {worst:.1f} at worst
 ({worst_scene}).
 """  # noqa: E501
 
