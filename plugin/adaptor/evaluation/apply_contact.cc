@@ -43,7 +43,7 @@ void solve_implicit(const SceneContact& contact, const mjModel* m, mjData* d,
   for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
     const PairContact& pair = scratch.pair(k);
     ContactReport& report = scratch.reports[k];
-    implicit.begin_pair(limit_of(contact, m, k, scratch));
+    implicit.begin_pair(limit_of(k, scratch));
     for (std::size_t i = 0; i < report.sites.size(); ++i) {
       const bool is_stiff = scratch.stiff[site++] != 0;
       if (report.sites[i].normal.isZero(0.0)) continue;
@@ -96,7 +96,7 @@ void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
     hold_solved(m, d, our, scratch);
     read_energies(contact, begin, account.since_begin(), is_rk4, scratch, now);
     release(account, now, scratch);
-    scratch.dissipated = 0.0;
+    know_limits(contact, m, 0.0, scratch);
     find_unpaid_pairs(contact, m, false, scratch);
     postpone_stiff(scratch);
     return;
@@ -104,15 +104,16 @@ void choose_forces(const SceneContact& contact, const mjModel* m, mjData* d,
   now.implicit = find_stiff_sites(contact, m, d, scratch);
   read_energies(contact, begin, account.since_begin(), is_rk4, scratch, now);
   release(account, now, scratch);
-  scratch.dissipated = 0.0;
+  double dissipated = 0.0;  // by the contacts up to the evaluation before [J]
   if (begin) {
     const SleepingEnergy asleep = energy_asleep(contact, begin, scratch);
     double elastic = asleep.elastic + asleep.bristle - now.unpaid;
     for (std::size_t k = 0; k < scratch.cull.near.size(); ++k) {
       elastic += scratch.reports[k].elastic_energy;
     }
-    scratch.dissipated = least_dissipated(account.begin().energy(), account.since_begin(), elastic);
+    dissipated = least_dissipated(account.begin().energy(), account.since_begin(), elastic);
   }
+  know_limits(contact, m, dissipated, scratch);
   const bool overdraws =
       is_rk4 ? find_unpaid_pairs(contact, m, true, scratch) : foresee_work(contact, m, d, scratch);
   now.implicit = now.implicit || overdraws;

@@ -115,7 +115,9 @@ void evaluate_pairs(const SceneContact& contact, const mjModel* m, const mjData*
   const bool is_free = contact.options().threads == 0;
   ThreadChoice& choice = scratch.choices.of(&contact);
   if (is_free && !choice.shares(guard.threads(), near.size())) guard.take_one();
-  const auto begin = std::chrono::steady_clock::now();
+  using Clock = std::chrono::steady_clock;
+  const bool is_timed = is_free && choice.wants_time();
+  const Clock::time_point begin = is_timed ? Clock::now() : Clock::time_point();
   const Work work = plan_work(guard.threads(), scratch);
   if (scratch.workspaces.size() < static_cast<std::size_t>(work.threads)) {
     scratch.workspaces.resize(static_cast<std::size_t>(work.threads));
@@ -131,19 +133,21 @@ void evaluate_pairs(const SceneContact& contact, const mjModel* m, const mjData*
   const int single = work.own_sharing + work.single_tasks;
   const int tasks = work.single_tasks + (work.pairs - single + kPairsPerTask - 1) / kPairsPerTask;
   const bool is_shared = work.threads > 1 && tasks > 1;
-  FirstFailure failure;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(work.threads) if (is_shared)
-  for (int task = 0; task < tasks; ++task) {
-    const int thread = is_shared ? omp_get_thread_num() : 0;
-    const bool is_single = task < work.single_tasks;
-    const int first =
-        is_single ? work.own_sharing + task : single + (task - work.single_tasks) * kPairsPerTask;
-    const int last = is_single ? first + 1 : std::min(first + kPairsPerTask, work.pairs);
-    failure.guard([&] { evaluate_some(first, last, thread); });
+  if (!is_shared) {  // a parallel region of one thread would cost as much as a pair
+    evaluate_some(work.own_sharing, work.pairs, 0);
+  } else {
+    FirstFailure failure;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(work.threads)
+    for (int task = 0; task < tasks; ++task) {
+      const bool is_single = task < work.single_tasks;
+      const int first =
+          is_single ? work.own_sharing + task : single + (task - work.single_tasks) * kPairsPerTask;
+      const int last = is_single ? first + 1 : std::min(first + kPairsPerTask, work.pairs);
+      failure.guard([&] { evaluate_some(first, last, omp_get_thread_num()); });
+    }
+    failure.rethrow();
   }
-  failure.rethrow();
-  if (!is_free) return;
-  choice.took(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  if (is_timed) choice.took(std::chrono::duration<double>(Clock::now() - begin).count());
 }
 
 }  // namespace volcontact::adaptor

@@ -121,7 +121,7 @@ bool foresee_work(const SceneContact& contact, const mjModel* m, mjData* d,
     const auto begin = stiff;
     stiff += std::ssize(sites);
     if (!scratch.foreseen[k]) continue;
-    WorkLimit limit = limit_of(contact, m, k, scratch);
+    WorkLimit limit = limit_of(k, scratch);
     for (std::size_t i = 0; i < sites.size(); ++i) {
       const GeomPair& geoms = scratch.geoms_of_site(contact, k, i);
       const auto of = [&](int geom) {
@@ -142,7 +142,7 @@ bool foresee_work(const SceneContact& contact, const mjModel* m, mjData* d,
       continue;
     }
     if (flies_alone(m, scratch.pair(k)) && limit.drawn_by_friction() <= own) {
-      scratch.yields[k] = yield_of(PairEnergy::Now(scratch.reports[k]), limit.normal_work, step);
+      scratch.yields[k] = yield_of(scratch.now[k], limit.normal_work, step);
       continue;
     }
     std::fill(begin, stiff, 1);

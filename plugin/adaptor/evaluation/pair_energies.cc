@@ -31,12 +31,12 @@ struct ExplicitShare {
 
 // The share of the explicit forces of a pair that does no more work than the pair may.
 ExplicitShare share_of(const SceneContact& contact, const mjModel* m, std::size_t k,
-                       const PairEnergy::Now& now, double yields,
-                       const EvaluationScratch& scratch) {
+                       double yields, const EvaluationScratch& scratch) {
   const double h = m->opt.timestep;
+  const PairEnergy::Now& now = scratch.now[k];
   const double along = std::max(yields, inverse_mass(m, scratch.pair(k).geoms).along);
   const double gained = h * yields * now.force;
-  WorkLimit limit = limit_of(contact, m, k, scratch);
+  WorkLimit limit = limit_of(k, scratch);
   for (const SiteReport& site : scratch.reports[k].sites) {
     lend(contact, m, scratch.pair(k).geoms, site, gained - site.approach_speed, limit);
   }
@@ -78,15 +78,24 @@ double put_in_by_turns(const PairContact& pair) {
 
 }  // namespace
 
-WorkLimit limit_of(const SceneContact& contact, const mjModel* m, std::size_t k,
-                   const EvaluationScratch& scratch) {
-  const double along = inverse_mass(m, scratch.pair(k).geoms).along;
-  const PairEnergy::Now now(scratch.reports[k]);
-  const double moving = now.moving(along) - lift(m, scratch.reports[k], along);
-  WorkLimit limit =
-      WorkLimit::of(scratch.energies[k], scratch.dissipated, contact.options().exit_speed, moving)
-          .for_bodies(along, fall_of(m));
-  limit.slow = std::min(limit.slow, std::max(0.0, now.elastic - scratch.energies[k].stored));
+void know_limits(const SceneContact& contact, const mjModel* m, double dissipated,
+                 EvaluationScratch& scratch) {
+  const double fall = fall_of(m), exit_speed = contact.options().exit_speed;
+  scratch.limits.clear();
+  for (std::size_t k = 0; k < scratch.energies.size(); ++k) {
+    const double along = inverse_mass(m, scratch.pair(k).geoms).along;
+    const PairEnergy& energy = scratch.energies[k];
+    const PairEnergy::Now& now = scratch.now[k];
+    const double moving = now.moving(along) - lift(m, scratch.reports[k], along);
+    WorkLimit& limit = scratch.limits.emplace_back(
+        WorkLimit::of(energy, dissipated, exit_speed, moving).for_bodies(along, fall));
+    limit.slow = std::min(limit.slow, std::max(0.0, now.elastic - energy.stored));
+  }
+}
+
+WorkLimit limit_of(std::size_t k, const EvaluationScratch& scratch) {
+  WorkLimit limit = scratch.limits[k];
+  limit.rubbed = scratch.energies[k].rubbed;
   return limit;
 }
 
@@ -105,13 +114,13 @@ void lend(const SceneContact& contact, const mjModel* m, const GeomPair& geoms,
 
 bool may_overdraw(const SceneContact& contact, const mjModel* m, std::size_t k,
                   const EvaluationScratch& scratch) {
-  const PairEnergy::Now now(scratch.reports[k]);
+  const PairEnergy::Now& now = scratch.now[k];
   const GeomPair& geoms = scratch.pair(k).geoms;
   const double impulse = m->opt.timestep * now.force;
   const double gained = impulse * kBall * inverse_mass(m, geoms).along;
   const double work = impulse * (0.5 * gained - now.approach());
   if (!(work > 0.0)) return false;
-  WorkLimit limit = limit_of(contact, m, k, scratch);
+  WorkLimit limit = limit_of(k, scratch);
   if (work <= limit.at_any_speed()) return false;
   // At rest all is lent that gravity does meanwhile.
   for (const SiteReport& site : scratch.reports[k].sites) {
@@ -124,6 +133,7 @@ void read_energies(const SceneContact& contact, const double* committed, double 
                    bool is_rk4, EvaluationScratch& scratch, EnergyAccount& account) {
   const std::size_t count = scratch.cull.near.size();
   scratch.energies.assign(count, PairEnergy());
+  scratch.now.assign(count, PairEnergy::Now());
   scratch.put_in = 0.0;
   std::size_t first = 0;  // of the pair's sites
   for (std::size_t k = 0; k < count; ++k) {
@@ -132,7 +142,7 @@ void read_energies(const SceneContact& contact, const double* committed, double 
     first += report.sites.size();
     if (!report.touching()) continue;
     PairEnergy& energy = scratch.energies[k];
-    const PairEnergy::Now now(report);
+    const PairEnergy::Now& now = scratch.now[k] = PairEnergy::Now(report);
     bool is_new = true;
     if (committed) {
       const SitePool<const double> pool(committed + contact.sites().size(), contact.energies());
@@ -172,7 +182,7 @@ bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m, bool begin
     first += report.sites.size();
     if (!report.touching()) continue;
     PairEnergy& energy = scratch.energies[k];
-    const PairEnergy::Now now(report);
+    const PairEnergy::Now& now = scratch.now[k];
     const double unpaid = now.elastic - energy.stored - energy.found;
     const double moving = now.moving(inverse_mass(m, scratch.pair(k).geoms).along);
     const bool errs = begins && end_excess_of(m, now, report) > PairEnergy::kOverdraft * moving;
@@ -180,7 +190,7 @@ bool find_unpaid_pairs(const SceneContact& contact, const mjModel* m, bool begin
       energy.act(now);
       continue;
     }
-    const auto [share, released_at_most, slowly] = share_of(contact, m, k, now, 0.0, scratch);
+    const auto [share, released_at_most, slowly] = share_of(contact, m, k, 0.0, scratch);
     if (share == 1.0 && !errs) {
       energy.act(now);
       if (slowly) energy.slow = released_at_most;
@@ -198,9 +208,9 @@ bool limit_explicit(const SceneContact& contact, const mjModel* m, EvaluationScr
     PairEnergy& energy = scratch.energies[k];
     ContactReport& report = scratch.reports[k];
     if (energy.is_solved || !report.touching()) continue;
-    const PairEnergy::Now now(report);
+    const PairEnergy::Now& now = scratch.now[k];
     const auto [share, released_at_most, slowly] =
-        share_of(contact, m, k, now, scratch.yields[k], scratch);
+        share_of(contact, m, k, scratch.yields[k], scratch);
     energy.rubbed = now.bristle;
     energy.force = share * now.force;
     energy.power = share * now.power;

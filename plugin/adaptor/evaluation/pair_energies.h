@@ -9,13 +9,17 @@
 namespace volcontact::adaptor {
 
 /// What the pairs hold of the energy of the bodies, after the step that ends here, into
-/// `scratch.energies`; what nobody paid, and what is owed, into `now`.
+/// `scratch.energies`, with what their sites are `now`; what nobody paid, and what is owed, into the
+/// account.
 void read_energies(const SceneContact& contact, const double* committed, double elapsed,
-                   bool is_rk4, EvaluationScratch& scratch, EnergyAccount& now);
+                   bool is_rk4, EvaluationScratch& scratch, EnergyAccount& account);
 
-/// What the contacts of the pair at place k of `near` may do on the bodies in the coming step.
-WorkLimit limit_of(const SceneContact& contact, const mjModel* m, std::size_t k,
-                   const EvaluationScratch& scratch);
+/// Finds what the contacts of pairs may do on the bodies in the coming step, where all contacts
+/// have `dissipated` that much so far [J].
+void know_limits(const SceneContact& contact, const mjModel* m, double dissipated,
+                 EvaluationScratch& scratch);
+/// The same of the pair at place k of `near`.
+WorkLimit limit_of(std::size_t k, const EvaluationScratch& scratch);
 
 /// Lends to a pair of geoms what gravity does while the explicit force of a site acts that parts at
 /// that speed.

@@ -41,8 +41,9 @@ struct EvaluationScratch {
   ImplicitStep implicit;
   StepMetric metric;                 ///< and what it takes in: what MuJoCo does implicitly,
   NativeConstraints constraints;     ///< and its constraints
-  double dissipated = 0.0;           ///< by the contacts up to the evaluation before [J]
   std::vector<PairEnergy> energies;  ///< of the pairs in `near`
+  std::vector<PairEnergy::Now> now;  ///< and their sites as the laws say, together
+  std::vector<WorkLimit> limits;     ///< and what they may do in the step: `limit_of`
   double put_in = 0.0;               ///< by the step that ends here, as these tell it [J]
   std::vector<double> user_qfrc, user_xfrc, known, row;
   std::vector<double> on_bodies;  ///< forces and torques at their centres of mass

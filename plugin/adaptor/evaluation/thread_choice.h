@@ -27,7 +27,14 @@ class ThreadChoice {
     return is_shared_ = is_better;
   }
 
-  /// How long that evaluation took [s].
+  /// Whether to say how long it takes: where one thread will do by far, now and then.
+  bool wants_time() noexcept {
+    const bool is_plain = tries_left_ == 0 && !is_shared_ &&
+                          alone_.per_pair * static_cast<double>(pairs_) < 0.5 * kWorthSharing;
+    return !is_plain || ++since_time_ % kTimedOf == 0;
+  }
+
+  /// How long that evaluation took [s], if it wants to know.
   void took(double seconds) noexcept {
     if (pairs_ == 0) return;
     Way& way = is_shared_ ? shared_ : alone_;
@@ -48,6 +55,7 @@ class ThreadChoice {
   };
   static constexpr double kLeastGain = 0.9, kWeight = 0.1;
   static constexpr int kTries = 3, kTryAgain = 1000;
+  static constexpr unsigned kTimedOf = 16;
 
   bool begin_try(bool shared) noexcept {
     tries_left_ = kTries;
@@ -59,6 +67,7 @@ class ThreadChoice {
   bool is_shared_ = false;
   std::size_t pairs_ = 0;
   int tries_left_ = 0, since_try_ = 0;
+  unsigned since_time_ = 0;
   double tried_ = 0.0;
 };
 
