@@ -20,7 +20,9 @@ MechanismTrees trees_of(const mjModel* m) {
     }
     out.trees[size(tree)].end = dof + 1;
     out.tree_of_dof.push_back(tree);
-    out.carrier.push_back(m->dof_parentid[dof]);
+    const int carrier = m->dof_parentid[dof];
+    out.carrier.push_back(carrier);
+    out.depth.push_back(carrier == kNone ? 0 : out.depth[size(carrier)] + 1);
   }
   for (int body = 0; body < m->nbody; ++body) {
     const bool moves = m->body_weldid[body] != 0;
@@ -50,11 +52,12 @@ MujocoMechanism::MujocoMechanism(const mjModel* m, mjData* d, const MechanismTre
   twists = d->cvel;
 }
 
-void MujocoMechanism::mass(std::span<const int> dofs, std::vector<DofEntry>& out) const {
-  for (const int dof : dofs) {
-    for_row_of_mass(m_, d_, dof,
-                    [&](int other, double mass) { out.push_back({dof, other, mass}); });
-  }
+// The mass matrix has fewer numbers where bodies are simple.
+void MujocoMechanism::mass(int dof, double* row) const {
+  const std::vector<int>& depth = trees->depth;
+  for_row_of_mass(m_, d_, dof, [&](int other, double mass) {
+    row[depth[size(dof)] - depth[size(other)]] = mass;
+  });
 }
 
 void MujocoMechanism::damping(std::span<const int> dofs, std::vector<DofEntry>& out) const {

@@ -21,7 +21,7 @@ class MujocoMechanism final : public Mechanism {
   MujocoMechanism(const mjModel* m, mjData* d, const MechanismTrees& of_model,
                   const StepMetric& metric);
 
-  void mass(std::span<const int> dofs, std::vector<DofEntry>& out) const override;
+  void mass(int dof, double* row) const override;
   void damping(std::span<const int> dofs, std::vector<DofEntry>& out) const override;
   bool constraints_see_damping() const override { return solves_with_step_matrix(m_); }
 

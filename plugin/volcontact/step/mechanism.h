@@ -25,6 +25,7 @@ struct MechanismTrees {
   std::vector<double> mass;       ///< of each tree [kg]
   std::vector<int> root;          ///< of each tree, the body that carries the others
   std::vector<int> carrier;       ///< of each degree of freedom the next that carries it, or kNone
+  std::vector<int> depth;         ///< of each degree of freedom: how many carry it
   std::vector<int> tree_of_dof;   ///< of each degree of freedom
   std::vector<int> last_dof;      ///< of each body, that which no other of its own carries
   std::vector<int> tree_of_body;  ///< kNone of a body that stands
@@ -60,8 +61,9 @@ class Mechanism {
   static Vec3 angular(const double* of, int i) { return numbers(of, 2 * i); }
   static Vec3 linear(const double* of, int i) { return numbers(of, 2 * i + 1); }
 
-  /// Appends the mass matrix M of these degrees of freedom: each row as far as what carries it.
-  virtual void mass(std::span<const int> dofs, std::vector<DofEntry>& out) const = 0;
+  /// Of the mass matrix M what a degree of freedom has with itself, with what carries it, with what
+  /// carries that, and so on, one after another. `row` has zeros.
+  virtual void mass(int dof, double* row) const = 0;
   /// Appends, of any column, what the integrator adds to M for the forces by velocities that it
   /// takes implicitly. Of two numbers at one place the last counts.
   virtual void damping(std::span<const int> dofs, std::vector<DofEntry>& out) const = 0;

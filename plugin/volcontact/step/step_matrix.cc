@@ -47,12 +47,8 @@ void StepMatrix::number_dofs(const MechanismTrees& mechanism, std::span<const Do
 }
 
 void StepMatrix::make_mass(const Mechanism& mechanism) {
-  entries_.clear();
-  mechanism.mass(dofs_, entries_);
   mass_.reset(carriers_, true);
-  for (const DofEntry& entry : entries_) {
-    mass_(number(entry.row), number(entry.column)) = entry.value;
-  }
+  for (int i = 0; i < size(); ++i) mechanism.mass(dofs_[index(i)], mass_.row(i));
 }
 
 // Mh = M + N, of the entries of N. Returns whether there is any.
@@ -84,13 +80,9 @@ void StepMatrix::build(const Mechanism& mechanism, std::span<const DofRange> tre
   make_mass(mechanism);
   entries_.clear();
   mechanism.damping(dofs_, entries_);
-  bool has_extra = false;
-  if (entries_.empty()) {
-    free_ = mass_;
-  } else {
-    has_extra = add_extra();
-  }
-  free_factor_ = free_;
+  is_damped_ = !entries_.empty();
+  const bool has_extra = is_damped_ && add_extra();
+  free_factor_ = free();
   free_factor_.factor();
   converts_ = has_extra && !mechanism.constraints_see_damping();
   makes_mass_factor_ = converts_;
@@ -252,10 +244,10 @@ const EnvelopeMatrix& StepMatrix::matrix() {
   has_matrix_ = true;
   matrix_.reset(envelope_, is_symmetric());
   for (int i = 0; i < size(); ++i) {
-    matrix_(i, i) = free_(i, i);
+    matrix_(i, i) = free()(i, i);
     for (int k = carriers_.parent(i); k >= 0; k = carriers_.parent(k)) {
-      matrix_(k, i) = free_.mirrored(i, k);
-      if (!matrix_.is_symmetric()) matrix_.mirrored(k, i) = free_(i, k);
+      matrix_(k, i) = free().mirrored(i, k);
+      if (!matrix_.is_symmetric()) matrix_.mirrored(k, i) = free()(i, k);
     }
   }
   for (const Column& column : columns()) {
@@ -266,7 +258,7 @@ const EnvelopeMatrix& StepMatrix::matrix() {
     if (converts_) {
       shares_ = dense_;
       mass_factor_.solve(shares_.data());
-      free_.multiply_transposed(shares_.data(), product_.data());
+      free().multiply_transposed(shares_.data(), product_.data());
     }
     for (const int row : column.support) {
       const double left = dense_[index(row)];

@@ -71,6 +71,7 @@ class StepMatrix {
   void close(std::vector<int>& numbers);
 
  private:
+  const TreeMatrix& free() const { return is_damped_ ? free_ : mass_; }
   void number_dofs(const MechanismTrees& mechanism, std::span<const DofRange> trees);
   void make_mass(const Mechanism& mechanism);
   bool add_extra();
@@ -87,7 +88,8 @@ class StepMatrix {
   std::vector<int> free_envelope_, envelope_;
   std::vector<DofEntry> entries_;  // of the mechanism
   TreeMatrix mass_, mass_factor_;  // M
-  TreeMatrix free_, free_factor_;  // Mh
+  TreeMatrix free_, free_factor_;  // Mh, where it is not M
+  bool is_damped_ = false;
   bool makes_mass_factor_ = false;
   bool converts_ = false;
   std::vector<Column> columns_;

@@ -64,6 +64,9 @@ class TreeMatrix {
   double& mirrored(int i, int k) { return (is_symmetric() ? lower_ : upper_)[index(i, k)]; }
   double mirrored(int i, int k) const { return (is_symmetric() ? lower_ : upper_)[index(i, k)]; }
 
+  /// Entry (i, i) and those with what carries i, one after another.
+  double* row(int i) { return &lower_[trees_->start(i)]; }
+
   /// In place; the diagonal as inverses.
   void factor() {
     for (int i = 0; i < size(); ++i) {

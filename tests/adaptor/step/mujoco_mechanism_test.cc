@@ -35,12 +35,6 @@ DataPointer moving(const ModelPointer& m) {
   return d;
 }
 
-Mat14 lower_triangle(const std::vector<DofEntry>& entries) {
-  Mat14 out = Mat14::Zero();
-  for (const DofEntry& entry : entries) out(entry.row, entry.column) = entry.value;
-  return out;
-}
-
 TEST(MujocoMechanism, KnowsWhatCarriesWhat) {
   const ModelPointer m = testing::compile(std::string("<mujoco>") + kBodies + "</mujoco>");
   const MechanismTrees trees = trees_of(m.get());
@@ -75,16 +69,20 @@ TEST(MujocoMechanism, MotionsAndMassesAreThoseOfMuJoCo) {
 
   std::vector<int> dofs(14);
   for (int i = 0; i < 14; ++i) dofs[size(i)] = i;
-  std::vector<DofEntry> entries;
-  mechanism.mass(dofs, entries);
-  const Mat14 lower = lower_triangle(entries);
+  Mat14 lower = Mat14::Zero();
+  for (const int dof : dofs) {
+    double row[14] = {};
+    mechanism.mass(dof, row);
+    const double* number = row;
+    for (int k = dof; k >= 0; k = trees.carrier[size(k)]) lower(dof, k) = *number++;
+  }
   for (int i = 0; i < 14; ++i) {
     const auto unit = Vector<14>::Unit(i);
     Vector<14> column;
     mj_mulM(m.get(), d.get(), column.data(), unit.data());
     for (int k = i; k < 14; ++k) EXPECT_NEAR(lower(k, i), column[k], 1e-14);
   }
-  entries.clear();
+  std::vector<DofEntry> entries;
   mechanism.damping(dofs, entries);  // Euler damps joints implicitly
   double sum = 0.0;
   for (const DofEntry& entry : entries) sum += entry.value;

@@ -13,7 +13,7 @@ namespace volcontact::test {
 /// three along and three about the axes of the world, at its centre of mass.
 class FreeBodies final : public Mechanism {
  public:
-  FreeBodies() : tree_of_{{}, {}, {}, {}, {}, {MechanismTrees::kNone}, {MechanismTrees::kNone}} {
+  FreeBodies() : tree_of_{{}, {}, {}, {}, {}, {}, {MechanismTrees::kNone}, {MechanismTrees::kNone}} {
     origins_.assign(3, 0.0);
     twists_.assign(6, 0.0);
   }
@@ -40,6 +40,7 @@ class FreeBodies final : public Mechanism {
     speeds_.insert(speeds_.end(), twist.angular.begin(), twist.angular.end());
     for (int i = 0; i < 6; ++i) {
       tree_of_.carrier.push_back(i == 0 ? MechanismTrees::kNone : first + i - 1);
+      tree_of_.depth.push_back(i);
       tree_of_.tree_of_dof.push_back(body - 1);
       for (int k = 0; k < 6; ++k) motions_.push_back((k + 3) % 6 == i ? 1.0 : 0.0);
       // An axis of turns goes with the body, seen from a point that stays.
@@ -68,12 +69,8 @@ class FreeBodies final : public Mechanism {
     return solution(masses_[size(body - 1)], Eigen::MatrixXd::Identity(6, 6));
   }
 
-  void mass(std::span<const int> dofs, std::vector<DofEntry>& out) const override {
-    for (const int dof : dofs) {
-      for (int i = 0; i <= dof % 6; ++i) {
-        out.push_back({dof, dof - dof % 6 + i, masses_[size(dof / 6)](dof % 6, i)});
-      }
-    }
+  void mass(int dof, double* row) const override {
+    for (int k = dof % 6; k >= 0; --k) *row++ = masses_[size(dof / 6)](dof % 6, k);
   }
   void damping(std::span<const int> /*dofs*/, std::vector<DofEntry>& /*out*/) const override {}
   bool constraints_see_damping() const override { return false; }
