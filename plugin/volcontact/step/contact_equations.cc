@@ -211,9 +211,9 @@ void ContactEquations::add_slope(const ContactSpace& space, int place, double st
                                  EnvelopeMatrix& matrix) const {
   const Slope& slope = slopes[size(place)];
   for (const ContactSpace::Move& from : space.moves(place)) {
-    const ContactSpace::Block response = step * (slope * from.column);
+    const ContactSpace::Block response = step * (slope * from.column.rows());
     for (const ContactSpace::Move& to : space.moves(place)) {
-      if (to.dof >= from.dof) matrix.add_both(to.dof, from.dof, to.column.dot(response));
+      if (to.dof >= from.dof) matrix.add_both(to.dof, from.dof, to.column.rows().dot(response));
     }
   }
 }

@@ -19,7 +19,7 @@ void ContactSpace::add_body(const Mechanism& mechanism, const ContactPlace& plac
     const Vec3 turn = to_site * angular;
     const Vec3 way = to_site * (Mechanism::linear(mechanism.motions, dof) + angular.cross(offset));
     const double column[kRows] = {way[2], turn[0], turn[1], way[0], way[1], turn[2]};
-    double* to = &dense_[size(kRows * matrix_.number(dof))];
+    double* const to = dense_[size(matrix_.number(dof))].numbers;
     for (int i = 0; i < kRows; ++i) to[i] += column[i];
   }
 }
@@ -31,11 +31,8 @@ void ContactSpace::add_place(const Mechanism& mechanism, const ContactPlace& pla
   if (tree_b >= 0) add_body(mechanism, place, place.body_b, -1.0);
   const auto take = [&](int tree) {
     for (int dof = matrix_.tree(tree).begin; dof < matrix_.tree(tree).end; ++dof) {
-      double* const column = &dense_[size(kRows * dof)];
-      const Block moved = Block::from(column);
-      if (moved.isZero(0.0)) continue;
-      moves_.push_back({moved, dof});
-      Block::Zero().to(column);
+      PlaceColumn& column = dense_[size(dof)];
+      if (!column.is_zero()) moves_.push_back({std::exchange(column, {}), dof});
     }
   };
   if (tree_a >= 0) take(tree_a);
@@ -61,17 +58,11 @@ void ContactSpace::widen_envelope(int place) {
 }
 
 // J of the place, carried through one of the factors, to what carries the place.
-template <typename Carry>
-void ContactSpace::carry(int place, const Carry& carry, Block Carried::* out) {
-  for (const Move& move : moves(place)) {
-    move.column.to(&dense_[size(kRows * move.dof)]);
-  }
-  carry(dense_.data());
-  for (Carried& one : carried(place)) {
-    double* const numbers = &dense_[size(kRows * one.dof)];
-    one.*out = Block::from(numbers);
-    Block::Zero().to(numbers);
-  }
+void ContactSpace::carry(int place, const TreeMatrix& factor, bool upper,
+                         PlaceColumn CarriedColumn::* out) {
+  for (const Move& move : moves(place)) dense_[size(move.dof)] = move.column;
+  volcontact::carry(factor, upper, support_, dense_.data());
+  for (CarriedColumn& one : carried(place)) one.*out = std::exchange(dense_[size(one.dof)], {});
 }
 
 // J through the factors of Mh, which fill in nothing but what carries. Forces that stay do without,
@@ -93,16 +84,14 @@ void ContactSpace::respond() {
     carried_.resize(begin + support_.size());
     for (std::size_t i = 0; i < support_.size(); ++i) carried_[begin + i].dof = support_[i];
     carried_begin_.push_back(carried_.size());
-    carry(place, [&](double* x) { factor.carry_lower<kRows>(support_, x); }, &Carried::moved);
-    if (!is_symmetric) {
-      carry(place, [&](double* x) { factor.carry_upper<kRows>(support_, x); }, &Carried::forced);
+    carry(place, factor, false, &CarriedColumn::moved);
+    if (!is_symmetric) carry(place, factor, true, &CarriedColumn::forced);
+    for (CarriedColumn& one : carried(place)) {
+      const PlaceColumn& from = is_symmetric ? one.moved : one.forced;
+      const double inverse = factor.inverse_pivot(one.dof);
+      for (int i = 0; i < kLanes; ++i) one.forced.numbers[i] = inverse * from.numbers[i];
     }
-    Square mobility = Square::Zero();
-    for (Carried& one : carried(place)) {
-      one.forced = factor.inverse_pivot(one.dof) * (is_symmetric ? one.moved : one.forced);
-      mobility += outer(one.moved, one.forced);
-    }
-    free_mobility_[size(place)] = mobility;
+    free_mobility_[size(place)] = sum_of_products(carried(place));
   }
 }
 
@@ -116,21 +105,14 @@ void ContactSpace::make_free_row(int place, int end) {
   set_free_block(place, place, free_mobility_[size(place)]);
   if (place == 0 && end == 1) return;
   const bool is_symmetric = matrix_.free_factor().is_symmetric();
-  for (const Carried& one : carried(place)) {
-    one.moved.to(&dense_[size(kRows * one.dof)]);
-  }
+  for (const CarriedColumn& one : carried(place)) dense_[size(one.dof)] = one.moved;
   for (int other = 0; other < end; ++other) {
     if (other == place) continue;
-    Square block = Square::Zero();
-    for (const Carried& one : carried(other)) {
-      block += outer(Block::from(&dense_[size(kRows * one.dof)]), one.forced);
-    }
+    const Square block = sum_of_products(dense_.data(), carried(other));
     set_free_block(place, other, block);
     if (is_symmetric) set_free_block(other, place, block.transpose());
   }
-  for (const Carried& one : carried(place)) {
-    Block::Zero().to(&dense_[size(kRows * one.dof)]);
-  }
+  for (const CarriedColumn& one : carried(place)) dense_[size(one.dof)] = {};
 }
 
 void ContactSpace::constrain_places() {
@@ -144,9 +126,11 @@ void ContactSpace::constrain_places() {
     const TreeMatrix& factor = matrix_.constraint_factor();
     for (int place = 0; place < places(); ++place) {
       support_.clear();
-      for (const Carried& one : carried(place)) support_.push_back(one.dof);
-      carry(place, [&](double* x) { factor.carry_lower<kRows>(support_, x); }, &Carried::massed);
-      for (Carried& one : carried(place)) one.massed *= factor.inverse_pivot(one.dof);
+      for (const CarriedColumn& one : carried(place)) support_.push_back(one.dof);
+      carry(place, factor, false, &CarriedColumn::massed);
+      for (CarriedColumn& one : carried(place)) {
+        for (double& number : one.massed.numbers) number *= factor.inverse_pivot(one.dof);
+      }
     }
   }
   opened_.assign(stride_ * columns.size(), 0.0);
@@ -155,30 +139,25 @@ void ContactSpace::constrain_places() {
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const StepMatrix::Column& column = columns[c];
     for (const int dof : column.support) is_in_tree_[size(matrix_.tree_begin(dof))] = 1;
-    const auto is_near = [&](const Carried& one) {
+    const auto is_near = [&](const CarriedColumn& one) {
       return is_in_tree_[size(matrix_.tree_begin(one.dof))] != 0;
     };
     // For each place of its trees, what the column has in common with J.
-    const auto sum_up = [&](const std::vector<double>& values, Block Carried::* part, double* out,
-                            std::size_t next) {
+    const auto sum_up_all = [&](const std::vector<double>& values,
+                                PlaceColumn CarriedColumn::* part, double* out, std::size_t next) {
       for (std::size_t k = 0; k < column.support.size(); ++k) {
         scalars_[size(column.support[k])] = values[k];
       }
       for (int place = 0; place < places(); ++place) {
-        const std::span<const Carried> all = carried(place);
+        const std::span<const CarriedColumn> all = carried(place);
         if (all.empty() || !(is_near(all.front()) || is_near(all.back()))) continue;
-        Block sum = Block::Zero();
-        for (const Carried& one : all) {
-          const double value = scalars_[size(one.dof)];
-          if (value != 0.0) sum += value * (one.*part);
-        }
-        sum.to(out + size(place) * next);
+        sum_up(all, part, scalars_.data(), out + size(place) * next);
       }
       for (const int dof : column.support) scalars_[size(dof)] = 0.0;
     };
-    sum_up(column.forced, &Carried::moved, &opened_[c * stride_], kRows);
-    sum_up(column.constrained, converts ? &Carried::massed : &Carried::forced, closed_[c].data(),
-           kRows * columns.size());
+    sum_up_all(column.forced, &CarriedColumn::moved, &opened_[c * stride_], kRows);
+    sum_up_all(column.constrained, converts ? &CarriedColumn::massed : &CarriedColumn::forced,
+               closed_[c].data(), kRows * columns.size());
     for (const int dof : column.support) is_in_tree_[size(matrix_.tree_begin(dof))] = 0;
   }
   const int count = static_cast<int>(columns.size());
@@ -247,14 +226,14 @@ void ContactSpace::move_by_delassus(const double* f, double* u) {
 void ContactSpace::add_load(const double* f, double* load) const {
   for (int place = 0; place < places(); ++place) {
     const Block force = Block::from(f + kRows * place);
-    for (const Move& move : moves(place)) load[move.dof] += move.column.dot(force);
+    for (const Move& move : moves(place)) load[move.dof] += move.column.rows().dot(force);
   }
 }
 
 void ContactSpace::add_motion(const double* x, double* u) const {
   for (int place = 0; place < places(); ++place) {
     Block motion = Block::from(u + kRows * place);
-    for (const Move& move : moves(place)) motion += x[move.dof] * move.column;
+    for (const Move& move : moves(place)) motion += x[move.dof] * move.column.rows();
     motion.to(u + kRows * place);
   }
 }
@@ -286,7 +265,7 @@ void ContactSpace::build(const Mechanism& mechanism, std::span<const ContactPlac
   generalized_.resize(count);
   known_.resize(count);
   // Zeros between uses, but for a step that ran out of memory.
-  dense_.assign(kRows * count, 0.0);
+  dense_.assign(count, {});
   scalars_.assign(count, 0.0);
   is_in_tree_.assign(count, 0);
   for (std::size_t i = 0; i < count; ++i) {

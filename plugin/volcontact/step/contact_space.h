@@ -6,11 +6,10 @@
 
 #include "volcontact/base/sizes.h"
 #include "volcontact/step/contact_islands.h"
+#include "volcontact/step/place_columns.h"
 #include "volcontact/step/step_matrix.h"
 
 namespace volcontact {
-
-inline constexpr int kRows = 6;  ///< of a contact place: along and about its three axes
 
 /// What one step makes of forces at the contact places of an island: u' = u_free + h
 /// Lambda f, with u = J v + w, Lambda = J H^-1 J' and u_free = u + h J H^-1 t; w is the motion of
@@ -23,7 +22,7 @@ class ContactSpace {
 
   /// A column of J at one place that is not zero.
   struct Move {
-    Block column;
+    PlaceColumn column;
     int dof;  ///< its number in `matrix`
   };
 
@@ -76,18 +75,12 @@ class ContactSpace {
   void add_motion(const double* x, double* u) const;
 
  private:
-  // What a place moves and what carries that; J carried through the factors U D L of Mh.
-  struct Carried {
-    Block moved;   // L'^-1 J'
-    Block forced;  // D^-1 U^-1 J'
-    Block massed;  // D^-1 L'^-1 J', of the factors of M, where H converts
-    int dof;
-  };
-  std::span<const Carried> carried(int place) const {
+  // What a place moves and what carries that.
+  std::span<const CarriedColumn> carried(int place) const {
     const std::size_t i = static_cast<std::size_t>(place);
     return {carried_.data() + carried_begin_[i], carried_begin_[i + 1] - carried_begin_[i]};
   }
-  std::span<Carried> carried(int place) {
+  std::span<CarriedColumn> carried(int place) {
     const std::size_t i = static_cast<std::size_t>(place);
     return {carried_.data() + carried_begin_[i], carried_begin_[i + 1] - carried_begin_[i]};
   }
@@ -96,8 +89,7 @@ class ContactSpace {
   void add_driven(const ContactPlace& place);
   void widen_envelope(int place);
   void choose_form();
-  template <typename Carry>
-  void carry(int place, const Carry& carry, Block Carried::* out);
+  void carry(int place, const TreeMatrix& factor, bool upper, PlaceColumn CarriedColumn::* out);
   void respond();
   void constrain_places();
   void set_free_block(int i, int k, const Square& block);
@@ -107,16 +99,16 @@ class ContactSpace {
   StepMatrix matrix_;
   std::vector<Move> moves_;
   std::vector<std::size_t> move_begin_ = {0};
-  std::vector<Carried> carried_;
+  std::vector<CarriedColumn> carried_;
   std::vector<std::size_t> carried_begin_;
   bool is_massed_ = false;
   std::vector<int> support_;
   // J Mh^-1 G by columns, padded; and of each place, (1 + P' Mh^-1 G)^-1 P' Mh^-1 J' by rows.
   std::vector<double> opened_;
   std::vector<Block> closed_;
-  std::vector<double> dense_;     // kRows numbers a degree of freedom, zeros between uses
-  std::vector<double> scalars_;   // one a degree of freedom, likewise
-  std::vector<char> is_in_tree_;  // of a column, by the tree's first degree of freedom; likewise
+  std::vector<PlaceColumn> dense_;  // of each degree of freedom, zeros between uses
+  std::vector<double> scalars_;     // one a degree of freedom, likewise
+  std::vector<char> is_in_tree_;    // of a column, by the tree's first degree of freedom; likewise
   std::vector<int> envelope_;
   std::vector<Square> mobility_, free_mobility_;
   std::vector<double> delassus_, free_delassus_;  // by columns, padded

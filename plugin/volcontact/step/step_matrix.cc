@@ -146,11 +146,11 @@ void StepMatrix::take_columns(const LinearConstraints& constraints) {
     put();
     take(column.values);
     put();
-    free_factor_.carry_upper<1>(column.support, dense_.data());
+    free_factor_.carry_upper(column.support, dense_.data());
     for (const int i : column.support) dense_[index(i)] *= free_factor_.inverse_pivot(i);
     take(column.forced);
     put();
-    constraint_factor().carry_lower<1>(column.support, dense_.data());
+    constraint_factor().carry_lower(column.support, dense_.data());
     take(column.constrained);
   }
 }

@@ -97,16 +97,15 @@ class TreeMatrix {
   /// Inverse of D.
   double inverse_pivot(int i) const { return lower_[trees_->start(i)]; }
 
-  /// L'^-1 x, or U^-1 x, of `kSides` vectors that are zero but at `support`, which has with each
-  /// number those that carry it, ascending.
-  template <int kSides>
-  void carry_lower(std::span<const int> support, double* x) const {
-    carry<kSides>(lower_, support, x);
-  }
-  template <int kSides>
-  void carry_upper(std::span<const int> support, double* x) const {
-    carry<kSides>(is_symmetric() ? lower_ : upper_, support, x);
-  }
+  const DofTrees& trees() const { return *trees_; }
+  /// The rows of L and the columns of U, where DofTrees has them begin.
+  const double* lower() const { return lower_.data(); }
+  const double* upper() const { return (is_symmetric() ? lower_ : upper_).data(); }
+
+  /// L'^-1 x, or U^-1 x, of a vector that is zero but at `support`, which has with each number those
+  /// that carry it, ascending.
+  void carry_lower(std::span<const int> support, double* x) const { carry(lower(), support, x); }
+  void carry_upper(std::span<const int> support, double* x) const { carry(upper(), support, x); }
 
   /// Solves in place.
   void solve(double* x) const {
@@ -136,16 +135,10 @@ class TreeMatrix {
   }
 
  private:
-  template <int kSides>
-  void carry(const std::vector<double>& entries, std::span<const int> support, double* x) const {
-    using Numbers = Vector<kSides>;
+  void carry(const double* entries, std::span<const int> support, double* x) const {
     for (const int i : support) {
-      const double* entry = &entries[trees_->start(i)];
-      const Numbers from = Numbers::from(x + kSides * i);
-      for (int k = trees_->parent(i); k >= 0; k = trees_->parent(k)) {
-        double* const carrying = x + kSides * k;
-        (Numbers::from(carrying) - *++entry * from).to(carrying);
-      }
+      const double* entry = entries + trees_->start(i);
+      for (int k = trees_->parent(i); k >= 0; k = trees_->parent(k)) x[k] -= *++entry * x[i];
     }
   }
   std::size_t index(int i, int k) const {

@@ -82,8 +82,8 @@ TEST_P(TreeMatrices, CarriesWhatFewDegreesOfFreedomHave) {
   const double truth = left.dot(test::solution(dense_, right).col(0));
   matrix_.factor();
   const std::vector<int> of_left = {0, 1, 4, 5, 6, 7, 8}, of_right = {2, 3, 4, 5, 6};
-  matrix_.carry_lower<1>(of_left, left.data());
-  matrix_.carry_upper<1>(of_right, right.data());
+  matrix_.carry_lower(of_left, left.data());
+  matrix_.carry_upper(of_right, right.data());
   double sum = 0.0;
   for (int i = 0; i < trees_.size(); ++i) sum += left[i] * matrix_.inverse_pivot(i) * right[i];
   EXPECT_NEAR(sum, truth, 1e-14);
