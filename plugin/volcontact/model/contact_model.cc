@@ -84,13 +84,11 @@ void add_friction(const ContactLaws& laws, const SiteInputs& inputs, const LawSt
   site.taken.spin = -friction.torque * site.spin;
 }
 
-void add_site(SiteReport&& site, int pair, ContactReport& report) {
-  site.pair = pair;
+void add_up(const SiteReport& site, ContactReport& report) {
   report.elastic_energy += site.elastic_energy;
   report.bristle_energy += site.bristle_energy;
   report.power += site.power;
   report.taken += site.taken;
-  report.sites.push_back(site);
 }
 
 }  // namespace
@@ -111,14 +109,13 @@ FrictionInput friction_input(const SiteReport& site, const SiteInputs& inputs, d
   return in;
 }
 
-SiteReport evaluate_site(const VolumeMetrics& metrics_W, const BodyMotion& motion,
-                         const ContactLaws& laws, const CarriedSite& carried, const LawState& state,
-                         const PressureField* field_W, SiteInputs* inputs) noexcept {
-  SiteReport site;
+void evaluate_site(const VolumeMetrics& metrics_W, const BodyMotion& motion,
+                   const ContactLaws& laws, const CarriedSite& carried, const LawState& state,
+                   const PressureField* field_W, SiteReport& site, SiteInputs& inputs) noexcept {
   site.metrics = metrics_W;
   const Push push = push_of(field_W, site);
   // A contained body has no direction to be pushed in: reported, but without a force.
-  if (site.normal.isZero(0.0)) return site;
+  if (site.normal.isZero(0.0)) return;
   split_motion(motion, site);
   const Vec3 rotation = motion.V_WA.angular - motion.V_WB.angular;
   site.spin = rotation.dot(site.normal);
@@ -141,10 +138,8 @@ SiteReport evaluate_site(const VolumeMetrics& metrics_W, const BodyMotion& motio
   Vec3 elastic_torque = Vec3::Zero();
   if (push.size > 0.0) elastic_torque = normal.elastic / push.size * push.couple;
   if (push.size > 0.0) site.torque_on_A += elastic_torque;
-  const SiteInputs asked{normal_in, normal, elastic_torque, carried.travel, carried.rotation};
-  if (laws.friction) add_friction(laws, asked, slice(state, laws.normal->state_size()), site);
-  if (inputs) *inputs = asked;
-  return site;
+  inputs = {normal_in, normal, elastic_torque, carried.travel, carried.rotation};
+  if (laws.friction) add_friction(laws, inputs, slice(state, laws.normal->state_size()), site);
 }
 
 ContactModel::ContactModel(std::vector<GeometricPair> pairs, ContactLaws laws,
@@ -202,17 +197,20 @@ void ContactModel::evaluate(std::span<const GeometricPair> pairs, const BodyMoti
       PressureField field_W;
       const bool potential = laws_.formulation == Formulation::kPotential;
       if (potential) field_W = field_of(pairs[i], motion, k, workspace);
-      SiteInputs* inputs = report.keeps_inputs ? &report.inputs.emplace_back() : nullptr;
-      if (inputs && row_size_ > 0) {
+      if (report.keeps_inputs && row_size_ > 0) {
         report.committed.insert(report.committed.end(), state.committed,
                                 state.committed + state_size());
       }
-      SiteReport site = evaluate_site(sites_W[k], motion, laws_, carried, state,
-                                      potential ? &field_W : nullptr, inputs);
+      SiteInputs unused;
+      SiteInputs& inputs = report.keeps_inputs ? report.inputs.emplace_back() : unused;
+      SiteReport& site = report.sites.emplace_back();
+      site.pair = pair;
+      evaluate_site(sites_W[k], motion, laws_, carried, state, potential ? &field_W : nullptr, site,
+                    inputs);
       if (field_W.error > options_.tolerance * field_W.force.norm()) {
         site.metrics.status = std::max(site.metrics.status, Status::kApproximate);
       }
-      add_site(std::move(site), pair, report);
+      add_up(site, report);
     }
   }
 } catch (...) {  // half done: nothing of it is to be found

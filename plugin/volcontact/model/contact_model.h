@@ -43,13 +43,12 @@ FrictionInput friction_input(const SiteReport& site, const SiteInputs& inputs, d
                              const Vec3& slip, double spin) noexcept;
 
 /// Forces of one contact site from its metrics (world frame), the motion of the bodies, and what
-/// was carried over. `state` has the numbers of both laws. docs/theory.md, "From metrics to
-/// wrench". Under `potential`, `field_W` is the pressure field of the site, in the world frame;
-/// else it is null. `inputs`, where given, is filled.
-SiteReport evaluate_site(const VolumeMetrics& metrics_W, const BodyMotion& motion,
-                         const ContactLaws& laws, const CarriedSite& carried, const LawState& state,
-                         const PressureField* field_W = nullptr,
-                         SiteInputs* inputs = nullptr) noexcept;
+/// was carried over, into a `site` that is new; and the inputs of the laws. `state` has the numbers
+/// of both. docs/theory.md, "From metrics to wrench". Under `potential`, `field_W` is the pressure
+/// field of the site, in the world frame; else it is null.
+void evaluate_site(const VolumeMetrics& metrics_W, const BodyMotion& motion,
+                   const ContactLaws& laws, const CarriedSite& carried, const LawState& state,
+                   const PressureField* field_W, SiteReport& site, SiteInputs& inputs) noexcept;
 
 /// The contact model container of the CSA paper: geometric pairs x normal law x friction law.
 /// Const once made; what lasts from one evaluation to the next is in rows that the caller keeps.

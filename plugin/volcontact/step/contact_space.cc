@@ -91,7 +91,7 @@ void ContactSpace::respond() {
       const double inverse = factor.inverse_pivot(one.dof);
       for (int i = 0; i < kLanes; ++i) one.forced.numbers[i] = inverse * from.numbers[i];
     }
-    free_mobility_[size(place)] = sum_of_products(carried(place));
+    sum_products(carried(place), free_mobility_[size(place)]);
   }
 }
 
@@ -108,7 +108,8 @@ void ContactSpace::make_free_row(int place, int end) {
   for (const CarriedColumn& one : carried(place)) dense_[size(one.dof)] = one.moved;
   for (int other = 0; other < end; ++other) {
     if (other == place) continue;
-    const Square block = sum_of_products(dense_.data(), carried(other));
+    Square block;
+    sum_products(dense_.data(), carried(other), block);
     set_free_block(place, other, block);
     if (is_symmetric) set_free_block(other, place, block.transpose());
   }
@@ -166,24 +167,24 @@ void ContactSpace::constrain_places() {
   }
 }
 
-ContactSpace::Square ContactSpace::constrained_mobility(int place) const {
-  Square out = free_mobility_[size(place)];
+// Where constraints act, takes off what they do about it.
+void ContactSpace::constrain_mobility() {
   const std::size_t count = matrix_.columns().size();
-  for (std::size_t c = 0; c < count; ++c) {
-    out -= outer(Block::from(&opened_[c * stride_ + size(kRows * place)]),
-                 closed_[size(place) * count + c]);
+  if (count == 0) return;
+  mobility_ = free_mobility_;
+  for (std::size_t place = 0; place < mobility_.size(); ++place) {
+    for (std::size_t c = 0; c < count; ++c) {
+      mobility_[place] -= outer(Block::from(&opened_[c * stride_ + kRows * place]),
+                                closed_[place * count + c]);
+    }
   }
-  return out;
 }
 
 void ContactSpace::build_mobility() {
   respond();
   choose_form();
-  mobility_.resize(size(places()));
   if (!prefers_dofs_) build_delassus();
-  for (int place = 0; place < places(); ++place) {
-    mobility_[size(place)] = constrained_mobility(place);
-  }
+  constrain_mobility();
 }
 
 // The form of less work, counted in multiplications and weighed as measured. Without symmetry both

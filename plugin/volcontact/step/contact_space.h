@@ -58,7 +58,9 @@ class ContactSpace {
   }
   std::size_t stride() const { return stride_; }
   /// The block of Lambda of one place.
-  const Square& mobility(std::size_t place) const { return mobility_[place]; }
+  const Square& mobility(std::size_t place) const {
+    return (matrix_.columns().empty() ? free_mobility_ : mobility_)[place];
+  }
   const std::vector<double>& known() const { return known_; }
   const std::vector<double>& velocity() const { return velocity_; }
   /// u and u_free of one place.
@@ -94,7 +96,7 @@ class ContactSpace {
   void constrain_places();
   void set_free_block(int i, int k, const Square& block);
   void make_free_row(int place, int end);
-  Square constrained_mobility(int place) const;
+  void constrain_mobility();
 
   StepMatrix matrix_;
   std::vector<Move> moves_;

@@ -21,12 +21,11 @@ void ImplicitStep::clear() {
 
 void ImplicitStep::add(const ContactModel& model, ContactReport& report, std::size_t site,
                        int body_a, int body_b, const Twist& driven, bool is_stiff) {
-  const SiteLaws laws(model, report, site);
-  sites_.push_back({laws, &model, &report, site, laws.tangent()});
-  sites_.back().is_stiff = is_stiff;
-  sites_.back().pair = limits_.size() - 1;
+  Site& added = sites_.emplace_back(SiteLaws(model, report, site), &report, site);
+  added.is_stiff = is_stiff;
+  added.pair = limits_.size() - 1;
   places_.push_back(
-      {body_a, body_b, report.sites[site].metrics.centroid, sites_.back().tangent.axes, driven});
+      {body_a, body_b, report.sites[site].metrics.centroid, added.tangent.axes, driven});
 }
 
 // The linear model of the sites as they are now: whether points push, how friction acts.

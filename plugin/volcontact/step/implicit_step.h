@@ -77,8 +77,10 @@ class ImplicitStep {
     bool pushes = true;
   };
   struct Site {
+    Site(const SiteLaws& of_site, ContactReport* of_pair, std::size_t i)
+        : laws(of_site), report(of_pair), index(i), tangent(of_site.tangent()) {}
+
     SiteLaws laws;
-    const ContactModel* model;
     ContactReport* report;
     std::size_t index;
     SiteTangent tangent;

@@ -11,17 +11,14 @@ void carry(const TreeMatrix& factor, bool upper, std::span<const int> support, P
   VOLCONTACT_SIMD_CALL(path, carry, factor, upper ? factor.upper() : factor.lower(), support, x);
 }
 
-Matrix<kRows, kRows> sum_of_products(std::span<const CarriedColumn> carried, SimdPath path) {
-  Matrix<kRows, kRows> out;
-  VOLCONTACT_SIMD_CALL(path, sum_of_products, carried, out);
-  return out;
+void sum_products(std::span<const CarriedColumn> carried, Matrix<kRows, kRows>& out,
+                  SimdPath path) {
+  VOLCONTACT_SIMD_CALL(path, sum_products, carried, out);
 }
 
-Matrix<kRows, kRows> sum_of_products(const PlaceColumn* x, std::span<const CarriedColumn> carried,
-                                     SimdPath path) {
-  Matrix<kRows, kRows> out;
-  VOLCONTACT_SIMD_CALL(path, sum_of_products, x, carried, out);
-  return out;
+void sum_products(const PlaceColumn* x, std::span<const CarriedColumn> carried,
+                  Matrix<kRows, kRows>& out, SimdPath path) {
+  VOLCONTACT_SIMD_CALL(path, sum_products, x, carried, out);
 }
 
 void sum_up(std::span<const CarriedColumn> carried, PlaceColumn CarriedColumn::* part,

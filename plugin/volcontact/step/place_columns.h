@@ -37,10 +37,10 @@ void carry(const TreeMatrix& factor, bool upper, std::span<const int> support, P
            SimdPath path = best_simd_path());
 
 /// The sum over `carried` of moved forced', or of x forced' with x by degree of freedom.
-Matrix<kRows, kRows> sum_of_products(std::span<const CarriedColumn> carried,
-                                     SimdPath path = best_simd_path());
-Matrix<kRows, kRows> sum_of_products(const PlaceColumn* x, std::span<const CarriedColumn> carried,
-                                     SimdPath path = best_simd_path());
+void sum_products(std::span<const CarriedColumn> carried, Matrix<kRows, kRows>& out,
+                  SimdPath path = best_simd_path());
+void sum_products(const PlaceColumn* x, std::span<const CarriedColumn> carried,
+                  Matrix<kRows, kRows>& out, SimdPath path = best_simd_path());
 
 /// The sum over `carried` of one of its columns times the number of the degree of freedom.
 void sum_up(std::span<const CarriedColumn> carried, PlaceColumn CarriedColumn::* part,
