@@ -30,8 +30,8 @@ struct ExplicitShare {
 };
 
 // The share of the explicit forces of a pair that does no more work than the pair may.
-ExplicitShare share_of(const SceneContact& contact, const mjModel* m, std::size_t k,
-                       double yields, const EvaluationScratch& scratch) {
+ExplicitShare share_of(const SceneContact& contact, const mjModel* m, std::size_t k, double yields,
+                       const EvaluationScratch& scratch) {
   const double h = m->opt.timestep;
   const PairEnergy::Now& now = scratch.now[k];
   const double along = std::max(yields, inverse_mass(m, scratch.pair(k).geoms).along);

@@ -9,8 +9,8 @@
 namespace volcontact::adaptor {
 
 /// What the pairs hold of the energy of the bodies, after the step that ends here, into
-/// `scratch.energies`, with what their sites are `now`; what nobody paid, and what is owed, into the
-/// account.
+/// `scratch.energies`, with what their sites are `now`; what nobody paid, and what is owed, into
+/// the account.
 void read_energies(const SceneContact& contact, const double* committed, double elapsed,
                    bool is_rk4, EvaluationScratch& scratch, EnergyAccount& account);
 

@@ -97,13 +97,9 @@ FrictionInput friction_input(const SiteReport& site, const SiteInputs& inputs, d
                              const Vec3& slip, double spin) noexcept {
   const Vec3& n = site.normal;
   const double size = inputs.normal_in.volume;
-  FrictionInput in{normal_force,
-                   n,
-                   slip,
-                   spin,
-                   inputs.travel - inputs.travel.dot(n) * n,
-                   inputs.rotation.dot(n),
-                   patch_of(site.metrics, n)};
+  FrictionInput in{
+      normal_force,           n,           slip, spin, inputs.travel - inputs.travel.dot(n) * n,
+      inputs.rotation.dot(n), inputs.patch};
   if (size > 0.0) in.normal_stiffness = inputs.normal_out.elastic / size * in.patch.area;
   in.mass = inputs.normal_in.mass;
   return in;
@@ -138,8 +134,14 @@ void evaluate_site(const VolumeMetrics& metrics_W, const BodyMotion& motion,
   Vec3 elastic_torque = Vec3::Zero();
   if (push.size > 0.0) elastic_torque = normal.elastic / push.size * push.couple;
   if (push.size > 0.0) site.torque_on_A += elastic_torque;
-  inputs = {normal_in, normal, elastic_torque, carried.travel, carried.rotation};
-  if (laws.friction) add_friction(laws, inputs, slice(state, laws.normal->state_size()), site);
+  inputs.normal_in = normal_in;
+  inputs.normal_out = normal;
+  inputs.elastic_torque = elastic_torque;
+  inputs.travel = carried.travel;
+  inputs.rotation = carried.rotation;
+  if (!laws.friction) return;
+  inputs.patch = patch_of(metrics_W, site.normal);
+  add_friction(laws, inputs, slice(state, laws.normal->state_size()), site);
 }
 
 ContactModel::ContactModel(std::vector<GeometricPair> pairs, ContactLaws laws,

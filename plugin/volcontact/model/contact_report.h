@@ -5,6 +5,7 @@
 
 #include "volcontact/base/types.h"
 #include "volcontact/force/normal_force.h"
+#include "volcontact/force/patch.h"
 #include "volcontact/metrics/volume_metrics.h"
 
 namespace volcontact {
@@ -51,6 +52,7 @@ struct SiteInputs {
   Vec3 elastic_torque = Vec3::Zero();  ///< on A about the centroid, of the potential [N m]
   Vec3 travel = Vec3::Zero();          ///< as in CarriedSite [m]
   Vec3 rotation = Vec3::Zero();        ///< [rad]
+  Patch patch;                         ///< for friction
 };
 
 /// What an evaluation of a contact model returns.

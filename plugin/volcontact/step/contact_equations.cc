@@ -38,12 +38,17 @@ void ContactEquations::factor_normal(const ContactSpace& space, double step) {
   by_.slopes.clear();
   by_.pressed.clear();
   by_.roots.clear();
+  by_.inverse_roots.clear();
   by_.frictions.clear();
   for (int place = 0; place < space.places(); ++place) {
     const Mat3& slope = by_.slopes.emplace_back(slopes[size(place)].normal);
     if (slopes[size(place)].is_zero()) continue;
     by_.pressed.push_back(place);
-    by_.roots.push_back(cholesky(slope));
+    const Mat3& root = by_.roots.emplace_back(cholesky(slope));
+    Vec3& inverse = by_.inverse_roots.emplace_back(Vec3::Zero());
+    for (int k = 0; k < 3; ++k) {
+      if (root(k, k) > 0.0) inverse[k] = 1.0 / root(k, k);
+    }
   }
   const bool is_symmetric = space.is_symmetric();
   const int count = static_cast<int>(by_.pressed.size());
@@ -189,11 +194,11 @@ void ContactEquations::keep_to_slopes(std::vector<double>& velocity) const {
   for (std::size_t i = 0; i < by_.pressed.size(); ++i) {
     double* const u = &velocity[size(kRows * by_.pressed[i])];
     const Mat3& root = by_.roots[i];
+    const Vec3& inverse = by_.inverse_roots[i];
     Vec3 left = Vec3::from(&pressing_[3 * i]) - root.transposed_times(Vec3::from(u));
-    for (int k = 2; k >= 0; --k) {
-      for (int j = k + 1; j < 3; ++j) left[k] -= root(j, k) * left[j];
-      left[k] = root(k, k) > 0.0 ? left[k] / root(k, k) : 0.0;
-    }
+    left[2] = inverse[2] * left[2];
+    left[1] = inverse[1] * (left[1] - root(2, 1) * left[2]);
+    left[0] = inverse[0] * ((left[0] - root(1, 0) * left[1]) - root(2, 0) * left[2]);
     (Vec3::from(u) + left).to(u);
   }
   if (!has_friction()) return;

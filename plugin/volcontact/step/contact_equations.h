@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "volcontact/step/contact_space.h"
-#include "volcontact/step/dense_matrix.h"
+#include "volcontact/step/matrix/dense_matrix.h"
 
 namespace volcontact {
 
@@ -65,6 +65,7 @@ struct ContactEquations {
     std::vector<Mat3> slopes;          // C of n, by places
     std::vector<int> pressed;          // the places where C is not zero, and there
     std::vector<Mat3> roots;           // Ln
+    std::vector<Vec3> inverse_roots;   // of its diagonal, 0 where that is
     DenseMatrix pressing;              // of n, then s
     std::vector<Vec3> whole;           // of h Lambda_ss the diagonal
     std::vector<Vec3> frictions;       // C of s that was factored

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "volcontact/base/sizes.h"
-#include "volcontact/step/dense_matrix.h"
+#include "volcontact/step/matrix/dense_matrix.h"
 
 namespace volcontact {
 
@@ -174,8 +174,8 @@ void ContactSpace::constrain_mobility() {
   mobility_ = free_mobility_;
   for (std::size_t place = 0; place < mobility_.size(); ++place) {
     for (std::size_t c = 0; c < count; ++c) {
-      mobility_[place] -= outer(Block::from(&opened_[c * stride_ + kRows * place]),
-                                closed_[place * count + c]);
+      mobility_[place] -=
+          outer(Block::from(&opened_[c * stride_ + kRows * place]), closed_[place * count + c]);
     }
   }
 }

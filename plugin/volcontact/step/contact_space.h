@@ -6,7 +6,7 @@
 
 #include "volcontact/base/sizes.h"
 #include "volcontact/step/contact_islands.h"
-#include "volcontact/step/place_columns.h"
+#include "volcontact/step/matrix/place_columns.h"
 #include "volcontact/step/step_matrix.h"
 
 namespace volcontact {

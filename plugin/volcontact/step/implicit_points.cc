@@ -22,8 +22,9 @@ double implicit_share(double stiffness_number) {
 // speeds by `fall` in a step: what is as slow as a few of these.
 double settling(double speed, double fall) {
   constexpr double kSettles = 5.0, kBounces = 10.0;
-  if (!(fall > 0.0)) return 0.0;
-  return std::clamp((kBounces - speed / fall) / (kBounces - kSettles), 0.0, 1.0);
+  if (!(fall > 0.0) || speed >= kBounces * fall) return 0.0;
+  if (speed <= kSettles * fall) return 1.0;
+  return (kBounces - speed / fall) / (kBounces - kSettles);
 }
 
 // Numerical damping of what settles, as a multiple of h K: with less a box rocks from edge to edge
@@ -96,14 +97,15 @@ void ImplicitStep::place_points(Site& site, const Mat3& mobility, const Vec3& fa
       sum += point.constant;
     }
   }
+  const double kept = sum > 0.0 ? std::max(0.0, force) / sum : 1.0;
+  const double per_force = force > 0.0 ? 1.0 / force : 0.0;
+  const double per_speed = k > 0.0 ? count / (k * step) : 0.0;  // out of its depth within the step
   for (int i = 0; i < site.point_count; ++i) {
     Point& point = site.points[size(i)];
-    if (sum > 0.0) point.constant *= std::max(0.0, force) / sum;
-    const double weight = force > 0.0 ? point.constant / force : 1.0 / count;
-    const double depth = k > 0.0 ? point.constant * count / k : 0.0;
+    point.full = point.constant *= kept;
+    const double weight = force > 0.0 ? per_force * point.constant : 1.0 / count;
     const double fall = std::max(std::abs(point.motion.dot(falling)), resting);
-    point.full = point.constant;
-    const double settles = settling(depth / step, fall);
+    const double settles = settling(per_speed * point.constant, fall);
     const double extra = parts == ImplicitParts::kHeld
                              ? std::max(settles, holding(number * mobility(0, 0)))
                              : kSettling * settles;

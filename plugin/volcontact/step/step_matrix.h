@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "volcontact/step/envelope_matrix.h"
 #include "volcontact/step/linear_constraints.h"
+#include "volcontact/step/matrix/envelope_matrix.h"
+#include "volcontact/step/matrix/tree_matrix.h"
 #include "volcontact/step/mechanism.h"
-#include "volcontact/step/tree_matrix.h"
 
 namespace volcontact {
 

@@ -13,7 +13,8 @@ namespace volcontact::test {
 /// three along and three about the axes of the world, at its centre of mass.
 class FreeBodies final : public Mechanism {
  public:
-  FreeBodies() : tree_of_{{}, {}, {}, {}, {}, {}, {MechanismTrees::kNone}, {MechanismTrees::kNone}} {
+  FreeBodies()
+      : tree_of_{{}, {}, {}, {}, {}, {}, {MechanismTrees::kNone}, {MechanismTrees::kNone}} {
     origins_.assign(3, 0.0);
     twists_.assign(6, 0.0);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "volcontact/step/envelope_matrix.h"
+#include "volcontact/step/matrix/envelope_matrix.h"
 
 #include <gtest/gtest.h>
 

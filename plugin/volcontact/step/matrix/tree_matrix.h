@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -15,6 +16,7 @@ class DofTrees {
  public:
   /// `parents` by number, negative for none.
   void set(std::span<const int> parents) {
+    if (std::equal(parents.begin(), parents.end(), parents_.begin(), parents_.end())) return;
     parents_.assign(parents.begin(), parents.end());
     depths_.resize(parents.size());
     starts_.resize(parents.size());
@@ -102,8 +104,8 @@ class TreeMatrix {
   const double* lower() const { return lower_.data(); }
   const double* upper() const { return (is_symmetric() ? lower_ : upper_).data(); }
 
-  /// L'^-1 x, or U^-1 x, of a vector that is zero but at `support`, which has with each number those
-  /// that carry it, ascending.
+  /// L'^-1 x, or U^-1 x, of a vector that is zero but at `support`, which has with each number
+  /// those that carry it, ascending.
   void carry_lower(std::span<const int> support, double* x) const { carry(lower(), support, x); }
   void carry_upper(std::span<const int> support, double* x) const { carry(upper(), support, x); }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "volcontact/step/place_columns.h"
+#include "volcontact/step/matrix/place_columns.h"
 
-#define VOLCONTACT_SIMD_KERNEL "volcontact/step/place_columns_kernel.inc"
+#define VOLCONTACT_SIMD_KERNEL "volcontact/step/matrix/place_columns_kernel.inc"
 #include "volcontact/base/simd_paths.inc"
 
 namespace volcontact {

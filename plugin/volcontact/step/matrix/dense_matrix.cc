@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "volcontact/step/dense_matrix.h"
+#include "volcontact/step/matrix/dense_matrix.h"
 
 #include <algorithm>
 #include <limits>
 
 #include "volcontact/base/sizes.h"
 
-#define VOLCONTACT_SIMD_KERNEL "volcontact/step/dense_kernel.inc"
+#define VOLCONTACT_SIMD_KERNEL "volcontact/step/matrix/dense_kernel.inc"
 #include "volcontact/base/simd_paths.inc"
 
 namespace volcontact {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <span>
 
 #include "volcontact/base/simd.h"
 #include "volcontact/base/types.h"
-#include "volcontact/step/tree_matrix.h"
+#include "volcontact/step/matrix/tree_matrix.h"
 
 namespace volcontact {
 
@@ -36,7 +35,8 @@ struct CarriedColumn {
 void carry(const TreeMatrix& factor, bool upper, std::span<const int> support, PlaceColumn* x,
            SimdPath path = best_simd_path());
 
-/// The sum over `carried` of moved forced', or of x forced' with x by degree of freedom.
+/// The sum over `carried` of moved forced', or of x forced' with x by degree of freedom, in their
+/// order.
 void sum_products(std::span<const CarriedColumn> carried, Matrix<kRows, kRows>& out,
                   SimdPath path = best_simd_path());
 void sum_products(const PlaceColumn* x, std::span<const CarriedColumn> carried,

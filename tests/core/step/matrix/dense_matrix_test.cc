@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "volcontact/step/dense_matrix.h"
+#include "volcontact/step/matrix/dense_matrix.h"
 
 #include <gtest/gtest.h>
 

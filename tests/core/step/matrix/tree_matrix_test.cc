@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "volcontact/step/tree_matrix.h"
+#include "volcontact/step/matrix/tree_matrix.h"
 
 #include <gtest/gtest.h>
 
