@@ -38,6 +38,9 @@ double speed_left(double free, double mobility, const DampingAt& damping_at) {
   return at;
 }
 
+// Of the square of what friction can hold.
+constexpr double kEase = 0.25;
+
 }  // namespace
 
 // Slip as the friction law sees it: along t_1, along t_2, lever times about n.
@@ -88,6 +91,23 @@ ImplicitStep::Slide ImplicitStep::slide_under(std::size_t i, double strength, do
   return with_viscous(strength, speed - slowed * (strength + acting.dot(direction)), slowed);
 }
 
+// Friction as it will be where nothing slides, by the forces and the motion at the begin of the
+// step: where all is held with ease that is right as a rule, and one solution will do. Returns
+// whether the solution asks for the same.
+bool ImplicitStep::solve_at_rest(double step) {
+  take_explicit();
+  std::copy(space_.velocity().begin(), space_.velocity().end(), velocity_.begin());
+  for (std::size_t i = 0; i < island_.size(); ++i) {
+    Site& site = this->site(i);
+    if (!site.laws.has_friction()) continue;
+    if (!site.laws.friction_keeps()) return false;
+    set_friction_of(site, i, step);
+    if (!site.is_held_with_ease) return false;
+  }
+  solve_active(true, step);
+  return !set_friction(step);
+}
+
 // Friction under the normal forces of the last solution. Returns whether it is another at a site.
 bool ImplicitStep::set_friction(double step) {
   bool changed = false;
@@ -124,7 +144,9 @@ void ImplicitStep::set_friction_of(Site& site, std::size_t i, double step) {
   const double holds = slope.damping + step * slope.stiffness;
   const Vec3 at_rest = held - holds * site.drift;
   const Vec3 wanted = at_rest - holds * slip;
-  const bool gives_way = (wanted + slope.viscous * slip).norm() > slope.strength;
+  const double square = (wanted + slope.viscous * slip).squaredNorm();
+  const bool gives_way = square > slope.strength * slope.strength;
+  site.is_held_with_ease = square <= kEase * slope.strength * slope.strength;
   const Slide slide = gives_way ? slide_under(i, slope.strength, slope.viscous, step) : Slide{};
   if (slide.speed > 0.0) {
     site.held.setZero();

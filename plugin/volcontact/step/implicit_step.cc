@@ -166,29 +166,37 @@ bool ImplicitStep::is_settled() const {
 
 // Normal forces and friction, under the shares of now; leaves the motion that they make.
 void ImplicitStep::solve_contacts(FrictionBound bound, double step) {
-  constexpr int kFrictionPasses = 3;
-  solve_active(false, step);
-  for (std::size_t i = 0; i < island_.size(); ++i) {
-    site(i).rub = 0.0;
-    site(i).free_speed = slip_of(site(i), velocity_, i).norm();
-    site(i).free_normal = normal_force(i);
+  if (equations_.may_rub) {
+    solve_with_friction(bound, step);
+  } else {
+    solve_active(false, step);
   }
-  const bool rubs = equations_.may_rub;
-  for (int pass = 0; rubs && pass < kFrictionPasses; ++pass) {
-    before_ = force_;
-    const bool changed = set_friction(step);
-    if (pass > 0 && !changed) break;
-    solve_active(true, step);
-    if (is_settled()) break;
-  }
-  if (rubs) damp_friction(step);
-  if (rubs && bound == FrictionBound::kCut) bound_friction();
   // The solution has the forces of its motion; what counts is the motion of its forces.
   if (space_.prefers_dofs()) {
     space_.move(force_, velocity_);
   } else {
     space_.move_by_delassus(force_.data(), velocity_.data());
   }
+}
+
+void ImplicitStep::solve_with_friction(FrictionBound bound, double step) {
+  constexpr int kFrictionPasses = 3;
+  if (bound == FrictionBound::kCut && solve_at_rest(step)) return;
+  solve_active(false, step);
+  for (std::size_t i = 0; i < island_.size(); ++i) {
+    site(i).rub = 0.0;
+    site(i).free_speed = slip_of(site(i), velocity_, i).norm();
+    site(i).free_normal = normal_force(i);
+  }
+  for (int pass = 0; pass < kFrictionPasses; ++pass) {
+    before_ = force_;
+    const bool changed = set_friction(step);
+    if (pass > 0 && !changed) break;
+    solve_active(true, step);
+    if (is_settled()) break;
+  }
+  damp_friction(step);
+  if (bound == FrictionBound::kCut) bound_friction();
 }
 
 void ImplicitStep::solve_island(ImplicitParts parts, double step, double resting) {

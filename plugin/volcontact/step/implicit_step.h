@@ -112,6 +112,7 @@ class ImplicitStep {
     // Friction: force = held - rub * slip, or `rub` alone where it slides; as (t_1, t_2, about n).
     Vec3 held = Vec3::Zero();
     double rub = 0.0;
+    bool is_held_with_ease = false;
     double held_share = 1.0;  // what it can hold of what it was solved to
     double free_speed = 0.0;  // slip at the end of the step without friction, and what presses then
     double free_normal = 0.0;
@@ -127,6 +128,7 @@ class ImplicitStep {
   const Site& site(std::size_t i) const { return sites_[static_cast<std::size_t>(island_[i])]; }
   void solve_island(ImplicitParts parts, double step, double resting);
   void solve_contacts(FrictionBound bound, double step);
+  void solve_with_friction(FrictionBound bound, double step);
   void limit_work(double step, double resting);
   void add_up_work(double step, double resting);
   void set_shares();
@@ -155,6 +157,7 @@ class ImplicitStep {
   bool improve_active(bool with_friction, bool takes_back, double step);
   void solve_once(bool with_friction, double step);
   void set_drift(const Mechanism& mechanism, double time);
+  bool solve_at_rest(double step);
   bool set_friction(double step);
   void set_friction_of(Site& site, std::size_t i, double step);
   void set_damper(Site& site, double normal_force, const Vec3& along, double spin,
