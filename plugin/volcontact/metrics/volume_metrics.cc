@@ -36,14 +36,18 @@ double VolumeMetrics::flatness() const {
   return smaller > 0.0 ? std::min(1.0, area_vector.norm() / smaller) : 0.0;
 }
 
-VolumeMetrics transformed(const VolumeMetrics& metrics_F, const Pose& X_WF) {
+void transform(const Pose& X_WF, VolumeMetrics& metrics) {
   const Mat3& r = X_WF.rotation;
-  VolumeMetrics m = metrics_F;
-  m.centroid = X_WF * metrics_F.centroid;
-  m.inertia = r * metrics_F.inertia * r.transpose();
-  m.area_vector = r * metrics_F.area_vector;
-  m.area_moment = r * metrics_F.area_moment + X_WF.translation.cross(m.area_vector);
-  return m;
+  metrics.centroid = X_WF * metrics.centroid;
+  metrics.inertia = r * metrics.inertia * r.transpose();
+  metrics.area_vector = r * metrics.area_vector;
+  metrics.area_moment = r * metrics.area_moment + X_WF.translation.cross(metrics.area_vector);
+}
+
+VolumeMetrics transformed(const VolumeMetrics& metrics_F, const Pose& X_WF) {
+  VolumeMetrics metrics = metrics_F;
+  transform(X_WF, metrics);
+  return metrics;
 }
 
 VolumeMetrics reversed(const VolumeMetrics& metrics) {

@@ -53,6 +53,8 @@ struct VolumeMetrics {
 
 /// The same metrics expressed in W and about W's origin, given X_WF of the present frame F.
 VolumeMetrics transformed(const VolumeMetrics& metrics_F, const Pose& X_WF);
+/// In place.
+void transform(const Pose& X_WF, VolumeMetrics& metrics);
 
 /// The same region seen with the roles of A and B exchanged, in the same frame: S and T change sign
 /// because the whole surface of Omega is closed.

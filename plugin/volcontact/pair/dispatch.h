@@ -48,7 +48,7 @@ inline bool are_possible(const OverlapLimits& a, const OverlapLimits& b, const P
 
 /// Of every site and of their sum; see bound_depth_moment.
 inline void bound_depth_moments(const OverlapLimits& a, const OverlapLimits& b, Interference& out) {
-  const double longest = longest_line(a, b);
+  const double longest = longest_square(a, b);
   double sum = 0.0;
   for (VolumeMetrics& site : out.sites) {
     bound_depth_moment(longest, site);

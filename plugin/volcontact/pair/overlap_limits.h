@@ -120,17 +120,21 @@ inline bool is_doubtful(const VolumeMetrics& m, const OverlapLimits& a, const Ov
          m.volume_error > kLeastDoubt * std::min(a.volume, b.volume);
 }
 
-/// The longest line that both bounds hold [m]; infinite where neither ends.
-inline double longest_line(const OverlapLimits& a, const OverlapLimits& b) {
-  return std::min((a.bounds.max - a.bounds.min).norm(), (b.bounds.max - b.bounds.min).norm());
+/// The square of the longest line that both bounds hold [m^2]; infinite where neither ends.
+inline double longest_square(const OverlapLimits& a, const OverlapLimits& b) {
+  return std::min((a.bounds.max - a.bounds.min).squaredNorm(),
+                  (b.bounds.max - b.bounds.min).squaredNorm());
 }
 
 /// No part of V has more depth than the longest line: keeps the depth moment, int depth dV, within
 /// that. Where a touch has no volume but by rounding, its depth comes out as anything.
-inline void bound_depth_moment(double longest, VolumeMetrics& m) {
-  const double most = longest * m.volume;
-  if (!(m.depth_moment <= most)) m.depth_moment = most;
+inline void bound_depth_moment(double longest_square, VolumeMetrics& m) {
   if (m.depth_moment < 0.0) m.depth_moment = 0.0;
+  // As a rule no root is needed to see it.
+  const double square = longest_square * m.volume * m.volume;
+  if (m.depth_moment * m.depth_moment < square) return;
+  const double most = std::sqrt(longest_square) * m.volume;
+  if (!(m.depth_moment <= most)) m.depth_moment = most;
 }
 
 }  // namespace volcontact

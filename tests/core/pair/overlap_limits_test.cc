@@ -98,20 +98,20 @@ TEST(OverlapLimits, HoldForUnboundedSolidsAndForAnyPose) {
 }
 
 TEST(OverlapLimits, ADepthMomentIsBoundedByTheVolume) {
-  const double longest = longest_line(limits_of(kBall), limits_of(HalfSpace()));
-  EXPECT_NEAR(longest, std::sqrt(12.0), 1e-12);
+  const double square = longest_square(limits_of(kBall), limits_of(HalfSpace()));
+  EXPECT_NEAR(square, 12.0, 1e-12);
   VolumeMetrics m = cap();
   m.depth_moment = .05 * m.volume;
-  bound_depth_moment(longest, m);
+  bound_depth_moment(square, m);
   EXPECT_EQ(m.depth_moment, .05 * m.volume);
   for (const double wrong : {std::numeric_limits<double>::quiet_NaN(), kInfinity, 1e10}) {
     m.volume = 7e-18;
     m.depth_moment = wrong;
-    bound_depth_moment(longest, m);
-    EXPECT_EQ(m.depth_moment, longest * 7e-18);
+    bound_depth_moment(square, m);
+    EXPECT_EQ(m.depth_moment, std::sqrt(square) * 7e-18);
   }
   m.depth_moment = -1e-3;
-  bound_depth_moment(longest, m);
+  bound_depth_moment(square, m);
   EXPECT_EQ(m.depth_moment, 0.0);
 }
 
