@@ -50,12 +50,10 @@ VolumeMetrics transformed(const VolumeMetrics& metrics_F, const Pose& X_WF) {
   return metrics;
 }
 
-VolumeMetrics reversed(const VolumeMetrics& metrics) {
-  VolumeMetrics m = metrics;
-  m.area_vector = -metrics.area_vector;
-  m.area_moment = -metrics.area_moment;
-  std::swap(m.area, m.counter_area);
-  return m;
+void reverse(VolumeMetrics& metrics) {
+  metrics.area_vector = -metrics.area_vector;
+  metrics.area_moment = -metrics.area_moment;
+  std::swap(metrics.area, metrics.counter_area);
 }
 
 VolumeMetrics operator+(const VolumeMetrics& a, const VolumeMetrics& b) {

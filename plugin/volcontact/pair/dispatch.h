@@ -19,7 +19,9 @@ namespace dispatch {
 
 /// Makes metrics of (B, A) those of (A, B).
 inline void mirror(const Pose& X_AB, VolumeMetrics& metrics) {
-  if (metrics.touching()) metrics = reversed(transformed(metrics, X_AB));
+  if (!metrics.touching()) return;
+  transform(X_AB, metrics);
+  reverse(metrics);
 }
 
 /// `out.total` as the only site.

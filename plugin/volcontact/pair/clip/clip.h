@@ -16,7 +16,7 @@ namespace volcontact {
 struct ClipScratch {
   CutPolytope polytope;
   ColumnEnergy columns;
-  std::vector<Vec3> in_columns;  // the points of the polytope, along the columns
+  std::vector<Vec3> in_columns, normals;  // of the polytope and its faces, along the columns
   std::vector<Vec2> outline;
   std::vector<int> neighbors;
   std::vector<Vec3> corners;

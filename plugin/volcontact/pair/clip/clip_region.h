@@ -29,6 +29,7 @@ class Region {
         polytope_(scratch.polytope),
         columns_(scratch.columns),
         in_columns_(scratch.in_columns),
+        normals_(scratch.normals),
         outline_(scratch.outline),
         neighbors_(scratch.neighbors),
         faces_(scratch.polytope.faces()) {}
@@ -153,12 +154,14 @@ class Region {
     columns_.start(a_.size() + b_.size());
     in_columns_.clear();
     for (const Vec3& p : polytope_.points()) in_columns_.push_back(R_CA * (p - sum_.origin));
-    const FaceLoop* top = largest_top(R_CA);
-    for (const FaceLoop& face : faces_) {
-      if (&face != top) add_to_columns(face, R_CA);
+    normals_.clear();
+    for (const FaceLoop& face : faces_) normals_.push_back(R_CA * normal(face));
+    const FaceLoop* top = largest_top();
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      if (&faces_[i] != top) add_to_columns(faces_[i], normals_[i]);
     }
     if (top) {
-      const Vec3 n = R_CA * normal(*top);
+      const Vec3& n = normals_[static_cast<std::size_t>(top - faces_.data())];
       const HeightPlane height = height_of(n, n.dot(in_columns_[first_vertex(*top)]));
       return std::max(0.0, depth_under(*top) / n.z() - columns_.value_above(height));
     }
@@ -172,11 +175,12 @@ class Region {
   int first_vertex(const FaceLoop& face) const { return polytope_.loop_vertices()[face.first]; }
 
   // The face at which most columns end, all but few as a rule; none where there is an overhang.
-  const FaceLoop* largest_top(const Mat3& R_CA) const {
+  const FaceLoop* largest_top() const {
     const FaceLoop* top = nullptr;
     double largest = 0.0;  // shadow
-    for (const FaceLoop& face : faces_) {
-      const Vec3 n = R_CA * normal(face);
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      const FaceLoop& face = faces_[i];
+      const Vec3& n = normals_[i];
       if (is_steep(n)) continue;
       const bool upper = n.z() > 0.0;
       if (upper == is_a(face)) return nullptr;
@@ -188,8 +192,7 @@ class Region {
     return top;
   }
 
-  void add_to_columns(const FaceLoop& face, const Mat3& R_CA) {
-    const Vec3 n = R_CA * normal(face);
+  void add_to_columns(const FaceLoop& face, const Vec3& n) {
     if (is_steep(n)) return;
     const bool upper = n.z() > 0.0;
     const int* const loop = polytope_.loop_vertices().data() + face.first;
@@ -224,6 +227,7 @@ class Region {
   const CutPolytope& polytope_;
   ColumnEnergy& columns_;
   std::vector<Vec3>& in_columns_;
+  std::vector<Vec3>& normals_;  // of the faces, in the columns' frame
   std::vector<Vec2>& outline_;
   std::vector<int>& neighbors_;
   std::span<FaceLoop> faces_;

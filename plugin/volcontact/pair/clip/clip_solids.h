@@ -111,12 +111,13 @@ inline bool cut(const AlignedBox& a, int face, int first_face, double rounding,
 inline bool cut(const AlignedBox& a, const Vec3&, int first_face, double rounding,
                 CutPolytope& polytope) {
   const Aabb box = bounds_of(polytope.points());
+  const Vec3 per_extent = (box.max - box.min).cwiseInverse();
   int deepest = 0;
   double least = kInfinity;
   for (int f = 0; f < 6; ++f) {
     const int axis = f >> 1;
     const double left = a.offset(f) + (f & 1 ? -box.min[axis] : box.max[axis]);
-    const double share = left / (box.max[axis] - box.min[axis]);
+    const double share = left * per_extent[axis];
     if (share < least) {
       least = share;
       deepest = f;
