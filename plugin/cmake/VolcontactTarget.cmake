@@ -22,6 +22,8 @@ function(volcontact_target name)
     if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
       target_compile_options(${name} PRIVATE -fno-schedule-insns2 -fno-gcse -fno-gcse-after-reload
         --param=sccvn-max-alias-queries-per-access=100)
+      # Else what takes 160 ns takes 190 when something that stands before it grows.
+      target_compile_options(${name} PRIVATE -falign-functions=64)
       # By default it sets and copies what has 128 bytes and more by `rep`, whose start alone takes as
       # long as that by registers: 1 to 4 % of a step.
       foreach(operation memset memcpy)

@@ -45,15 +45,21 @@ void transform(const Pose& X_WF, VolumeMetrics& metrics) {
 }
 
 VolumeMetrics transformed(const VolumeMetrics& metrics_F, const Pose& X_WF) {
-  VolumeMetrics metrics = metrics_F;
-  transform(X_WF, metrics);
-  return metrics;
+  VolumeMetrics out = metrics_F;
+  transform(X_WF, out);
+  return out;
 }
 
 void reverse(VolumeMetrics& metrics) {
   metrics.area_vector = -metrics.area_vector;
   metrics.area_moment = -metrics.area_moment;
   std::swap(metrics.area, metrics.counter_area);
+}
+
+VolumeMetrics reversed(const VolumeMetrics& metrics) {
+  VolumeMetrics out = metrics;
+  reverse(out);
+  return out;
 }
 
 VolumeMetrics operator+(const VolumeMetrics& a, const VolumeMetrics& b) {

@@ -56,8 +56,10 @@ VolumeMetrics transformed(const VolumeMetrics& metrics_F, const Pose& X_WF);
 /// In place.
 void transform(const Pose& X_WF, VolumeMetrics& metrics);
 
-/// Makes of metrics those of the same region seen with the roles of A and B exchanged, in the same
-/// frame: S and T change sign because the whole surface of Omega is closed.
+/// The same region seen with the roles of A and B exchanged, in the same frame: S and T change sign
+/// because the whole surface of Omega is closed.
+VolumeMetrics reversed(const VolumeMetrics& metrics);
+/// In place.
 void reverse(VolumeMetrics& metrics);
 
 /// Metrics of the union of two disjoint regions of one pair, in one frame: everything adds,

@@ -73,17 +73,20 @@ TEST(VolumeMetrics, TransformedMovesTheMomentLikeAForce) {
   const VolumeMetrics m = box_at(Vec3(0.1, 0.2, 0.3), Vec3(0.5, -0.2, 0.3));
   // T = c x S by construction; it must stay so about the new origin.
   const VolumeMetrics moved = transformed(m, X);
+  VolumeMetrics in_place = m;
+  transform(X, in_place);
+  EXPECT_EQ(in_place, moved);
   EXPECT_LT((moved.area_moment - moved.centroid.cross(moved.area_vector)).norm(), 1e-14);
 }
 
 TEST(VolumeMetrics, ReversedTwiceIsTheSame) {
   const VolumeMetrics m = box_at(Vec3(0.1, 0.2, 0.3), Vec3(0.5, -0.2, 0.3));
-  VolumeMetrics turned = m;
-  reverse(turned);
-  EXPECT_EQ(turned.normal(), -m.normal());
-  EXPECT_EQ(turned.area, m.counter_area);
-  reverse(turned);
-  EXPECT_EQ(turned, m);
+  EXPECT_TRUE(same(reversed(reversed(m)), m, Tolerance{0.0, 1.0}));
+  EXPECT_EQ(reversed(m).normal(), -m.normal());
+  EXPECT_EQ(reversed(m).area, m.counter_area);
+  VolumeMetrics in_place = m;
+  reverse(in_place);
+  EXPECT_EQ(in_place, reversed(m));
 }
 
 TEST(VolumeMetrics, NormalIsAgainstTheAreaVectorAndZeroWithoutOne) {

@@ -45,10 +45,7 @@ struct OneFace : EngineBase {
       out.total = closed_form(q.a, half_space, X_AH);
     } else {
       const VolumeMetrics in_face = closed_form(half_space, q.a, X_AH.inverse());
-      if (in_face.touching()) {
-        out.total = transformed(in_face, X_AH);
-        reverse(out.total);
-      }
+      if (in_face.touching()) out.total = reversed(transformed(in_face, X_AH));
     }
     // What is within but for rounding has no normal in B, and no depth either.
     if (out.total.status == Status::kContained) return Answer::kBeyond;
