@@ -422,14 +422,14 @@ a finger, a fish or a ball in a cup under volumetric contact takes 1.03 to 1.14 
 Structures of 100 to 700 bytes were made in one place, copied to another, and set and copied by `rep`, whose start
 alone takes 40 cycles: sites are now made where they stay, and by registers. The first three unknowns of the equations
 are eliminated number by number, since each pivot waits for the one before, and eight lanes are added by halves. Where
-all friction of an island holds with ease, one solution is enough. Together: battery box in its seat 0.56 to 0.49 times
-native contact, the pile at rest 0.68 to 0.62, a hundred free boxes 0.99 to 0.82, the median of scenes by others 1.84
-to 1.72. Roots and divisions that are left out, on the other hand, save nothing: the processor does them beside
-the rest. The same holds for code in other places of memory, of other size (`-O2` is 5 to 15 % slower), or for another
-processor.
+all friction of an island holds with ease, one solution is enough. Together: from 0.56 to between 0.49 and 0.52 times native
+contact for the battery box in its seat (four runs), from 0.68 to between 0.62 and 0.65 for the pile at rest, from
+0.99 to 0.82 for a hundred free boxes, and from 1.84 to 1.72 for the median of scenes by others. Roots and divisions that are left out, on the other hand, save nothing: the processor does them beside
+the rest. The same holds for the order of the code in memory and for code tuned for
+one processor; `-O2` is 5 to 15 % slower.
 
 Where the time of a free box at rest goes now (2.2 us, sampled): a tenth to MuJoCo, a quarter to the overlap and the
-laws, 15 % to the two matrices and what they make of the site, 20 % to the equations of its forces and friction, the
+laws, 15 % to the two matrices and what they make of the site, a sixth to the equations of its forces and friction, the
 rest to a dozen smaller things, of which none has more than 4 %. Native contact is at its quickest where nothing moves:
 after two thousand steps it takes 168 us for a hundred boxes, a hundred steps after the start 260.
 
