@@ -2,6 +2,7 @@
 #include "volcontact/step/contact_space.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "volcontact/base/sizes.h"
 #include "volcontact/step/matrix/dense_matrix.h"

@@ -8,10 +8,11 @@ namespace {
 
 constexpr std::size_t kPairs = 100;
 
-// Evaluations that take these times alone and shared; what they took in sum, and how many shared.
+// Evaluations that take these times alone and shared; what they took in sum, how many shared, and
+// how often the clock was read.
 struct Took {
   double seconds = 0.0;
-  int shared = 0;
+  int shared = 0, timed = 0;
 };
 Took run(ThreadChoice& choice, int evaluations, double alone, double shared) {
   Took sum;
@@ -19,7 +20,10 @@ Took run(ThreadChoice& choice, int evaluations, double alone, double shared) {
     const bool shares = choice.shares(2, kPairs);
     // Every hundredth one is interrupted.
     const double time = (shares ? shared : alone) + (i % 100 == 99 ? 4e-3 : 0.0);
-    choice.took(time);
+    if (choice.wants_time()) {
+      choice.took(time);
+      ++sum.timed;
+    }
     sum.seconds += time;
     sum.shared += shares ? 1 : 0;
   }
@@ -53,6 +57,15 @@ TEST(ThreadChoice, ShortEvaluationsAndSingleThreadsAreNeverShared) {
   EXPECT_EQ(run(choice, 10000, 50e-6, 1e-6).shared, 0);
   EXPECT_FALSE(ThreadChoice().shares(1, kPairs));
   EXPECT_FALSE(ThreadChoice().shares(2, 0));
+}
+
+TEST(ThreadChoice, TheClockIsReadNowAndThenWhereOneThreadWillDoByFar) {
+  ThreadChoice choice;
+  EXPECT_LT(run(choice, 16000, 50e-6, 1e-6).timed, 1010);
+  // What takes longer from now on is noticed, and from then on all is timed.
+  run(choice, 1000, 1e-3, 0.55e-3);
+  EXPECT_EQ(run(choice, 1000, 1e-3, 0.55e-3).timed, 1000);
+  EXPECT_GT(run(choice, 1000, 1e-3, 0.55e-3).shared, 900);
 }
 
 TEST(ThreadChoice, IsOfItsScene) {

@@ -15,8 +15,6 @@ inline constexpr int kRows = 6;  ///< of a contact place: along and about its th
 struct PlaceColumn {
   double numbers[kLanes] = {};
 
-  PlaceColumn() = default;
-  explicit PlaceColumn(const Vector<kRows>& rows) { rows.to(numbers); }
   Vector<kRows> rows() const { return Vector<kRows>::from(numbers); }
   bool is_zero() const { return rows().isZero(0.0); }
 };

@@ -17,7 +17,7 @@ class DofTrees {
   /// `parents` by number, negative for none.
   void set(std::span<const int> parents) {
     if (std::equal(parents.begin(), parents.end(), parents_.begin(), parents_.end())) return;
-    parents_.assign(parents.begin(), parents.end());
+    parents_.clear();  // known at the end alone: none of it where there is no memory
     depths_.resize(parents.size());
     starts_.resize(parents.size());
     for (std::size_t i = parents.size(); i-- > 0;) {
@@ -28,6 +28,7 @@ class DofTrees {
       starts_[i] = count_;
       count_ += static_cast<std::size_t>(depths_[i]) + 1;
     }
+    parents_.assign(parents.begin(), parents.end());
   }
 
   int size() const { return static_cast<int>(parents_.size()); }
