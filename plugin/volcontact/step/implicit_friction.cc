@@ -38,7 +38,7 @@ double speed_left(double free, double mobility, const DampingAt& damping_at) {
   return at;
 }
 
-// Of the square of what friction can hold.
+// Strain of friction that holds with ease: half of what it can.
 constexpr double kEase = 0.25;
 
 }  // namespace
@@ -93,7 +93,7 @@ ImplicitStep::Slide ImplicitStep::slide_under(std::size_t i, double strength, do
 
 // Friction as it will be where nothing slides, by the forces and the motion at the begin of the
 // step: where all is held with ease that is right as a rule, and one solution will do. Returns
-// whether the solution asks for the same.
+// whether the solution asks for the same, and no more than friction can hold.
 bool ImplicitStep::solve_at_rest(double step) {
   take_explicit();
   std::copy(space_.velocity().begin(), space_.velocity().end(), velocity_.begin());
@@ -102,10 +102,12 @@ bool ImplicitStep::solve_at_rest(double step) {
     if (!site.laws.has_friction()) continue;
     if (!site.laws.friction_keeps()) return false;
     set_friction_of(site, i, step);
-    if (!site.is_held_with_ease) return false;
+    if (!(site.strain <= kEase)) return false;
   }
   solve_active(true, step);
-  return !set_friction(step);
+  if (set_friction(step)) return false;
+  return std::all_of(island_.begin(), island_.end(),
+                     [this](int i) { return sites_[size(i)].strain <= 1.0; });
 }
 
 // Friction under the normal forces of the last solution. Returns whether it is another at a site.
@@ -145,8 +147,9 @@ void ImplicitStep::set_friction_of(Site& site, std::size_t i, double step) {
   const Vec3 at_rest = held - holds * site.drift;
   const Vec3 wanted = at_rest - holds * slip;
   const double square = (wanted + slope.viscous * slip).squaredNorm();
-  const bool gives_way = square > slope.strength * slope.strength;
-  site.is_held_with_ease = square <= kEase * slope.strength * slope.strength;
+  const double most = slope.strength * slope.strength;
+  site.strain = most > 0.0 ? square / most : square > 0.0 ? kInfinity : 0.0;
+  const bool gives_way = square > most;
   const Slide slide = gives_way ? slide_under(i, slope.strength, slope.viscous, step) : Slide{};
   if (slide.speed > 0.0) {
     site.held.setZero();

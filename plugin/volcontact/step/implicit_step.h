@@ -112,7 +112,7 @@ class ImplicitStep {
     // Friction: force = held - rub * slip, or `rub` alone where it slides; as (t_1, t_2, about n).
     Vec3 held = Vec3::Zero();
     double rub = 0.0;
-    bool is_held_with_ease = false;
+    double strain = 0.0;      // square of what friction would have to hold, of that of what it can
     double held_share = 1.0;  // what it can hold of what it was solved to
     double free_speed = 0.0;  // slip at the end of the step without friction, and what presses then
     double free_normal = 0.0;

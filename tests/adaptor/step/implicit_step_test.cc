@@ -274,6 +274,44 @@ TEST(ImplicitStep, EnergyAccountCloses) {
   }
 }
 
+// What lay still is pushed, lifted and turned in one step: one solution with the friction of before
+// is no longer right.
+TEST(ImplicitStep, WhatIsKickedOutOfRestIsHeldByNoMoreThanFrictionCan) {
+  constexpr double kFriction = 0.4;  // of keys()
+  test::Random random(31);
+  for (const char* friction : {"elastic_coulomb", "bristle"}) {
+    const ModelPointer m = testing::load(
+        "<mujoco><option timestep=\"2e-3\" gravity=\"1.4 0.3 -9.7\"/><worldbody>"
+        "<geom name=\"floor\" type=\"plane\" size=\"2 2 .1\"/><body pos=\"0 0 .1\"><freejoint/>"
+        "<geom name=\"low\" type=\"box\" size=\".15 .12 .1\" mass=\"3\"/></body></worldbody>" +
+        keys("on", friction, "2e9", {"floor", "low"}) + "</mujoco>");
+    const Attached attached(m);
+    const DataPointer rest = testing::make_data(m), d = testing::make_data(m);
+    mj_step(m.get(), rest.get());
+    for (int i = 0; i < 500; ++i) mj_step(m.get(), rest.get());
+    int held = 0, slid = 0;
+    for (int kick = 0; kick < 1000; ++kick) {
+      mj_copyData(d.get(), m.get(), rest.get());
+      const double size = random.log_uniform(5.0, 50.0);
+      for (int i = 0; i < 6; ++i) {
+        d->xfrc_applied[6 + i] = random.uniform(-1.0, 1.0) * (i < 3 ? size : 0.1 * size);
+      }
+      for (int i = 0; i < 3; ++i) {
+        mj_step(m.get(), d.get());
+        volcontact_site site;
+        if (volcontact_sites(m.get(), d.get(), &site, 1) != 1) break;
+        const Vec3 n(site.normal), force(site.force);
+        const double across = (force - force.dot(n) * n).norm();
+        EXPECT_LT(across, kFriction * site.normal_force * (1.0 + 1e-6) + 1e-9)
+            << friction << " " << kick << " " << i;
+        (across < 0.99 * kFriction * site.normal_force ? held : slid) += 1;
+      }
+    }
+    EXPECT_GT(held, 200);
+    EXPECT_GT(slid, 100);
+  }
+}
+
 TEST(ImplicitStep, AllocatesNothingWhenWarm) {
   const std::string limits = "limited=\"true\" range=\".001 2\"";
   for (const double damping : {0.0, 2.0, 3.0}) {
