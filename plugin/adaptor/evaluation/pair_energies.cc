@@ -95,6 +95,7 @@ void know_limits(const SceneContact& contact, const mjModel* m, double dissipate
 
 WorkLimit limit_of(std::size_t k, const EvaluationScratch& scratch) {
   WorkLimit limit = scratch.limits[k];
+  // Pairs that follow the law through the stages of Runge-Kutta have been told that since.
   limit.rubbed = scratch.energies[k].rubbed;
   return limit;
 }

@@ -97,9 +97,14 @@ FrictionInput friction_input(const SiteReport& site, const SiteInputs& inputs, d
                              const Vec3& slip, double spin) noexcept {
   const Vec3& n = site.normal;
   const double size = inputs.normal_in.volume;
-  FrictionInput in{
-      normal_force,           n,           slip, spin, inputs.travel - inputs.travel.dot(n) * n,
-      inputs.rotation.dot(n), inputs.patch};
+  FrictionInput in;
+  in.normal_force = normal_force;
+  in.normal = n;
+  in.slip = slip;
+  in.spin = spin;
+  in.travel = inputs.travel - inputs.travel.dot(n) * n;
+  in.turn = inputs.rotation.dot(n);
+  in.patch = inputs.patch;
   if (size > 0.0) in.normal_stiffness = inputs.normal_out.elastic / size * in.patch.area;
   in.mass = inputs.normal_in.mass;
   return in;
@@ -182,6 +187,7 @@ void ContactModel::evaluate(std::span<const GeometricPair> pairs, const BodyMoti
   report.inputs.clear();
   report.committed.clear();
   report.elapsed = memory.elapsed;
+  SiteInputs unused;  // where the report keeps none
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     interference_W(pairs[i], motion.X_WA, motion.X_WB, options_, workspace.engines,
                    workspace.interference);
@@ -203,7 +209,6 @@ void ContactModel::evaluate(std::span<const GeometricPair> pairs, const BodyMoti
         report.committed.insert(report.committed.end(), state.committed,
                                 state.committed + state_size());
       }
-      SiteInputs unused;
       SiteInputs& inputs = report.keeps_inputs ? report.inputs.emplace_back() : unused;
       SiteReport& site = report.sites.emplace_back();
       site.pair = pair;
