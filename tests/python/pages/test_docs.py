@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+import csv
 import importlib.util
 import json
 import os
 import re
+import statistics
 import subprocess
 import sys
 from pathlib import Path
@@ -238,6 +240,30 @@ def test_performance_page_is_generated_from_the_results() -> None:
     assert module.PAGE.read_text(encoding="utf-8") == module.render(), (
         "run './run python docs/generate/make_performance.py'"
     )
+
+
+def test_times_in_the_readme_are_those_of_the_pages() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    performance = (ROOT / "docs" / "performance.md").read_text(encoding="utf-8")
+
+    def times(row: str, text: str) -> list[str]:
+        """Of the first row of a table that begins so and has times."""
+        rows = (line for line in text.splitlines() if line.startswith(f"| {row}"))
+        found = (re.findall(r"(?<![\d.])[\d.]+ [um]s\b", line) for line in rows)
+        return next(numbers for numbers in found if numbers)
+
+    assert set(times("one query", readme)) <= set(times("bored block - peg 0.3 mm |", performance))
+    ours, native, drake = (times("one step", readme)[i : i + 2] for i in (0, 2, 4))
+    for i, scene in enumerate(("battery box, seated", "pile of 20 boxes, at rest")):
+        row = times(scene, performance)
+        assert [native[i], ours[i], drake[i]] == [row[1], row[2], row[3]], scene
+    with (ROOT / "tests" / "benchmarks" / "results" / "third_party.csv").open() as table:
+        rows = [row for row in csv.DictReader(table) if row["volumetric_us"]]
+    ratios = sorted(float(row["volumetric_us"]) / float(row["native_us"]) for row in rows)
+    least, most, median = (f"{r:.1f}" for r in (ratios[0], ratios[-1], statistics.median(ratios)))
+    assert f"take {least} to {most} times as long, {median} in the median" in readme
+    stacks = next(line for line in performance.splitlines() if line.startswith("| 20 boxes in 4"))
+    assert f"stacks {stacks.split(' | ')[4]}." in readme
 
 
 def test_performance_plots_are_made_of_the_results() -> None:
